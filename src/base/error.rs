@@ -1,0 +1,95 @@
+//! The error type of the library. Each variant is one kind of trouble a user can act on; the CLI maps them to
+//! exit codes in one place (`main.rs`).
+
+use std::path::PathBuf;
+
+/// Everything that can go wrong below the command line.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum Error {
+    /// A scene that cannot be used: points at the file, the line and the key.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] Box<SceneError>),
+    /// Input other than a scene file: a bad option, an unknown scene name, a bad centreline file.
+    #[error("{what}")]
+    Input {
+        /// What is wrong.
+        what: String,
+        /// What would be right.
+        #[help]
+        help: Option<String>,
+    },
+    /// The file system refused something.
+    #[error("{action} {}: {source}", path.display())]
+    Io {
+        /// What was being done: "cannot write", "cannot read".
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// The machine lacks something that was asked for (no adapter, no Rerun viewer listening).
+    #[error("{what}")]
+    Missing {
+        /// What is missing.
+        what: String,
+        /// How to get it, or how to do without it.
+        #[help]
+        help: Option<String>,
+    },
+    /// The simulation had to stop: NaN, runaway, a bound that does not hold.
+    #[error("stopped at step {step}: {what}")]
+    Trouble {
+        /// Step at which it was noticed.
+        step: u64,
+        /// Cause, naming the bond or particle.
+        what: String,
+        /// Remedy.
+        #[help]
+        help: Option<String>,
+    },
+}
+
+/// A scene error with its place in the source.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[error("{what}")]
+pub struct SceneError {
+    /// What is wrong, naming key and value.
+    pub what: String,
+    /// What would be right.
+    #[help]
+    pub help: Option<String>,
+    /// The text of the scene, named after its file.
+    #[source_code]
+    pub source_code: miette::NamedSource<String>,
+    /// The place of the offending key or value.
+    #[label("here")]
+    pub span: Option<miette::SourceSpan>,
+}
+
+/// Result with this crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+impl Error {
+    /// An input error with its remedy.
+    pub fn input(what: impl Into<String>, help: impl Into<String>) -> Self {
+        Error::Input { what: what.into(), help: Some(help.into()) }
+    }
+
+    /// A file-system error with what was being done.
+    pub fn io(action: &'static str, path: impl Into<PathBuf>, source: std::io::Error) -> Self {
+        Error::Io { action, path: path.into(), source }
+    }
+
+    /// Exit code of the program for this error: 2 for bad input, 3 for something missing on the machine,
+    /// 4 for a simulation that had to stop, 1 for the rest.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Error::Scene(_) | Error::Input { .. } => 2,
+            Error::Missing { .. } => 3,
+            Error::Trouble { .. } => 4,
+            Error::Io { .. } => 1,
+        }
+    }
+}

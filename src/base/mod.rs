@@ -1,0 +1,5 @@
+//! Floor 0: units, vectors, seeded randomness, errors. Imports nothing of this crate.
+
+pub mod error;
+pub mod random;
+pub mod vectors;

@@ -1,0 +1,204 @@
+//! What leaves the engine: samples (one row of the curve), snapshots (every particle, f32, in the units of pictures)
+//! and ruptures.
+
+use serde::{Deserialize, Serialize};
+
+/// Whether a bond holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[repr(u8)]
+pub enum BondState {
+    /// Never yielded.
+    Whole = 0,
+    /// Has plastic strain.
+    Yielding = 1,
+    /// Broken.
+    Broken = 2,
+    /// No bond: the slot after a wire's last particle, or a free sphere.
+    Absent = 3,
+}
+
+/// What does not change during a run, for those who draw or record it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunInfo {
+    /// Scene name.
+    pub name: String,
+    /// What the scene shows.
+    pub about: String,
+    /// Layer names, inside out.
+    pub layers: Vec<String>,
+    /// Wires in order; wire `w` is shown to people as number `w + 1`.
+    pub wires: Vec<WireInfo>,
+    /// Number of particles in wires; free spheres follow.
+    pub wire_particles: usize,
+    /// Number of particles, free spheres included.
+    pub particles: usize,
+    /// Initial particle radius [mm].
+    pub radius: Vec<f32>,
+    /// Initial centre of each particle [mm].
+    pub rest_position: Vec<[f32; 3]>,
+    /// z of the lower and upper grip face before loading [mm]; the gauge lies between. `None` for free bodies.
+    pub gauge: Option<[f32; 2]>,
+    /// A range of true axial stress that the run will not exceed, for a colour scale that is fixed
+    /// over the whole sequence [MPa].
+    pub stress_range: [f32; 2],
+    /// The same for equivalent plastic strain [-].
+    pub plastic_strain_range: [f32; 2],
+    /// The same for particle speed [m/s].
+    pub speed_range: [f32; 2],
+    /// The strain at which the run is expected to end [-], for axes and progress; `None` when unknown.
+    pub strain_end: Option<f64>,
+}
+
+/// A wire for those who draw or record it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WireInfo {
+    /// Index into [`RunInfo::layers`].
+    pub layer: usize,
+    /// First particle.
+    pub first: usize,
+    /// Number of particles; bond slots `first .. first + len - 1`.
+    pub len: usize,
+    /// Diameter [mm].
+    pub diameter: f32,
+}
+
+/// One row of the stress–strain curve.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Sample {
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Grip displacement over gauge length [-].
+    pub strain: f64,
+    /// Nominal stress: upper grip force over ΣnA₀ [Pa].
+    pub stress: f64,
+    /// Force of the lower grip and of the upper grip, tension positive [N].
+    pub grip_force: [f64; 2],
+    /// Torque about z on the upper grip [N m].
+    pub torque: f64,
+    /// Mean nominal axial stress of each layer at mid-gauge [Pa].
+    pub layer_stress: Vec<f64>,
+    /// Nominal axial stress of each wire at mid-gauge [Pa].
+    pub wire_stress: Vec<f64>,
+    /// Wires broken so far.
+    pub wires_broken: usize,
+    /// Bonds broken so far.
+    pub bonds_broken: usize,
+    /// Active contacts.
+    pub contacts: usize,
+    /// Time step [s].
+    pub time_step: f64,
+    /// Energies [J].
+    pub energy: Energy,
+}
+
+/// The energy ledger [J]; every term is cumulative except `kinetic` and the two elastic ones.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Energy {
+    /// Work done by grips, holds and applied loads, plus the kinetic energy that the run started with.
+    pub work: f64,
+    /// Kinetic, translation and rotation.
+    pub kinetic: f64,
+    /// Elastic, in bonds.
+    pub elastic_bonds: f64,
+    /// Elastic, in contacts.
+    pub elastic_contacts: f64,
+    /// Plastic work in bonds.
+    pub plastic_bonds: f64,
+    /// Plastic work in contacts.
+    pub plastic_contacts: f64,
+    /// Work that contact pressure does as wires thin: it goes into their plastic flow.
+    pub plastic_thinning: f64,
+    /// Friction.
+    pub friction: f64,
+    /// Viscous damping.
+    pub damping: f64,
+    /// Released by rupture: what the broken bonds held.
+    pub released: f64,
+}
+
+impl Energy {
+    /// Elastic plus dissipated energy, without kinetic energy [J].
+    pub fn internal(&self) -> f64 {
+        self.elastic_bonds
+            + self.elastic_contacts
+            + self.plastic_bonds
+            + self.plastic_contacts
+            + self.plastic_thinning
+            + self.friction
+            + self.damping
+            + self.released
+    }
+
+    /// What the ledger does not account for: work − kinetic − internal [J].
+    pub fn residual(&self) -> f64 {
+        self.work - self.kinetic - self.internal()
+    }
+}
+
+/// Every particle at one instant, in the units of pictures (mm, MPa), f32.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// The curve's row at this instant.
+    pub sample: Sample,
+    /// Centres [mm], one per particle.
+    pub position: Vec<[f32; 3]>,
+    /// Current radii [mm] (wires thin as they stretch), one per particle.
+    pub radius: Vec<f32>,
+    /// Speed [m/s], one per particle.
+    pub speed: Vec<f32>,
+    /// State, one per bond slot (slot i joins particles i and i + 1; as many slots as particles).
+    pub bond_state: Vec<BondState>,
+    /// True axial stress [MPa], one per bond slot; 0 where no bond is.
+    pub bond_stress: Vec<f32>,
+    /// Equivalent plastic strain [-], one per bond slot.
+    pub plastic_strain: Vec<f32>,
+}
+
+/// Why a bond broke.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RuptureCause {
+    /// Equivalent plastic strain reached its limit.
+    PlasticStrain,
+    /// Tensile stress of the outermost fibre.
+    Tension,
+    /// Shear stress.
+    Shear,
+    /// Strain of the outermost fibre.
+    FibreStrain,
+}
+
+/// A bond that broke.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Rupture {
+    /// Order of the rupture in the run, from 1.
+    pub order: usize,
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Strain of the body [-].
+    pub strain: f64,
+    /// Wire, from 0.
+    pub wire: usize,
+    /// Layer, from 0.
+    pub layer: usize,
+    /// Bond slot.
+    pub bond: usize,
+    /// Number of the bond along its wire, from 0.
+    pub bond_in_wire: usize,
+    /// Centre of the bond when it broke [m].
+    pub position: [f64; 3],
+    /// z of the bond's centre before loading [m].
+    pub rest_z: f64,
+    /// Cause.
+    pub cause: RuptureCause,
+    /// True axial stress just before [Pa].
+    pub stress: f64,
+    /// Nominal stress of the body just before [Pa].
+    pub body_stress: f64,
+    /// True when this is the wire's first rupture.
+    pub first_of_wire: bool,
+}

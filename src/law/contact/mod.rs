@@ -1,0 +1,4 @@
+//! Normal contact laws.
+//!
+//! | name | equation | source |
+//! | --- | --- | --- |

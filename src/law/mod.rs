@@ -1,0 +1,3 @@
+//! Floor 1: the physics as stateless formula kernels. Nothing here knows of particles, lists or files.
+
+pub mod contact;

@@ -1,0 +1,8 @@
+//! strandsnap: a discrete-element engine for stranded wire under load, and the pictures that show how it fails.
+
+pub mod base;
+pub mod engine;
+pub mod law;
+pub mod observe;
+pub mod scene;
+pub mod strand;

@@ -1,0 +1,25 @@
+//! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
+
+use crate::base::error::Result;
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+use std::sync::Arc;
+
+/// Something that watches a run.
+pub trait Observer {
+    /// Before the first step.
+    fn start(&mut self, info: &Arc<RunInfo>) -> Result<()>;
+    /// A row of the curve.
+    fn sample(&mut self, _sample: &Sample) -> Result<()> {
+        Ok(())
+    }
+    /// Every particle, at the scene's output interval. Shared, so that it can be drawn or encoded on another thread.
+    fn snapshot(&mut self, _snapshot: &Arc<Snapshot>) -> Result<()> {
+        Ok(())
+    }
+    /// A bond broke.
+    fn rupture(&mut self, _rupture: &Rupture) -> Result<()> {
+        Ok(())
+    }
+    /// After the last step, also of a run that was stopped: everything written so far must be made whole.
+    fn finish(&mut self) -> Result<()>;
+}

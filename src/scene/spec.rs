@@ -1,0 +1,414 @@
+//! `Spec`: a scene after resolution, all SI, nothing left to guess. It is what every later floor reads.
+
+use glam::DVec3;
+use std::path::PathBuf;
+
+/// A resolved scene. Units are SI throughout.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spec {
+    /// Name: the file's stem or the built-in name; also the default folder under `out/`.
+    pub name: String,
+    /// One or more sentences saying what the scene shows.
+    pub about: String,
+    /// Seed of the scatter [-].
+    pub seed: u64,
+    /// The wire material.
+    pub material: Material,
+    /// Bonds along wires.
+    pub bond: BondSpec,
+    /// Contacts; `None` when the scene says `contact.normal = "none"`.
+    pub contact: Option<ContactSpec>,
+    /// A strand laid up in helical layers.
+    pub strand: Option<StrandSpec>,
+    /// Wires given one by one.
+    pub wires: Vec<WireSpec>,
+    /// Free spheres (each its own body, its own mass 4/3 π r³ ρ).
+    pub spheres: Vec<SphereSpec>,
+    /// Particle spacing over wire diameter [-]; 1 is touching spheres.
+    pub spacing: f64,
+    /// The two grips of a strand or of a set of wires along z; `None` for free bodies.
+    pub grip: Option<GripSpec>,
+    /// Extra holds and loads on single bodies.
+    pub holds: Vec<HoldSpec>,
+    /// Time stepping.
+    pub time: TimeSpec,
+    /// When to stop.
+    pub stop: StopSpec,
+    /// What to write and how often.
+    pub output: OutputSpec,
+    /// `auto`: only the stages that the scene needs; `general`: every stage, needed or not.
+    pub plan: PlanMode,
+}
+
+/// See [`Spec::plan`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlanMode {
+    /// Only what the scene needs.
+    Auto,
+    /// Everything, for comparison.
+    General,
+}
+
+/// Isotropic elastic constants and density.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// Density [kg/m³].
+    pub density: f64,
+    /// Young's modulus [Pa].
+    pub young: f64,
+    /// Poisson's ratio [-].
+    pub poisson: f64,
+}
+
+impl Material {
+    /// Shear modulus E / (2 (1 + ν)) [Pa].
+    pub fn shear(&self) -> f64 {
+        self.young / (2.0 * (1.0 + self.poisson))
+    }
+}
+
+/// Bonds: law, rupture, damping.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondSpec {
+    /// Force–displacement law.
+    pub law: BondLawSpec,
+    /// Rupture; `None` for bonds that never break.
+    pub rupture: Option<RuptureSpec>,
+    /// Viscous damping as a fraction of critical, per mode [-]: axial, shear, bending, torsion.
+    pub damping: [f64; 4],
+}
+
+/// Bond law by name.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BondLawSpec {
+    /// `elastic`: linear in all modes.
+    Elastic,
+    /// `elasto-plastic`: isotropic hardening, coupled section plasticity.
+    ElastoPlastic(HardeningSpec),
+}
+
+/// Hardening law σ_y(p): true yield stress over equivalent plastic strain.
+#[derive(Debug, Clone, PartialEq)]
+pub enum HardeningSpec {
+    /// σ₀ + Q (1 − e^(−b p)) + H p.
+    Voce {
+        /// σ₀ [Pa].
+        yield_stress: f64,
+        /// Q [Pa].
+        saturation: f64,
+        /// b [-].
+        rate: f64,
+        /// H [Pa].
+        linear: f64,
+    },
+    /// K (ε₀ + p)^n.
+    Swift {
+        /// K [Pa].
+        strength: f64,
+        /// ε₀ [-].
+        prestrain: f64,
+        /// n [-].
+        exponent: f64,
+    },
+    /// σ₀ + K p^n.
+    Ludwik {
+        /// σ₀ [Pa].
+        yield_stress: f64,
+        /// K [Pa].
+        strength: f64,
+        /// n [-].
+        exponent: f64,
+    },
+    /// Straight lines between (true plastic strain [-], true stress [Pa]) points, first at strain 0, last slope kept.
+    Table(Vec<[f64; 2]>),
+}
+
+/// Rupture criterion with its scatter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RuptureSpec {
+    /// The criterion.
+    pub criterion: RuptureCriterion,
+    /// Weibull modulus m of the per-bond factor on the rupture value [-]; infinite means no scatter.
+    pub weibull_modulus: f64,
+}
+
+/// When a bond breaks.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RuptureCriterion {
+    /// p ≥ p_f.
+    PlasticStrain {
+        /// p_f [-].
+        strain: f64,
+    },
+    /// N/A + β_m |M| r/I ≥ σ_c or |V|/A + β_m |T| r/J ≥ τ_c (Potyondy & Cundall 2004).
+    BeamStress {
+        /// σ_c [Pa].
+        tensile: f64,
+        /// τ_c [Pa].
+        shear: f64,
+        /// β_m, 0 to 1 [-].
+        moment_share: f64,
+    },
+    /// Axial + bending strain at the outermost fibre ≥ ε_f.
+    FibreStrain {
+        /// ε_f [-].
+        strain: f64,
+    },
+}
+
+/// Contacts between surfaces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSpec {
+    /// Normal law.
+    pub normal: NormalSpec,
+    /// Tangential law; `None` means frictionless.
+    pub tangential: Option<TangentialSpec>,
+    /// Coulomb friction coefficient [-].
+    pub friction: f64,
+    /// Shape of a wire in contact.
+    pub shape: Shape,
+    /// Viscous damping of the normal and tangential contact motion, fraction of critical [-].
+    pub damping: f64,
+    /// Skin of the neighbour list over the largest particle diameter [-].
+    pub skin: f64,
+}
+
+/// Normal contact law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NormalSpec {
+    /// Hertz, elastic.
+    Hertz,
+    /// Thornton 1997, elastoplastic.
+    Thornton {
+        /// Limiting contact pressure p_y [Pa].
+        limiting_pressure: f64,
+    },
+}
+
+/// Tangential contact law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TangentialSpec {
+    /// No-slip Mindlin with Coulomb cap.
+    Mindlin,
+    /// Mindlin & Deresiewicz 1953.
+    MindlinDeresiewicz,
+}
+
+/// Shape of a wire in contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// A chain of spheres.
+    Sphere,
+    /// The swept segment between bonded neighbours.
+    Capsule,
+}
+
+/// A strand: helical layers around the z axis, from z = 0 to z = length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StrandSpec {
+    /// Length L [m].
+    pub length: f64,
+    /// Layers from the inside out.
+    pub layers: Vec<LayerSpec>,
+}
+
+/// One layer of a strand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerSpec {
+    /// Name: "inner", "middle", "outer", "core" or the scene's own.
+    pub name: String,
+    /// Number of wires n_k.
+    pub wires: usize,
+    /// Wire diameter d [m].
+    pub wire_diameter: f64,
+    /// Lay radius R_k [m]; `None` means `auto`: the least radius without overlap (found by `strand::lay_radius`).
+    pub lay_radius: Option<f64>,
+    /// Pitch h_k [m]; infinite for straight wires.
+    pub pitch: f64,
+    /// Lay direction s_k: +1 right (Z), −1 left (S).
+    pub lay: f64,
+    /// Phase φ_k [rad].
+    pub phase: f64,
+}
+
+/// A wire on its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WireSpec {
+    /// Name of the layer the wire is counted in.
+    pub layer: String,
+    /// Wire diameter d [m].
+    pub diameter: f64,
+    /// Its centre line.
+    pub path: PathSpec,
+    /// Initial velocity [m/s].
+    pub velocity: DVec3,
+    /// Initial spin [rad/s].
+    pub spin: DVec3,
+}
+
+/// Centre line of a wire.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PathSpec {
+    /// Straight from → to [m].
+    Straight {
+        /// First point [m].
+        from: DVec3,
+        /// Last point [m].
+        to: DVec3,
+    },
+    /// Wire `index` (from 0) of a centreline text file.
+    File {
+        /// The file as given, resolved against the scene's folder.
+        file: PathBuf,
+        /// Which wire of it.
+        index: usize,
+        /// Its points [m].
+        points: Vec<DVec3>,
+    },
+}
+
+/// A free sphere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SphereSpec {
+    /// Diameter [m].
+    pub diameter: f64,
+    /// Centre [m].
+    pub position: DVec3,
+    /// Velocity [m/s].
+    pub velocity: DVec3,
+    /// Spin [rad/s].
+    pub spin: DVec3,
+}
+
+/// The two grips: the lower holds the end at least z, the upper the end at greatest z and is driven.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GripSpec {
+    /// How wires are held.
+    pub kind: GripKind,
+    /// Length of each grip along z [m]. Gauge length = body length − 2 × this.
+    pub length: f64,
+    /// Motion of the upper grip along z.
+    pub drive: DriveSpec,
+    /// Rotation rate of the upper grip about z [rad/s].
+    pub rotation_rate: f64,
+    /// The upper grip turns freely about z (its torque is zero) instead of being held or driven.
+    pub free_rotation: bool,
+}
+
+/// How a grip holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GripKind {
+    /// Every wire, rotation held.
+    All,
+    /// The outermost layer only, pressed inwards.
+    Jaw {
+        /// Radial clamp pressure on the strand's surface [Pa].
+        pressure: f64,
+    },
+}
+
+/// Motion of the upper grip along z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DriveSpec {
+    /// Constant speed [m/s], positive pulls; starts from the affine velocity field.
+    Speed(f64),
+    /// Displacement amplitude × sin(2π f t).
+    Cyclic {
+        /// Amplitude [m].
+        amplitude: f64,
+        /// Frequency f [Hz].
+        frequency: f64,
+    },
+}
+
+/// A hold or load on one end of, or on all of, one body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HoldSpec {
+    /// Body number from 0: strand wires first (inside out), then `wires`, then `spheres`.
+    pub body: usize,
+    /// Which part.
+    pub part: BodyPart,
+    /// Prescribed components: x, y, z, then rotation about x, y, z.
+    pub fixed: [bool; 6],
+    /// Velocity of the prescribed translational components [m/s].
+    pub velocity: DVec3,
+    /// Spin of the prescribed rotational components [rad/s].
+    pub spin: DVec3,
+    /// Total force on the part, shared equally by its particles [N].
+    pub force: DVec3,
+    /// Total moment on the part, shared equally by its particles [N m].
+    pub moment: DVec3,
+    /// Time over which force and moment rise smoothly from zero [s].
+    pub ramp: f64,
+}
+
+/// Part of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BodyPart {
+    /// First particle.
+    Start,
+    /// Last particle.
+    End,
+    /// All particles.
+    All,
+}
+
+/// Time stepping.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimeSpec {
+    /// Fraction of the bound on the stable step [-].
+    pub safety: f64,
+    /// Fixed step [s]; `None`: from the bound, recomputed as stiffness changes.
+    pub step: Option<f64>,
+    /// Factor on particle mass [-]; reported when not 1.
+    pub mass_scale: f64,
+    /// Factor on rotational inertia [-]; reported when not 1.
+    pub inertia_scale: f64,
+    /// Kinetic over internal energy above which the run says that it is not quasi-static [-].
+    pub kinetic_limit: f64,
+    /// Relative difference of the grip forces above which the run says so [-].
+    pub mismatch_limit: f64,
+}
+
+/// When to stop; the first that holds ends the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StopSpec {
+    /// Grip displacement over gauge length [-].
+    pub strain: Option<f64>,
+    /// Nominal stress has fallen to this fraction of its peak, after a rupture [-].
+    pub stress_fraction: Option<f64>,
+    /// Simulated time [s].
+    pub time: Option<f64>,
+    /// Steps.
+    pub steps: Option<u64>,
+}
+
+/// What to write and how often.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputSpec {
+    /// Number of curve samples over the planned run.
+    pub samples: usize,
+    /// Number of snapshots (recording and frames) over the planned run, evenly spaced.
+    pub snapshots: usize,
+    /// Extra snapshots: how many times denser between the first rupture and the end [-].
+    pub rupture_density: f64,
+    /// Frame size in pixels.
+    pub frame_size: [u32; 2],
+    /// Quantity that colours wires in frames and recording.
+    pub colour: ColourBy,
+}
+
+/// Quantity that colours the wires.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ColourBy {
+    /// True axial stress.
+    Stress,
+    /// Equivalent plastic strain.
+    PlasticStrain,
+    /// Layer.
+    Layer,
+    /// Wire.
+    Wire,
+    /// Speed.
+    Velocity,
+}
