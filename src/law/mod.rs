@@ -1,3 +1,4 @@
 //! Floor 1: the physics as stateless formula kernels. Nothing here knows of particles, lists or files.
 
 pub mod contact;
+pub mod tangential;
