@@ -2,4 +2,5 @@
 
 pub mod bond;
 pub mod contact;
+pub mod damping;
 pub mod tangential;
