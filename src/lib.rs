@@ -4,5 +4,6 @@ pub mod base;
 pub mod engine;
 pub mod law;
 pub mod observe;
+pub mod reference;
 pub mod scene;
 pub mod strand;
