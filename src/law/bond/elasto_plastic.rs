@@ -39,8 +39,6 @@ pub struct PlasticState {
 
 /// Where a return ends: factors on the trial values, and the plastic multiplier.
 struct Return {
-    /// Plastic multiplier over A l, x = λ/(Al) [Pa].
-    multiplier: f64,
     /// σ/σ* [-].
     axial: f64,
     /// M/M*, T/T*, V/V* [-].
@@ -79,7 +77,7 @@ impl Trial {
     #[inline(always)]
     fn solve(&self) -> Return {
         let (mut x, mut bend) = (0.0, self.bend);
-        let mut end = Return { multiplier: 0.0, axial: 1.0, bend: 1.0, twist: 1.0, shear: 1.0, equivalent: 0.0 };
+        let mut end = Return { axial: 1.0, bend: 1.0, twist: 1.0, shear: 1.0, equivalent: 0.0 };
         for _ in 0..60 {
             // σ_y/σ_y₀ along the return; plastic work per x is 2 − m on the surface.
             let growth = 1.0 + self.hardening_rate * x * (2.0 - bend);
@@ -90,7 +88,6 @@ impl Trial {
             bend = (self.bend * g1 - x * self.bend_rate * g2).max(0.0);
             let f = n * n + bend + t * t + v * v - 1.0;
             end = Return {
-                multiplier: x,
                 axial: fa,
                 bend: if self.bend > 0.0 { bend * growth / self.bend } else { 0.0 },
                 twist: ft,

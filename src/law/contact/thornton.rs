@@ -94,11 +94,7 @@ impl Thornton {
     /// first yield, (R_p, δ_p) after it.
     #[inline(always)]
     fn elastic_curve(state: &ThorntonState, reduced_radius: f64) -> (f64, f64) {
-        if state.greatest_overlap > 0.0 {
-            (state.dent_radius, state.residual_overlap)
-        } else {
-            (reduced_radius, 0.0)
-        }
+        if state.greatest_overlap > 0.0 { (state.dent_radius, state.residual_overlap) } else { (reduced_radius, 0.0) }
     }
 }
 

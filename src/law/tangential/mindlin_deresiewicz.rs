@@ -373,28 +373,53 @@ mod probe {
     fn probe() {
         let law = MindlinDeresiewicz { shear_modulus_star: 13e9, friction: 0.2 };
         let mut table: std::collections::BTreeMap<String, (u64, u64, f64)> = Default::default();
-        let name = |b: &Branch| match b { Branch::Loading => "L", Branch::Unloading { .. } => "U", Branch::Reloading { .. } => "R" };
+        let name = |b: &Branch| match b {
+            Branch::Loading => "L",
+            Branch::Unloading { .. } => "U",
+            Branch::Reloading { .. } => "R",
+        };
         for one_d in [true, false] {
-        for walk in 0..200000u64 {
-            let mut s = MindlinDeresiewiczState::default();
-            let mut f = 0.5;
-            for i in 0..60u64 {
-                let r = |k| uniform(walk, i, k);
-                let kind = (r(0) * 3.0) as u64;
-                if kind != 0 { let size = [0.01, 0.1, 1.0][(r(1) * 3.0) as usize]; f += (r(2) - f) * size; }
-                let mut slip = DVec3::ZERO;
-                let sl = 1.5 * 0.2 / (8.0 * 13e9 * ball_on_ball(1.0).radius);
-                if kind != 1 { let size = [0.02, 0.3, 1.5][(r(3) * 3.0) as usize]; slip = DVec3::new(2.0 * r(4) - 1.0, if one_d { 0.0 } else { 2.0 * r(5) - 1.0 }, 0.0) * size * sl; }
-                let b = s;
-                let w = law.response(&mut s, &TangentialInput { slip, ..ball_on_ball(f) });
-                let key = format!("{} {} {}->{}", if one_d {"1d"} else {"2d"}, ["slip", "load", "both"][kind as usize].to_string() + if kind > 0 { if s.cap > b.cap { "+" } else { "-" } } else { "" }, name(&b.branch), name(&s.branch));
-                let e = table.entry(key).or_default();
-                e.0 += 1;
-                let rel = w.friction_work / (0.2 * sl);
-                if rel < -1e-13 { e.1 += 1; }
-                if rel < e.2 { e.2 = rel; }
+            for walk in 0..200000u64 {
+                let mut s = MindlinDeresiewiczState::default();
+                let mut f = 0.5;
+                for i in 0..60u64 {
+                    let r = |k| uniform(walk, i, k);
+                    let kind = (r(0) * 3.0) as u64;
+                    if kind != 0 {
+                        let size = [0.01, 0.1, 1.0][(r(1) * 3.0) as usize];
+                        f += (r(2) - f) * size;
+                    }
+                    let mut slip = DVec3::ZERO;
+                    let sl = 1.5 * 0.2 / (8.0 * 13e9 * ball_on_ball(1.0).radius);
+                    if kind != 1 {
+                        let size = [0.02, 0.3, 1.5][(r(3) * 3.0) as usize];
+                        slip =
+                            DVec3::new(2.0 * r(4) - 1.0, if one_d { 0.0 } else { 2.0 * r(5) - 1.0 }, 0.0) * size * sl;
+                    }
+                    let b = s;
+                    let w = law.response(&mut s, &TangentialInput { slip, ..ball_on_ball(f) });
+                    let key = format!(
+                        "{} {} {}->{}",
+                        if one_d { "1d" } else { "2d" },
+                        ["slip", "load", "both"][kind as usize].to_string()
+                            + if kind > 0 { if s.cap > b.cap { "+" } else { "-" } } else { "" },
+                        name(&b.branch),
+                        name(&s.branch)
+                    );
+                    let e = table.entry(key).or_default();
+                    e.0 += 1;
+                    let rel = w.friction_work / (0.2 * sl);
+                    if rel < -1e-13 {
+                        e.1 += 1;
+                    }
+                    if rel < e.2 {
+                        e.2 = rel;
+                    }
+                }
             }
-        } }
-        for (k, v) in table { println!("{k:20} n {:9} bad {:9} worst {:e}", v.0, v.1, v.2); }
+        }
+        for (k, v) in table {
+            println!("{k:20} n {:9} bad {:9} worst {:e}", v.0, v.1, v.2);
+        }
     }
 }
