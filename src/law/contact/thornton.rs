@@ -272,10 +272,9 @@ mod tests {
 
     /// Speed of rebound over speed of approach of a mass that meets the contact, by velocity Verlet.
     fn restitution(speed: f64, mass: f64) -> f64 {
-        // The plastic contact is stiffest at the end of loading; V/√(slope/m*) is the scale of the overlap.
+        // Two time scales: a quarter period on the plastic line, and the way to first yield.
         let slope = PI * LAW.limiting_pressure * RADIUS;
-        let dt = 1e-6 * (mass / slope).sqrt().min(LAW.yield_overlap(RADIUS) * 1e3 / speed);
-        let dt = dt * 100.0;
+        let dt = 1e-4 * (mass / slope).sqrt().min(1e3 * LAW.yield_overlap(RADIUS) / speed);
         let mut state = ThorntonState::default();
         let (mut x, mut v, mut force) = (0.0, speed, 0.0);
         loop {
