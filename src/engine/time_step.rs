@@ -92,7 +92,7 @@ impl Stiffness {
 
     /// Adds a contact between nodes with weights; `arm` are the lever arms of friction [m]
     /// (0 when nothing turns), `viscosity` the viscous coefficient along the normal [N s/m].
-    pub fn contact(&mut self, nodes: [u32; 3], weight: [f64; 3], stiffness: [f64; 2], arm: [f64; 3], damping: f64) {
+    pub fn contact(&mut self, nodes: [u32; 3], weight: [f64; 3], stiffness: [f64; 2], arm: [f64; 3], viscosity: f64) {
         let [normal, across] = stiffness;
         self.elements.push(Element {
             nodes,
