@@ -1,8 +1,11 @@
 //! strandsnap: a discrete-element engine for stranded wire under load, and the pictures that show how it fails.
 
 pub mod base;
+pub mod cli;
 pub mod engine;
 pub mod law;
 pub mod observe;
+pub mod pending;
+pub mod run;
 pub mod scene;
 pub mod strand;

@@ -1,5 +1,14 @@
 //! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
 
+pub mod files;
+pub mod guard;
+pub mod planned;
+pub mod progress;
+pub mod report;
+pub mod summary;
+pub mod tables;
+pub mod units;
+
 use crate::base::error::Result;
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use std::sync::Arc;
