@@ -33,37 +33,33 @@ pub struct Due {
 /// Evenly spaced fractions.
 #[derive(Debug, Clone, Copy)]
 struct Ticks {
-    /// Spacing [-]; infinite for none.
-    interval: f64,
-    next: f64,
+    /// How many there are per planned run [-].
+    rate: f64,
+    /// How many have passed.
+    passed: f64,
 }
 
 impl Ticks {
     fn new(count: usize) -> Self {
-        let interval = 1.0 / count as f64;
-        Self {
-            interval,
-            next: interval,
-        }
+        Self { rate: count as f64, passed: 0.0 }
+    }
+
+    /// Ticks up to `now`. The grain of salt keeps rounding from putting 0.58 · 100 below 58.
+    fn until(&self, now: f64) -> f64 {
+        now.mul_add(self.rate, 1e-9).floor()
     }
 
     fn due(&mut self, now: f64) -> bool {
-        let due = now >= self.next;
-        if due {
-            self.next = (now / self.interval)
-                .floor()
-                .mul_add(self.interval, self.interval);
-            // Rounding can put the floor one interval low; the next tick must lie ahead.
-            if self.next <= now {
-                self.next += self.interval;
-            }
-        }
+        let passed = self.until(now);
+        let due = passed > self.passed;
+        // Strain may run backwards for a few steps after a rupture; its ticks do not come twice.
+        self.passed = self.passed.max(passed);
         due
     }
 
     fn densify(&mut self, density: f64, now: f64) {
-        self.interval /= density;
-        self.next = self.next.min(now + self.interval);
+        self.rate *= density;
+        self.passed = self.until(now);
     }
 }
 
@@ -95,7 +91,7 @@ impl Schedule {
     pub fn due(&mut self, now: f64) -> Due {
         let planned = self.snapshots.due(now);
         // Ruptures that follow each other within a quarter of the spacing are one batch with one snapshot.
-        let batch = self.waiting && now - self.last_snapshot >= 0.25 * self.snapshots.interval;
+        let batch = self.waiting && (now - self.last_snapshot) * self.snapshots.rate >= 0.25;
         let snapshot = planned || batch;
         if snapshot {
             self.last_snapshot = now;
