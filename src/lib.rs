@@ -6,6 +6,7 @@ pub mod engine;
 pub mod law;
 pub mod observe;
 pub mod pending;
+pub mod reference;
 pub mod run;
 pub mod scene;
 pub mod strand;

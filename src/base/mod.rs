@@ -2,4 +2,5 @@
 
 pub mod error;
 pub mod random;
+pub mod units;
 pub mod vectors;

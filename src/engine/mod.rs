@@ -1,72 +1,442 @@
 //! Floor 4: the engine. State as structure of arrays, stages, time step, energy ledger.
+//!
+//! One step, in order: kick (velocities from the last forces) → holds (prescribed motion) → drift → neighbours (when
+//! stale) → bonds → rupture → contacts → gather. Each stage is called through `dyn` once; the loops inside are
+//! monomorphic over their laws. [`crate::scene::plan::Plan`] decides which stages there are.
 
+pub mod bonds;
+pub mod capsules;
+pub mod contacts;
+pub mod grips;
+pub mod integrate;
+pub mod measure;
+pub mod neighbours;
+pub mod pair;
+pub mod rupture;
+pub mod spheres;
+pub mod state;
+pub mod time_step;
 pub mod view;
 
-use crate::base::error::Result;
-use crate::scene::spec::Spec;
+use crate::base::error::{Error, Result};
+use crate::law::bond::Moduli;
+use crate::law::bond::elastic::Elastic;
+use crate::law::bond::elasto_plastic::ElastoPlastic;
+use crate::law::bond::hardening::Hardening;
+use crate::scene::plan::{ContactPlan, Plan};
+use crate::scene::spec::{BondLawSpec, HardeningSpec, Shape, Spec};
 use crate::strand::assembly::Assembly;
-use view::{RunInfo, Rupture, Sample, Snapshot};
+use bonds::{BondStage, Bonds};
+use contacts::Contacts;
+use grips::Holds;
+use measure::Measures;
+use neighbours::Neighbours;
+use rupture::RuptureCheck;
+use state::State;
+use std::time::{Duration, Instant};
+use time_step::{Bound, Stiffness};
+use view::{Energy, Rupture};
+
+/// Steps between two evaluations of the bound on the time step.
+const BOUND_INTERVAL: u64 = 64;
+/// A particle that moves further than this share of the least radius in one step has run away [-].
+const RUNAWAY: f64 = 0.1;
+
+/// Wall time spent per stage.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Timings {
+    /// Kick, holds, drift, gather.
+    pub integrate: Duration,
+    /// Neighbour search.
+    pub neighbours: Duration,
+    /// Bonds and rupture.
+    pub bonds: Duration,
+    /// Contacts.
+    pub contacts: Duration,
+    /// Bound on the time step.
+    pub time_step: Duration,
+}
+
+/// Contacts with their neighbour search.
+struct ContactPart {
+    stage: Box<dyn Contacts>,
+    neighbours: Neighbours,
+    stale: bool,
+}
 
 /// One run in progress.
-pub struct Engine {}
+pub struct Engine {
+    spec: Spec,
+    plan: Plan,
+    assembly: Assembly,
+    state: State,
+    bonds: Option<Box<dyn Bonds>>,
+    contacts: Option<ContactPart>,
+    holds: Holds,
+    stiffness: Stiffness,
+    bound: Bound,
+    /// Step to take next [s].
+    next_dt: f64,
+    energy: Energy,
+    ruptures: Vec<Rupture>,
+    rupture_count: usize,
+    measures: Measures,
+    least_radius: f64,
+    timings: Timings,
+}
 
 impl Engine {
     /// Sets the assembly up for its first step.
     ///
     /// # Errors
-    /// When the assembly cannot be stepped (overlapping wires, no stable step).
-    pub fn new(_spec: &Spec, _assembly: Assembly) -> Result<Self> {
-        Ok(Self {})
+    /// When there is no stable step because nothing is stiff and the scene fixes none.
+    pub fn new(spec: &Spec, assembly: Assembly) -> Result<Self> {
+        let plan = Plan::new(spec);
+        let mut state = State::new(&assembly);
+        let holds = Holds::new(spec, &assembly, &mut state);
+        let bonds = plan.bonds.then(|| build_bonds(spec, &plan, &assembly));
+        let measures = Measures::new(spec, &assembly, &holds);
+        let least_radius = assembly.radius.iter().copied().fold(f64::MAX, f64::min);
+        let mut engine = Self {
+            spec: spec.clone(),
+            plan,
+            state,
+            bonds,
+            contacts: None,
+            stiffness: Stiffness::default(),
+            bound: Bound::default(),
+            next_dt: 0.0,
+            energy: Energy::default(),
+            ruptures: Vec::new(),
+            rupture_count: 0,
+            measures,
+            least_radius,
+            timings: Timings::default(),
+            holds,
+            assembly,
+        };
+        if engine.plan.contacts == ContactPlan::Present {
+            engine.add_contacts();
+        }
+        engine.forces();
+        engine.choose_step()?;
+        Ok(engine)
     }
+
+    /// Adds the contact stage; between two steps.
+    fn add_contacts(&mut self) {
+        let Some(contact) = &self.spec.contact else { return };
+        let diameter = 2.0 * self.assembly.radius.iter().copied().fold(0.0, f64::max);
+        let margin = match contact.shape {
+            Shape::Sphere => 0.0,
+            // The nearest point of a segment, stretched by a third, may lie this much nearer than its ends.
+            Shape::Capsule => {
+                let longest = self.assembly.rest_length.iter().copied().fold(0.0, f64::max);
+                diameter.hypot(0.67 * longest) - diameter
+            }
+        };
+        self.contacts = Some(ContactPart {
+            stage: contacts::build(contact, &self.spec.material, &self.assembly),
+            neighbours: Neighbours::new(&self.assembly, contact.skin * diameter, margin),
+            stale: true,
+        });
+    }
+
     /// Advances by one step.
     ///
     /// # Errors
-    /// [`crate::base::error::Error::Trouble`] when a value stops being finite or runs away.
+    /// [`Error::Trouble`] when a value stops being finite or runs away.
     pub fn step(&mut self) -> Result<()> {
+        if self.state.step.is_multiple_of(BOUND_INTERVAL) && self.state.step > 0 {
+            self.choose_step()?;
+        }
+        let began = Instant::now();
+        let kicked = 0.5 * (self.state.dt + self.next_dt);
+        let turn = self.plan.rotations;
+        integrate::kick(&mut self.state, kicked, turn);
+        self.state.dt = self.next_dt;
+        self.holds.apply(&mut self.state, kicked);
+        let stretch = self.holds.stretch;
+        let list = self.contacts.as_ref().map(|c| (&c.neighbours, c.neighbours.moved(&stretch)));
+        let drifted = integrate::drift(&mut self.state, list);
+        self.state.step += 1;
+        self.state.time += self.state.dt;
+        self.measures.grip(&self.holds.reaction, self.state.dt);
+        self.timings.integrate += began.elapsed();
+        let limit = RUNAWAY * self.least_radius;
+        if drifted.largest2.is_nan() || drifted.largest2 > limit * limit {
+            return Err(self.runaway(limit));
+        }
+        if let Some(c) = &mut self.contacts {
+            c.stale |= c.neighbours.stale(drifted.residual2, &stretch);
+        }
+        self.forces();
         Ok(())
     }
-    /// Grip displacement over gauge length, now [-]. Cheap.
+
+    /// Forces at the present positions.
+    fn forces(&mut self) {
+        let began = Instant::now();
+        if let Some(bonds) = &mut self.bonds {
+            let partial = bonds.compute(&mut self.state);
+            self.energy.plastic_bonds += partial.plastic;
+            self.energy.damping += partial.damping;
+        }
+        if self.plan.rupture {
+            self.break_bonds();
+        }
+        let after_bonds = Instant::now();
+        self.timings.bonds += after_bonds - began;
+        if let Some(c) = &mut self.contacts {
+            if c.stale {
+                let list = c.neighbours.search(&self.state, self.holds.stretch);
+                let lost = c.stage.rebuild(list, &self.state);
+                self.energy.friction += lost.friction;
+                c.stale = false;
+            }
+            let after_search = Instant::now();
+            self.timings.neighbours += after_search - after_bonds;
+            let partial = c.stage.compute(&mut self.state);
+            self.energy.plastic_contacts += partial.plastic;
+            self.energy.plastic_thinning += partial.thinning;
+            self.energy.friction += partial.friction;
+            self.energy.damping += partial.damping;
+            self.timings.contacts += after_search.elapsed();
+        }
+        let before_gather = Instant::now();
+        integrate::gather(&mut self.state, self.plan.rotations, self.contacts.is_some());
+        self.timings.integrate += before_gather.elapsed();
+    }
+
+    /// Breaks what has reached its limit and books it.
+    fn break_bonds(&mut self) {
+        let Some(bonds) = &mut self.bonds else { return };
+        let mut broke = Vec::new();
+        self.energy.released += bonds.rupture(&mut self.state, &mut |slot, cause, stress| {
+            broke.push((slot, cause, stress));
+        });
+        if broke.is_empty() {
+            return;
+        }
+        for (slot, cause, stress) in broke {
+            self.rupture_count += 1;
+            let wire = self.assembly.wire_of[slot] as usize;
+            let centre = (self.state.x.get(slot) + self.state.x.get(slot + 1)) * 0.5;
+            let rest = 0.5 * (self.assembly.position.z[slot] + self.assembly.position.z[slot + 1]);
+            let first = self.measures.mark_broken(wire);
+            self.ruptures.push(Rupture {
+                order: self.rupture_count,
+                step: self.state.step,
+                time: self.state.time,
+                strain: self.holds.strain(),
+                wire,
+                layer: self.assembly.wires[wire].layer,
+                bond: slot,
+                bond_in_wire: slot - self.assembly.wires[wire].first,
+                position: centre.to_array(),
+                rest_z: rest,
+                cause,
+                stress,
+                body_stress: self.measures.stress(),
+                first_of_wire: first,
+            });
+        }
+        // Pieces of a wire may now touch: look for new pairs, and add the stage if it was left out until now.
+        match &mut self.contacts {
+            Some(c) => c.stale = true,
+            None if self.plan.contacts == ContactPlan::AfterRupture => self.add_contacts(),
+            None => {}
+        }
+    }
+
+    /// Follows the bound on the stable step; small changes are left alone, so that leapfrog keeps its even step.
+    fn choose_step(&mut self) -> Result<()> {
+        let began = Instant::now();
+        self.stiffness.clear();
+        if let Some(bonds) = &self.bonds {
+            bonds.stiffness(&self.state, &mut self.stiffness);
+        }
+        if let Some(c) = &self.contacts {
+            c.stage.stiffness(&self.state, &mut self.stiffness);
+        }
+        let hold = &self.state.hold;
+        self.bound = self.stiffness.bound(&self.state, |p| hold[p] != 0);
+        self.timings.time_step += began.elapsed();
+        if let Some(step) = self.spec.time.step {
+            self.next_dt = step;
+            return Ok(());
+        }
+        let wanted = self.spec.time.safety * self.bound.step;
+        if !wanted.is_finite() {
+            return self.step_without_stiffness();
+        }
+        if self.next_dt == 0.0 || (wanted / self.next_dt - 1.0).abs() > 0.01 {
+            self.next_dt = wanted;
+        }
+        Ok(())
+    }
+
+    /// Free flight: nothing limits the step but how finely the scene wants to be seen.
+    fn step_without_stiffness(&mut self) -> Result<()> {
+        let Some(time) = self.spec.stop.time else {
+            return Err(Error::input(
+                "nothing in this scene is stiff, so there is no bound on the time step",
+                "state time.step, e.g. step = \"1e-7 s\", or stop.time",
+            ));
+        };
+        if self.next_dt == 0.0 {
+            self.next_dt = time / 10_000.0;
+        }
+        Ok(())
+    }
+
+    fn runaway(&self, limit: f64) -> Error {
+        let far = |p: usize| (self.state.v.get(p) * self.state.dt).length();
+        let worst = (0..self.state.len())
+            .max_by(|a, b| {
+                let key = |p: usize| if far(p).is_nan() { f64::INFINITY } else { far(p) };
+                key(*a).total_cmp(&key(*b))
+            })
+            .unwrap_or(0);
+        let place = match self.assembly.wire_of[worst] {
+            u32::MAX => format!("free particle {worst}"),
+            wire => {
+                let first = self.assembly.wires[wire as usize].first;
+                format!("bond {} of wire {}", worst - first, wire + 1)
+            }
+        };
+        let moved = far(worst);
+        let what = if moved.is_nan() {
+            format!("the position at {place} is not a number")
+        } else {
+            format!(
+                "{place} moved {:.3e} m in one step, more than {RUNAWAY} of the least radius ({limit:.3e} m)",
+                moved
+            )
+        };
+        Error::Trouble {
+            step: self.state.step,
+            what,
+            help: Some(format!(
+                "the step was {:.3e} s, the bound {:.3e} s; lower time.safety or time.step, the speed, or raise damping",
+                self.state.dt, self.bound.step
+            )),
+        }
+    }
+
+    /// Grip displacement over gauge length, now [-].
     pub fn strain(&self) -> f64 {
-        0.0
+        self.holds.strain()
     }
-    /// Simulated time [s]. Cheap.
+
+    /// Simulated time [s].
     pub fn time(&self) -> f64 {
-        0.0
+        self.state.time
     }
-    /// Steps done. Cheap.
+
+    /// Steps done.
     pub fn steps(&self) -> u64 {
-        0
+        self.state.step
     }
-    /// Nominal stress now [Pa]. Cheap.
+
+    /// Nominal stress now, smoothed over a quarter of a wave's way along the strand [Pa].
     pub fn stress(&self) -> f64 {
-        0.0
+        self.measures.stress()
     }
-    /// Current time step [s]. Cheap.
+
+    /// Current time step [s].
     pub fn time_step(&self) -> f64 {
-        0.0
+        self.next_dt
     }
+
+    /// The bound on the stable step [s].
+    pub fn time_step_bound(&self) -> f64 {
+        self.bound.step
+    }
+
     /// What limits the time step, in words.
     pub fn time_step_limit(&self) -> String {
-        String::new()
+        if self.spec.time.step.is_some() {
+            return format!("fixed by the scene; the bound is {:.3e} s", self.bound.step);
+        }
+        if !self.bound.step.is_finite() {
+            return "nothing is stiff".into();
+        }
+        let kind = if self.bound.bond { "a bond" } else { "a contact" };
+        let place = match self.assembly.wire_of[self.bound.particle] {
+            u32::MAX => "a free sphere".to_string(),
+            wire => format!("wire {}", wire + 1),
+        };
+        format!(
+            "{} of {kind} in {place}; bound {:.3e} s × safety {}",
+            self.bound.mode, self.bound.step, self.spec.time.safety
+        )
     }
+
     /// Ruptures since the last call, in order.
     pub fn take_ruptures(&mut self) -> Vec<Rupture> {
-        Vec::new()
+        std::mem::take(&mut self.ruptures)
     }
-    /// A row of the curve.
-    pub fn sample(&self) -> Sample {
-        Sample::default()
-    }
-    /// Every particle.
-    pub fn snapshot(&self) -> Snapshot {
-        todo!()
-    }
-    /// What does not change during the run.
-    pub fn info(&self) -> RunInfo {
-        todo!()
-    }
+
     /// The assembly that the run started from.
     pub fn assembly(&self) -> &Assembly {
-        todo!()
+        &self.assembly
+    }
+
+    /// What this run computes.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Particles as they are now.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Wall time per stage so far.
+    pub fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
+    /// Neighbour searches so far, candidate pairs and touching pairs now.
+    pub fn contact_counts(&self) -> (u64, usize, usize) {
+        self.contacts.as_ref().map_or((0, 0, 0), |c| (c.neighbours.rebuilds, c.stage.candidates(), c.stage.active()))
+    }
+}
+
+/// Chooses law and modes, once per run.
+fn build_bonds(spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
+    let moduli = Moduli::new(spec.material.young, spec.material.poisson);
+    let check = spec.bond.rupture.as_ref().map(|r| RuptureCheck::new(r, spec.seed, assembly));
+    let damping = spec.bond.damping;
+    match (&spec.bond.law, plan.rotations) {
+        (BondLawSpec::Elastic, true) => {
+            Box::new(BondStage::<_, true>::new(Elastic { moduli }, assembly, damping, check))
+        }
+        (BondLawSpec::Elastic, false) => {
+            Box::new(BondStage::<_, false>::new(Elastic { moduli }, assembly, damping, check))
+        }
+        (BondLawSpec::ElastoPlastic(h), turn) => {
+            let law = ElastoPlastic { moduli, hardening: hardening(h) };
+            if turn {
+                Box::new(BondStage::<_, true>::new(law, assembly, damping, check))
+            } else {
+                Box::new(BondStage::<_, false>::new(law, assembly, damping, check))
+            }
+        }
+    }
+}
+
+/// The hardening law that a scene states.
+pub fn hardening(spec: &HardeningSpec) -> Hardening {
+    match spec.clone() {
+        HardeningSpec::Voce { yield_stress, saturation, rate, linear } => {
+            Hardening::Voce { yield_stress, saturation, rate, linear }
+        }
+        HardeningSpec::Swift { strength, prestrain, exponent } => Hardening::Swift { strength, prestrain, exponent },
+        HardeningSpec::Ludwik { yield_stress, strength, exponent } => {
+            Hardening::Ludwik { yield_stress, strength, exponent }
+        }
+        HardeningSpec::Table(points) => Hardening::Table(points),
     }
 }

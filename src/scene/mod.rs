@@ -1,3 +1,145 @@
 //! Floor 2: TOML → [`spec::Spec`] (SI) → [`plan::Plan`] (what this scene needs, with a reason per component).
+//!
+//! Keys, units and defaults of a scene file: [`raw`].
 
+mod at;
+pub mod builtin;
+pub mod centreline_text;
+pub mod hardening;
+mod overrides;
+pub mod plan;
+pub mod raw;
+mod resolve;
+mod resolve_bodies;
+mod resolve_drive;
+mod source;
 pub mod spec;
+pub mod suggest;
+pub mod write;
+
+pub use source::SceneSource;
+
+use crate::base::error::{Error, Result};
+use at::At;
+use overrides::Override;
+use source::{path_at, scene_error};
+use spec::Spec;
+use std::path::Path;
+use toml_edit::Document;
+
+/// A scene that was read: what it says, and where it says so.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The resolved scene.
+    pub spec: Spec,
+    /// Its text, for errors that later floors find.
+    pub source: SceneSource,
+}
+
+/// Loads a scene by built-in name or by path, with `--set` options.
+///
+/// What ends in `.toml`, holds a path separator or names an existing file is a path. Errors: an unknown name (with the
+/// nearest), a file that cannot be read, anything wrong in the scene or in an option.
+pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Scene> {
+    let path = Path::new(name_or_path);
+    if !is_path(name_or_path) {
+        let text = builtin::find(name_or_path)?;
+        return parse(
+            text,
+            &format!("{name_or_path}.toml"),
+            Path::new("."),
+            overrides,
+        );
+    }
+    let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::NotFound => builtin::no_such_file(path),
+        _ => Error::io("cannot read", path, source),
+    })?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    parse(&text, name_or_path, folder, overrides)
+}
+
+/// Whether a scene argument means a file.
+fn is_path(argument: &str) -> bool {
+    argument.ends_with(".toml")
+        || argument.contains(std::path::is_separator)
+        || Path::new(argument).is_file()
+}
+
+/// Reads a scene from its text. `file_name` is shown in errors, and its stem names the scene where the text does not;
+/// `folder` is where centreline files are looked for.
+pub fn parse(text: &str, file_name: &str, folder: &Path, overrides: &[String]) -> Result<Scene> {
+    let document = Document::parse(text.to_owned()).map_err(|error| {
+        let span = error.span().unwrap_or(0..0);
+        scene_error(
+            file_name,
+            text,
+            span,
+            format!("this is not TOML: {}", error.message()),
+            String::new(),
+        )
+    })?;
+    let overrides = overrides
+        .iter()
+        .map(|text| Override::parse(text))
+        .collect::<Result<Vec<_>>>()?;
+    let mut changed = document.clone().into_mut();
+    overrides
+        .iter()
+        .try_for_each(|option| option.apply(&mut changed))?;
+    let source = SceneSource::new(file_name, document, overrides);
+    let raw = read_tables(&changed.to_string(), &source)?;
+    let stem = Path::new(file_name)
+        .file_stem()
+        .map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
+    let spec = resolve::resolve(&At::root(&source), &raw, &stem, folder)?;
+    Ok(Scene { spec, source })
+}
+
+/// Reads the raw tables; what serde has to say is brought back to key paths.
+fn read_tables(text: &str, source: &SceneSource) -> Result<raw::RawScene> {
+    toml::from_str(text).map_err(|error| {
+        let document = Document::parse(text).expect("toml_edit writes TOML");
+        let (path, part) = error.span().map_or_else(
+            || (Vec::new(), source::Part::Value),
+            |span| path_at(document.as_item(), &span),
+        );
+        let (what, help) = in_plain_words(error.message(), &path);
+        source.error_at(&path, part, what, help)
+    })
+}
+
+/// Serde's message as what is wrong and what would be right.
+fn in_plain_words(message: &str, path: &[String]) -> (String, String) {
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let key = path.join(".");
+    if let (true, [unknown, known @ ..]) = (message.starts_with("unknown field"), &quoted[..]) {
+        let place = match path.split_last() {
+            Some((_, parents)) if !parents.is_empty() => format!("`{}`", parents.join(".")),
+            _ => "a scene".into(),
+        };
+        return (
+            format!("unknown key `{unknown}` in {place}"),
+            did_you_mean(unknown, known, "known keys"),
+        );
+    }
+    if let (true, [unknown, known @ ..]) = (message.starts_with("unknown variant"), &quoted[..]) {
+        return (
+            format!("`{unknown}` is not a value of `{key}`"),
+            did_you_mean(unknown, known, "one of"),
+        );
+    }
+    let message = message
+        .replace("expected i64", "expected a whole number")
+        .replace("floating point", "number")
+        .replace("a sequence", "an array");
+    (format!("`{key}`: {message}"), String::new())
+}
+
+fn did_you_mean(unknown: &str, known: &[&str], list: &str) -> String {
+    let all = format!("{list}: {}", known.join(", "));
+    match suggest::nearest(unknown, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`? {all}"),
+        None => all,
+    }
+}

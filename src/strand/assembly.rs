@@ -1,6 +1,7 @@
 //! `Assembly`: wires, particles and bonds, ready for the engine.
 
 use crate::base::vectors::Vectors;
+use std::ops::Range;
 
 /// Everything that is discretised, particles ordered wire by wire along each wire, then free spheres.
 ///
@@ -64,12 +65,12 @@ pub struct Wire {
 
 impl Wire {
     /// Particle indices.
-    pub fn particles(&self) -> std::ops::Range<usize> {
+    pub fn particles(&self) -> Range<usize> {
         self.first..self.first + self.len
     }
 
     /// Bond slots.
-    pub fn bonds(&self) -> std::ops::Range<usize> {
+    pub fn bonds(&self) -> Range<usize> {
         self.first..self.first + self.len.saturating_sub(1)
     }
 
@@ -93,6 +94,14 @@ impl Assembly {
     /// Number of bonds.
     pub fn bond_count(&self) -> usize {
         self.wires.iter().map(|w| w.bonds().len()).sum()
+    }
+
+    /// Particles of each body: wires in order, then free spheres, one particle each. Index = body number of
+    /// [`crate::scene::spec::HoldSpec::body`].
+    pub fn bodies(&self) -> Vec<Range<usize>> {
+        let wires = self.wires.iter().map(Wire::particles);
+        let spheres = (self.wire_particles..self.len()).map(|i| i..i + 1);
+        wires.chain(spheres).collect()
     }
 
     /// Whether slot `i` is a bond.

@@ -1,3 +1,16 @@
 //! Floor 3: geometry. Helices and layers, lay radii, centreline text in and out, discretisation into particles.
 
 pub mod assembly;
+pub mod centrelines;
+pub mod discretise;
+pub mod error;
+pub mod helix;
+pub mod lay_radius;
+pub mod overlap;
+pub mod resample;
+mod strung;
+#[cfg(test)]
+pub(crate) mod test_specs;
+
+pub use discretise::build;
+pub use error::{BuildError, BuildErrorKind};

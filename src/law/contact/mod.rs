@@ -5,6 +5,11 @@
 //! | `hertz` | F = 4/3 E* √R* δ^(3/2) | Hertz 1882 |
 //! | `thornton` | Hertz to p_y, then F_y + π p_y R* (δ − δ_y); unloading with R_p | Thornton 1997 |
 
+pub mod constants;
+pub mod geometry;
+pub mod hertz;
+pub mod thornton;
+
 /// What a normal law answers for one contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NormalResponse {

@@ -1,0 +1,282 @@
+//! Bond stage: kinematics of every bond, its law, damping, and what it does to its two particles.
+//!
+//! Generic over the law and over whether particles turn; the loop inside is monomorphic. Log axial strain on the
+//! current length; shear, bending and torsion by increments in the bond's co-rotating frame (n, e₁, e₂), measured at
+//! mid-step so that a rigid rotation gives none up to third order in its angle per step.
+
+use super::rupture::{Criterion, RuptureCheck};
+use super::state::{BondAction, CHUNK, Partial, State};
+use super::time_step::Stiffness;
+use crate::law::bond::{BondForce, BondIncrement, BondLaw, BondShape, Section};
+use crate::law::damping::viscous_coefficient;
+use crate::strand::assembly::Assembly;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// What the engine asks of bonds, whatever their law.
+pub trait Bonds: Send {
+    /// Computes every bond's action on its particles from `state`; returns the energies of the step.
+    fn compute(&mut self, state: &mut State) -> Partial;
+    /// Breaks the bonds that reached their limit; calls `broke(slot, cause, true axial stress [Pa])` for each, in order,
+    /// and returns the elastic energy that they held [J].
+    fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64;
+    /// Stored elastic energy [J].
+    fn elastic_energy(&self, state: &State) -> f64;
+    /// Stiffnesses for the bound on the time step.
+    fn stiffness(&self, state: &State, out: &mut Stiffness);
+    /// True axial stress of a bond [Pa].
+    fn stress(&self, slot: usize) -> f64;
+    /// Axial force of a bond [N].
+    fn axial_force(&self, slot: usize) -> f64;
+    /// Equivalent plastic strain of a bond [-].
+    fn plastic_strain(&self, slot: usize) -> f64;
+}
+
+/// One bond's frame, forces and history.
+#[derive(Debug, Clone, Copy)]
+struct Record<S> {
+    /// e₁ of the co-rotating frame.
+    e1: DVec3,
+    force: BondForce,
+    state: S,
+}
+
+/// Bonds with law `L`; `TURN` says whether particles turn.
+pub struct BondStage<L: BondLaw, const TURN: bool> {
+    law: L,
+    records: Vec<Record<L::State>>,
+    shape: Vec<BondShape>,
+    /// Viscous coefficients of axial, shear [N s/m], bending, torsion [N m s]; empty without damping.
+    viscosity: Vec<[f64; 4]>,
+    rupture: Option<RuptureCheck>,
+    partial: Vec<Partial>,
+}
+
+impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
+    /// All bonds of the assembly; `damping` is the fraction of critical per mode [-].
+    pub fn new(law: L, assembly: &Assembly, damping: [f64; 4], rupture: Option<RuptureCheck>) -> Self {
+        let n = assembly.len();
+        let shape: Vec<_> =
+            (0..n).map(|i| BondShape { rest_length: assembly.rest_length[i], radius: assembly.radius[i] }).collect();
+        let records = (0..n)
+            .map(|i| {
+                let axis = if assembly.is_bond(i) {
+                    (assembly.position.get(i + 1) - assembly.position.get(i)).normalize()
+                } else {
+                    DVec3::Z
+                };
+                Record { e1: axis.any_orthonormal_vector(), force: BondForce::default(), state: law.initial() }
+            })
+            .collect();
+        let viscosity = if damping.iter().any(|d| *d > 0.0) {
+            (0..n).map(|i| viscosity(&law, assembly, &shape[i], i, damping)).collect()
+        } else {
+            Vec::new()
+        };
+        Self { law, records, shape, viscosity, rupture, partial: vec![Partial::default(); n.div_ceil(CHUNK)] }
+    }
+}
+
+/// Coefficients 2ξ√(k m) with the reduced mass (or inertia) of the two ends.
+fn viscosity<L: BondLaw>(law: &L, a: &Assembly, shape: &BondShape, i: usize, damping: [f64; 4]) -> [f64; 4] {
+    if !a.is_bond(i) {
+        return [0.0; 4];
+    }
+    let reduced = |m: &[f64]| m[i] * m[i + 1] / (m[i] + m[i + 1]);
+    let (mass, inertia) = (reduced(&a.mass), reduced(&a.inertia));
+    let k = law.stiffness(shape, &law.initial());
+    [
+        viscous_coefficient(damping[0], mass, k.axial),
+        viscous_coefficient(damping[1], mass, k.shear),
+        viscous_coefficient(damping[2], inertia, k.bend),
+        viscous_coefficient(damping[3], inertia, k.twist),
+    ]
+}
+
+/// What all bonds of a step share.
+struct Shared<'a, L> {
+    law: &'a L,
+    shape: &'a [BondShape],
+    viscosity: &'a [[f64; 4]],
+    state: &'a Motion<'a>,
+    dt: f64,
+}
+
+/// The parts of the state that bonds read.
+struct Motion<'a> {
+    x: &'a crate::base::vectors::Vectors,
+    v: &'a crate::base::vectors::Vectors,
+    w: &'a crate::base::vectors::Vectors,
+}
+
+impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
+    fn compute(&mut self, state: &mut State) -> Partial {
+        let motion = Motion { x: &state.x, v: &state.v, w: &state.w };
+        let shared =
+            Shared { law: &self.law, shape: &self.shape, viscosity: &self.viscosity, state: &motion, dt: state.dt };
+        let whole = &state.whole;
+        (
+            self.records.par_chunks_mut(CHUNK),
+            state.bond.par_chunks_mut(CHUNK),
+            state.thinning.par_chunks_mut(CHUNK),
+            self.partial.par_iter_mut(),
+        )
+            .into_par_iter()
+            .enumerate()
+            .for_each(|(chunk, (records, actions, thinning, partial))| {
+                *partial = Partial::default();
+                for k in 0..records.len() {
+                    let slot = chunk * CHUNK + k;
+                    if whole[slot] {
+                        actions[k] = if TURN {
+                            turning(&shared, slot, &mut records[k], partial)
+                        } else {
+                            axial(&shared, slot, &mut records[k], partial)
+                        };
+                        thinning[k] = shared.law.thinning(&records[k].state);
+                    }
+                }
+            });
+        let mut sum = Partial::default();
+        self.partial.iter().for_each(|p| sum.add(p));
+        sum
+    }
+
+    fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64 {
+        let Some(check) = &mut self.rupture else { return 0.0 };
+        let (law, records, shape) = (&self.law, &self.records, &self.shape);
+        let broken = check.broken(&state.whole, state, |slot| {
+            let r = &records[slot];
+            (law.plastic_strain(&r.state), &r.force, law.section(&shape[slot], &r.state))
+        });
+        let mut released = 0.0;
+        for (slot, criterion) in broken {
+            broke(slot, criterion, self.stress(slot));
+            let record = &mut self.records[slot];
+            released += self.law.elastic_energy(&self.shape[slot], &record.force, &record.state);
+            record.force = BondForce::default();
+            state.whole[slot] = false;
+            state.bond[slot] = BondAction::default();
+        }
+        released
+    }
+
+    fn elastic_energy(&self, state: &State) -> f64 {
+        self.records
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| state.whole[*i])
+            .map(|(i, r)| self.law.elastic_energy(&self.shape[i], &r.force, &r.state))
+            .sum()
+    }
+
+    fn stiffness(&self, state: &State, out: &mut Stiffness) {
+        for (i, r) in self.records.iter().enumerate() {
+            if state.whole[i] {
+                let k = self.law.stiffness(&self.shape[i], &r.state);
+                let length = (state.x.get(i + 1) - state.x.get(i)).length();
+                let viscosity = self.viscosity.get(i).copied().unwrap_or_default();
+                out.bond(i, &k, length, viscosity, TURN);
+            }
+        }
+    }
+
+    fn stress(&self, slot: usize) -> f64 {
+        let r = &self.records[slot];
+        let section: Section = self.law.section(&self.shape[slot], &r.state);
+        r.force.axial / section.area
+    }
+
+    fn axial_force(&self, slot: usize) -> f64 {
+        self.records[slot].force.axial
+    }
+
+    fn plastic_strain(&self, slot: usize) -> f64 {
+        self.law.plastic_strain(&self.records[slot].state)
+    }
+}
+
+/// A bond that only stretches.
+#[inline(always)]
+fn axial<L: BondLaw>(
+    shared: &Shared<L>,
+    slot: usize,
+    record: &mut Record<L::State>,
+    partial: &mut Partial,
+) -> BondAction {
+    let m = shared.state;
+    let d = m.x.get(slot + 1) - m.x.get(slot);
+    let shape = &shared.shape[slot];
+    let length = d.length();
+    let n = d / length;
+    let step = BondIncrement { log_strain: (length / shape.rest_length).ln(), length, ..Default::default() };
+    partial.plastic += shared.law.axial_response(shape, &mut record.force, &mut record.state, &step);
+    let mut axial = record.force.axial;
+    if let Some(c) = shared.viscosity.get(slot) {
+        let rate = (m.v.get(slot + 1) - m.v.get(slot)).dot(n);
+        axial += c[0] * rate;
+        partial.damping += c[0] * rate * rate * shared.dt;
+    }
+    BondAction { pull: n * axial, ..Default::default() }
+}
+
+/// A bond in all modes.
+#[inline(always)]
+fn turning<L: BondLaw>(
+    shared: &Shared<L>,
+    slot: usize,
+    record: &mut Record<L::State>,
+    partial: &mut Partial,
+) -> BondAction {
+    let (m, dt) = (shared.state, shared.dt);
+    let d = m.x.get(slot + 1) - m.x.get(slot);
+    let dv = m.v.get(slot + 1) - m.v.get(slot);
+    let (wa, wb) = (m.w.get(slot), m.w.get(slot + 1));
+    let shape = &shared.shape[slot];
+    let length = d.length();
+    let n = d / length;
+
+    // Mid-step geometry.
+    let middle = d - dv * (0.5 * dt);
+    let inv_middle = 1.0 / middle.length();
+    let n_mid = middle * inv_middle;
+    let spin = (wa + wb) * 0.5;
+    // The frame turns with the bond's direction and with the mean spin about it.
+    let turn = n_mid.cross(dv) * (dt * inv_middle) + n_mid * (spin.dot(n_mid) * dt);
+    let e1_old = record.e1;
+    let carried = e1_old + turn.cross(e1_old);
+    let e1 = (carried - n * carried.dot(n)).normalize();
+    record.e1 = e1;
+    let e1_mid = (e1_old + e1) * 0.5;
+    let e2_mid = n_mid.cross(e1_mid);
+
+    let slide = (dv - spin.cross(middle)) * dt;
+    let rotation = (wb - wa) * dt;
+    let step = BondIncrement {
+        log_strain: (length / shape.rest_length).ln(),
+        length,
+        shear: [slide.dot(e1_mid), slide.dot(e2_mid)],
+        bend: [rotation.dot(e1_mid), rotation.dot(e2_mid)],
+        twist: rotation.dot(n_mid),
+    };
+    partial.plastic += shared.law.response(shape, &mut record.force, &mut record.state, &step);
+    let mut f = record.force;
+    if let Some(c) = shared.viscosity.get(slot)
+        && dt > 0.0
+    {
+        let per = 1.0 / dt;
+        let mut viscous = |f: &mut f64, c: f64, increment: f64| {
+            *f += c * increment * per;
+            partial.damping += c * increment * increment * per;
+        };
+        viscous(&mut f.axial, c[0], dv.dot(n) * dt);
+        viscous(&mut f.twist, c[3], step.twist);
+        for axis in 0..2 {
+            viscous(&mut f.shear[axis], c[1], step.shear[axis]);
+            viscous(&mut f.bend[axis], c[2], step.bend[axis]);
+        }
+    }
+    let e2 = n.cross(e1);
+    let pull = n * f.axial + (e1 * f.shear[0] + e2 * f.shear[1]);
+    BondAction { pull, moment: n * f.twist + (e1 * f.bend[0] + e2 * f.bend[1]), arm: n.cross(pull) * (0.5 * length) }
+}

@@ -1,0 +1,345 @@
+//! Contact stage for capsules: wires are smooth, each particle rests on the nearest point of the other wire.
+//!
+//! A contact is a particle of one wire against the swept segment between two bonded particles of another. It is made
+//! for the particles of both wires, so each of the two stands for half of the contact between them and carries half the
+//! force. A contact walks along the other wire from segment to segment as the particle slides, and keeps its history.
+//! A free sphere against a wire, or two free spheres, carry the whole force.
+
+use super::contacts::{ContactPoint, Contacts};
+use super::neighbours::PairList;
+use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, part, touch};
+use super::state::{CHUNK, Partial, State};
+use super::time_step::Stiffness;
+use crate::law::contact::NormalLaw;
+use crate::law::contact::constants::reduced_radius;
+use crate::law::contact::geometry::closest_on_segment;
+use crate::law::tangential::TangentialLaw;
+use crate::strand::assembly::Assembly;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A particle against another body near particle `j` of it.
+#[derive(Debug, Clone, Copy)]
+struct Contact<N, T> {
+    i: u32,
+    /// First particle of the segment touched (j, j + 1), or a free particle.
+    j: u32,
+    /// Position on the segment, 0 at j, 1 at j + 1 [-].
+    t: f64,
+    /// Whether j and j + 1 are joined, so that the segment exists.
+    segment: bool,
+    /// Share of the contact that this one carries: ½ between wires, 1 with free spheres [-].
+    share: f64,
+    history: History<N, T>,
+    action: PairForce,
+    /// n × friction [N].
+    twist: DVec3,
+    /// Lever arms of the particle and of the segment [m].
+    arm: [f64; 2],
+}
+
+/// Contacts between smooth wires with normal law `N` and tangential law `T`.
+pub struct CapsuleContacts<N: NormalLaw, T: TangentialLaw> {
+    laws: Laws<N, T>,
+    wire_of: Vec<u32>,
+    contacts: Vec<Contact<N::State, T::State>>,
+    old: Vec<Contact<N::State, T::State>>,
+    partial: Vec<Partial>,
+    /// Directed candidates (particle, other particle), kept for their memory.
+    directed: Vec<(u32, u32)>,
+}
+
+impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
+    /// Without contacts yet.
+    pub fn new(laws: Laws<N, T>, assembly: &Assembly) -> Self {
+        Self {
+            laws,
+            wire_of: assembly.wire_of.clone(),
+            contacts: Vec::new(),
+            old: Vec::new(),
+            partial: Vec::new(),
+            directed: Vec::new(),
+        }
+    }
+
+    fn free(&self, p: u32) -> bool {
+        self.wire_of[p as usize] == u32::MAX
+    }
+
+    /// Both directions of every pair; a wire's particle never rests on a free sphere (the sphere rests on the wire).
+    fn direct(&mut self, list: &PairList) {
+        self.directed.clear();
+        for (i, j) in list.pairs.iter().copied() {
+            match (self.free(i), self.free(j)) {
+                (true, true) | (true, false) => self.directed.push((i, j)),
+                (false, true) => self.directed.push((j, i)),
+                (false, false) => self.directed.extend([(i, j), (j, i)]),
+            }
+        }
+        self.directed.sort_unstable();
+    }
+
+    fn fresh(&self, i: u32, j: u32, state: &State) -> Contact<N::State, T::State> {
+        let (a, b) = (state.radius0[i as usize], state.radius0[j as usize]);
+        let (free_i, free_j) = (self.free(i), self.free(j));
+        let mut radius = reduced_radius(a, b);
+        if free_i && !free_j {
+            // Sphere on a cylinder: geometric mean of the two principal relative radii.
+            radius = (radius * a).sqrt();
+        }
+        Contact {
+            i,
+            j,
+            t: 0.0,
+            segment: false,
+            share: if free_i || free_j { 1.0 } else { 0.5 },
+            history: History::new(radius),
+            action: PairForce::default(),
+            twist: DVec3::ZERO,
+            arm: [0.0; 2],
+        }
+    }
+
+    /// One contact per particle and stretch of the other body: the nearest particle of each run of candidates.
+    fn runs(&mut self, state: &State) -> Vec<(u32, u32)> {
+        let mut out: Vec<(u32, u32)> = Vec::with_capacity(self.directed.len() / 3);
+        let mut last: Option<(u32, u32, f64)> = None;
+        for (i, j) in self.directed.iter().copied() {
+            let d = (state.x.get(i as usize) - state.x.get(j as usize)).length_squared();
+            match &mut last {
+                Some((li, lj, ld))
+                    if *li == i
+                        && self.wire_of[*lj as usize] == self.wire_of[j as usize]
+                        && !self.free(j)
+                        && j - *lj <= 2 =>
+                {
+                    // Same run: the last entry stands for the nearest so far.
+                    if d < *ld {
+                        *ld = d;
+                        if let Some(entry) = out.last_mut() {
+                            entry.1 = j;
+                        }
+                    }
+                    *lj = j;
+                }
+                _ => {
+                    out.push((i, j));
+                    last = Some((i, j, d));
+                }
+            }
+        }
+        out
+    }
+
+    /// Adds every contact to its three particles, in order.
+    fn scatter(&self, state: &mut State) {
+        for v in [&mut state.contact_force, &mut state.contact_torque] {
+            v.x.fill(0.0);
+            v.y.fill(0.0);
+            v.z.fill(0.0);
+        }
+        for c in self.contacts.iter().filter(|c| c.history.touching) {
+            let (i, j) = (c.i as usize, c.j as usize);
+            let force = c.action.force * c.share;
+            let twist = c.twist * c.share;
+            state.contact_force.add(i, force);
+            state.contact_torque.add(i, twist * c.arm[0]);
+            state.contact_force.add(j, -force * (1.0 - c.t));
+            state.contact_torque.add(j, twist * (c.arm[1] * (1.0 - c.t)));
+            if c.segment {
+                state.contact_force.add(j + 1, -force * c.t);
+                state.contact_torque.add(j + 1, twist * (c.arm[1] * c.t));
+            }
+        }
+    }
+}
+
+impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
+    fn rebuild(&mut self, list: &PairList, state: &State) -> Partial {
+        std::mem::swap(&mut self.contacts, &mut self.old);
+        self.contacts.clear();
+        self.direct(list);
+        let mut lost = Partial::default();
+        let mut from = 0;
+        for (i, j) in self.runs(state) {
+            while from < self.old.len() && self.old[from].i < i {
+                from += 1;
+            }
+            let same = |c: &Contact<N::State, T::State>| {
+                c.j == j
+                    || (self.wire_of[c.j as usize] == self.wire_of[j as usize] && !self.free(j) && c.j.abs_diff(j) <= 3)
+            };
+            let kept = (from..self.old.len())
+                .take_while(|k| self.old[*k].i == i)
+                .filter(|k| self.old[*k].share > 0.0 && same(&self.old[*k]))
+                .min_by_key(|k| self.old[*k].j.abs_diff(j));
+            match kept {
+                Some(k) => {
+                    self.contacts.push(self.old[k]);
+                    // A share of 0 marks an old contact as taken over.
+                    self.old[k].share = 0.0;
+                }
+                None => {
+                    let fresh = self.fresh(i, j, state);
+                    self.contacts.push(fresh);
+                }
+            }
+        }
+        for c in self.old.iter_mut().filter(|c| c.share > 0.0) {
+            let mut gone = Partial::default();
+            part::<N, T>(&self.laws, &mut c.history, &mut gone);
+            lost.add(&gone.scaled(c.share));
+        }
+        self.partial.clear();
+        self.partial.resize(self.contacts.len().div_ceil(CHUNK), Partial::default());
+        lost
+    }
+
+    fn compute(&mut self, state: &mut State) -> Partial {
+        let (laws, shared, wire_of) = (&self.laws, &*state, &self.wire_of);
+        (self.contacts.par_chunks_mut(CHUNK), self.partial.par_iter_mut()).into_par_iter().for_each(
+            |(contacts, partial)| {
+                *partial = Partial::default();
+                for c in contacts {
+                    let mut own = Partial::default();
+                    capsule_pair(laws, shared, wire_of, c, &mut own);
+                    partial.add(&own.scaled(c.share));
+                }
+            },
+        );
+        self.scatter(state);
+        let mut sum = Partial::default();
+        self.partial.iter().for_each(|p| sum.add(p));
+        sum
+    }
+
+    fn elastic_energy(&self) -> f64 {
+        self.contacts.iter().map(|c| c.share * elastic_energy(&self.laws, &c.history)).sum()
+    }
+
+    fn active(&self) -> usize {
+        self.contacts.iter().filter(|c| c.history.touching).count()
+    }
+
+    fn candidates(&self) -> usize {
+        self.contacts.len()
+    }
+
+    fn deepest(&self) -> Option<ContactPoint> {
+        self.contacts.iter().max_by(|a, b| a.history.overlap.total_cmp(&b.history.overlap)).map(|c| ContactPoint {
+            i: c.i as usize,
+            j: c.j as usize,
+            overlap: c.history.overlap,
+        })
+    }
+
+    fn stiffness(&self, state: &State, out: &mut Stiffness) {
+        for c in self.contacts.iter().filter(|c| c.history.touching) {
+            let mass = reduced_mass(state, c);
+            let k = c.history.stiffness.map(|k| k * c.share);
+            let damping = 2.0 * self.laws.damping * (mass / c.history.stiffness[0].max(f64::MIN_POSITIVE)).sqrt();
+            let next = if c.segment { c.j + 1 } else { c.j };
+            let t = if c.segment { c.t } else { 0.0 };
+            out.contact([c.i, c.j, next], [1.0, 1.0 - t, t], k, [c.arm[0], c.arm[1], c.arm[1]], damping);
+        }
+    }
+}
+
+fn reduced_mass<N, S>(state: &State, c: &Contact<N, S>) -> f64 {
+    let (a, b) = (state.mass[c.i as usize], state.mass[c.j as usize]);
+    a * b / (a + b)
+}
+
+/// Lets the contact walk along the other wire until its nearest point lies on the segment (j, j + 1).
+#[inline(always)]
+fn walk<N, S>(state: &State, wire_of: &[u32], c: &mut Contact<N, S>) -> DVec3 {
+    let p = state.x.get(c.i as usize);
+    let wire = wire_of[c.j as usize];
+    let joined = |j: usize| wire != u32::MAX && state.whole[j];
+    // Three moves reach any segment that a step can; more would be a jump.
+    for _ in 0..3 {
+        let j = c.j as usize;
+        if !joined(j) {
+            // Last particle of a piece: rest on the segment before it, if there is one.
+            if j > 0 && joined(j - 1) && wire_of[j - 1] == wire {
+                let (t, point) = closest_on_segment(p, state.x.get(j - 1), state.x.get(j));
+                if t < 1.0 {
+                    (c.j, c.t, c.segment) = (c.j - 1, t.max(0.0), true);
+                    if t < 0.0 {
+                        continue;
+                    }
+                    return point;
+                }
+            }
+            (c.t, c.segment) = (0.0, false);
+            return state.x.get(j);
+        }
+        let (t, point) = closest_on_segment(p, state.x.get(j), state.x.get(j + 1));
+        (c.t, c.segment) = (t.clamp(0.0, 1.0), true);
+        if t >= 1.0 {
+            c.j += 1;
+            c.t = 0.0;
+            if !joined(j + 1) {
+                c.segment = false;
+                return state.x.get(j + 1);
+            }
+            let (next, _) = closest_on_segment(p, state.x.get(j + 1), state.x.get(j + 2));
+            if next <= 0.0 {
+                // On the outside of a bend the shared particle is nearest.
+                return state.x.get(j + 1);
+            }
+        } else if t < 0.0 && j > 0 && joined(j - 1) && wire_of[j - 1] == wire {
+            let (last, _) = closest_on_segment(p, state.x.get(j - 1), state.x.get(j));
+            if last >= 1.0 {
+                return state.x.get(j);
+            }
+            c.j -= 1;
+        } else {
+            return point;
+        }
+    }
+    let j = c.j as usize;
+    if !joined(j) {
+        (c.t, c.segment) = (0.0, false);
+        return state.x.get(j);
+    }
+    let (t, point) = closest_on_segment(p, state.x.get(j), state.x.get(j + 1));
+    (c.t, c.segment) = (t.clamp(0.0, 1.0), true);
+    point
+}
+
+/// Kinematics and response of one contact.
+#[inline(always)]
+fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
+    laws: &Laws<N, T>,
+    state: &State,
+    wire_of: &[u32],
+    c: &mut Contact<N::State, T::State>,
+    partial: &mut Partial,
+) {
+    let point = walk(state, wire_of, c);
+    let (i, j) = (c.i as usize, c.j as usize);
+    let blend = |a: f64, b: f64| a * (1.0 - c.t) + b * c.t;
+    let next = if c.segment { j + 1 } else { j };
+    let d = point - state.x.get(i);
+    let radius = blend(state.radius[j], state.radius[next]);
+    let reach = state.radius[i] + radius;
+    let distance2 = d.length_squared();
+    if distance2 >= reach * reach {
+        part::<N, T>(laws, &mut c.history, partial);
+        return;
+    }
+    let distance = distance2.sqrt();
+    let normal = d / distance;
+    let overlap = reach - distance;
+    c.arm = [state.radius[i] - 0.5 * overlap, radius - 0.5 * overlap];
+    let mut velocity = state.v.get(j).lerp(state.v.get(next), c.t) - state.v.get(i);
+    if T::ACTIVE {
+        let spin = state.w.get(j).lerp(state.w.get(next), c.t);
+        velocity -= (state.w.get(i) * c.arm[0] + spin * c.arm[1]).cross(normal);
+    }
+    let mass = reduced_mass(state, c);
+    let meeting = Meeting { normal, overlap, reach, velocity, mass, dt: state.dt };
+    c.action = touch(laws, &mut c.history, &meeting, partial);
+    c.twist = normal.cross(c.action.friction);
+}

@@ -1,0 +1,85 @@
+//! What the engine asks of contacts, whatever their laws and shape, and the one place where these are chosen.
+
+use super::capsules::CapsuleContacts;
+use super::neighbours::PairList;
+use super::pair::Laws;
+use super::spheres::SphereContacts;
+use super::state::{Partial, State};
+use super::time_step::Stiffness;
+use crate::law::contact::NormalLaw;
+use crate::law::contact::constants::{effective_modulus, effective_shear_modulus};
+use crate::law::contact::hertz::Hertz;
+use crate::law::contact::thornton::Thornton;
+use crate::law::tangential::TangentialLaw;
+use crate::law::tangential::mindlin::Mindlin;
+use crate::law::tangential::mindlin_deresiewicz::MindlinDeresiewicz;
+use crate::law::tangential::none::Frictionless;
+use crate::scene::spec::{ContactSpec, Material, NormalSpec, Shape, TangentialSpec};
+use crate::strand::assembly::Assembly;
+
+/// A place where two bodies overlap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoint {
+    /// First particle.
+    pub i: usize,
+    /// Second particle.
+    pub j: usize,
+    /// Overlap [m].
+    pub overlap: f64,
+}
+
+/// Contacts of a run.
+pub trait Contacts: Send {
+    /// Takes a new list of candidates; history of pairs that stay is kept. Returns what was lost with pairs that left.
+    fn rebuild(&mut self, list: &PairList, state: &State) -> Partial;
+    /// Computes all contacts and adds them up per particle in `state`; returns the energies of the step.
+    fn compute(&mut self, state: &mut State) -> Partial;
+    /// Stored elastic energy [J].
+    fn elastic_energy(&self) -> f64;
+    /// Number of touching pairs.
+    fn active(&self) -> usize;
+    /// Number of candidate pairs.
+    fn candidates(&self) -> usize;
+    /// The touching pair with the greatest overlap.
+    fn deepest(&self) -> Option<ContactPoint>;
+    /// Stiffnesses for the bound on the time step.
+    fn stiffness(&self, state: &State, out: &mut Stiffness);
+}
+
+/// Chooses laws and shape, once per run.
+pub fn build(spec: &ContactSpec, material: &Material, assembly: &Assembly) -> Box<dyn Contacts> {
+    let (e, nu, g) = (material.young, material.poisson, material.shear());
+    let effective_modulus = effective_modulus(e, nu, e, nu);
+    match spec.normal {
+        NormalSpec::Hertz => tangential(spec, g, nu, assembly, Hertz { effective_modulus }),
+        NormalSpec::Thornton { limiting_pressure } => {
+            tangential(spec, g, nu, assembly, Thornton { effective_modulus, limiting_pressure })
+        }
+    }
+}
+
+fn tangential<N: NormalLaw>(spec: &ContactSpec, g: f64, nu: f64, assembly: &Assembly, normal: N) -> Box<dyn Contacts> {
+    let shear_modulus_star = effective_shear_modulus(g, nu, g, nu);
+    let friction = spec.friction;
+    match spec.tangential {
+        Some(_) if friction == 0.0 => shape(spec, assembly, normal, Frictionless),
+        None => shape(spec, assembly, normal, Frictionless),
+        Some(TangentialSpec::Mindlin) => shape(spec, assembly, normal, Mindlin { shear_modulus_star, friction }),
+        Some(TangentialSpec::MindlinDeresiewicz) => {
+            shape(spec, assembly, normal, MindlinDeresiewicz { shear_modulus_star, friction })
+        }
+    }
+}
+
+fn shape<N: NormalLaw, T: TangentialLaw>(
+    spec: &ContactSpec,
+    assembly: &Assembly,
+    normal: N,
+    tangential: T,
+) -> Box<dyn Contacts> {
+    let laws = Laws { normal, tangential, damping: spec.damping };
+    match spec.shape {
+        Shape::Sphere => Box::new(SphereContacts::new(laws)),
+        Shape::Capsule => Box::new(CapsuleContacts::new(laws, assembly)),
+    }
+}

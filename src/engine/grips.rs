@@ -1,0 +1,322 @@
+//! Grips, holds and applied loads: prescribed motion, the reactions to it, and the work done.
+
+use super::neighbours::Stretch;
+use super::state::State;
+use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
+use crate::strand::assembly::Assembly;
+use glam::{DMat2, DVec2, DVec3};
+use std::f64::consts::TAU;
+
+/// Time over which a jaw's clamp pressure rises [s]; short against a pull, long against a wire's ringing.
+const CLAMP_RISE: f64 = 50e-6;
+
+/// What a group of particles must do.
+#[derive(Debug, Clone)]
+enum Kind {
+    /// Moves as one rigid body along and about z.
+    Rigid,
+    /// Moves along and about z; radially free under a clamp force per particle [N].
+    Jaw { clamp: f64 },
+    /// Components prescribed one by one, and loads per particle.
+    Components(HoldSpec),
+}
+
+/// A group of particles with one motion.
+#[derive(Debug, Clone)]
+struct Group {
+    particles: Vec<u32>,
+    kind: Kind,
+    /// Whether the drive moves this group.
+    driven: bool,
+}
+
+/// Reactions on the two grips at the last step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Reaction {
+    /// Force on the lower and upper grip, tension positive [N].
+    pub force: [f64; 2],
+    /// Torque about z on the upper grip [N m].
+    pub torque: f64,
+}
+
+/// All holds of a run.
+pub struct Holds {
+    groups: Vec<Group>,
+    grip: Option<GripSpec>,
+    /// Axis of the grips in the xy plane [m].
+    axis: DVec2,
+    /// Gauge before loading and displacement of the upper grip.
+    pub stretch: Stretch,
+    /// Spin of the upper grip about z [rad/s].
+    spin: f64,
+    /// Reactions of the last step.
+    pub reaction: Reaction,
+    /// Work done so far [J].
+    pub work: f64,
+}
+
+impl Holds {
+    /// Finds the particles of each hold and marks them in `state`.
+    pub fn new(spec: &Spec, assembly: &Assembly, state: &mut State) -> Self {
+        let mut holds = Self {
+            groups: Vec::new(),
+            grip: spec.grip.clone(),
+            axis: DVec2::ZERO,
+            stretch: Stretch::default(),
+            spin: spec.grip.as_ref().map_or(0.0, |g| g.rotation_rate),
+            reaction: Reaction::default(),
+            work: 0.0,
+        };
+        if let Some(grip) = &spec.grip {
+            holds.add_grips(grip, assembly);
+        }
+        let bodies = assembly.bodies();
+        for hold in &spec.holds {
+            let body = bodies[hold.body].clone();
+            let particles = match hold.part {
+                BodyPart::Start => body.start..body.start + 1,
+                BodyPart::End => body.end - 1..body.end,
+                BodyPart::All => body,
+            };
+            let particles = particles.map(|p| p as u32).collect();
+            holds.groups.push(Group { particles, kind: Kind::Components(hold.clone()), driven: false });
+        }
+        holds.mark(state);
+        holds.start_velocities(state);
+        holds.work = state.kinetic();
+        holds
+    }
+
+    fn add_grips(&mut self, grip: &GripSpec, assembly: &Assembly) {
+        let z = &assembly.position.z[..assembly.wire_particles];
+        let (low, high) = z.iter().fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(*z), b.max(*z)));
+        let tiny = 1e-9 * (high - low);
+        self.stretch.gauge = [low + grip.length, high - grip.length];
+        for driven in [false, true] {
+            let inside = |p: u32| {
+                let z = z[p as usize];
+                if driven { z >= high - grip.length - tiny } else { z <= low + grip.length + tiny }
+            };
+            let outer = assembly.layers.len().saturating_sub(1);
+            let jaw = matches!(grip.kind, GripKind::Jaw { .. });
+            let particles: Vec<u32> = assembly
+                .wires
+                .iter()
+                .filter(|w| !jaw || w.layer == outer)
+                .flat_map(|w| w.particles())
+                .map(|p| p as u32)
+                .filter(|p| inside(*p))
+                .collect();
+            let kind = match grip.kind {
+                GripKind::All => Kind::Rigid,
+                GripKind::Jaw { pressure } => {
+                    let radius = assembly.layers[outer].lay_radius + assembly.radius[particles[0] as usize];
+                    Kind::Jaw { clamp: pressure * TAU * radius * grip.length / particles.len() as f64 }
+                }
+            };
+            self.groups.push(Group { particles, kind, driven });
+        }
+    }
+
+    /// Tells the state which components are prescribed, and which particles never move against each other.
+    fn mark(&self, state: &mut State) {
+        for (g, group) in self.groups.iter().enumerate() {
+            let (mask, whole) = match &group.kind {
+                Kind::Rigid => (0b11_1111, true),
+                Kind::Jaw { .. } => (0b11_1111, false),
+                Kind::Components(h) => {
+                    let mask = (0..6).fold(0, |m, k| m | u8::from(h.fixed[k]) << k);
+                    (mask, mask == 0b11_1111)
+                }
+            };
+            for p in &group.particles {
+                state.fixed[*p as usize] |= mask;
+                if whole {
+                    state.hold[*p as usize] = g as u16 + 1;
+                }
+            }
+        }
+    }
+
+    /// The affine velocity (and spin) field of the drive, so that nothing is shocked; prescribed velocities.
+    fn start_velocities(&self, state: &mut State) {
+        if let Some(grip) = &self.grip {
+            let [z0, z1] = self.stretch.gauge;
+            let speed = match grip.drive {
+                DriveSpec::Speed(v) => v,
+                DriveSpec::Cyclic { amplitude, frequency } => amplitude * TAU * frequency,
+            };
+            for p in 0..state.len() {
+                let share = ((state.x.z[p] - z0) / (z1 - z0)).clamp(0.0, 1.0);
+                let spin = DVec3::Z * (self.spin * share);
+                let arm = state.x.get(p) - self.axis.extend(state.x.z[p]);
+                state.v.add(p, spin.cross(arm) + DVec3::Z * (speed * share));
+                state.w.add(p, spin);
+            }
+        }
+        for group in &self.groups {
+            let Kind::Components(hold) = &group.kind else { continue };
+            for p in &group.particles {
+                let p = *p as usize;
+                let v = prescribed(&hold.fixed[..3], hold.velocity, state.v.get(p));
+                let w = prescribed(&hold.fixed[3..], hold.spin, state.w.get(p));
+                state.v.set(p, v);
+                state.w.set(p, w);
+            }
+        }
+    }
+
+    /// Grip displacement over gauge length [-].
+    pub fn strain(&self) -> f64 {
+        let [z0, z1] = self.stretch.gauge;
+        if z1 > z0 { self.stretch.displacement / (z1 - z0) } else { 0.0 }
+    }
+
+    /// Overrides the kicked velocities of held particles; `kicked` is the time that the kick spanned [s].
+    pub fn apply(&mut self, state: &mut State, kicked: f64) {
+        let dt = state.dt;
+        let mut rise = 0.0;
+        if let Some(grip) = &self.grip {
+            rise = match grip.drive {
+                DriveSpec::Speed(v) => v * dt,
+                DriveSpec::Cyclic { amplitude, frequency } => {
+                    let at = |t: f64| amplitude * (TAU * frequency * t).sin();
+                    at(state.time + dt) - at(state.time)
+                }
+            };
+            if grip.free_rotation {
+                self.spin += self.free_torque(state) * kicked;
+            }
+        }
+        self.reaction = Reaction::default();
+        let groups = std::mem::take(&mut self.groups);
+        for group in &groups {
+            match &group.kind {
+                Kind::Rigid => self.rigid(group, state, rise, kicked, None),
+                Kind::Jaw { clamp } => {
+                    let on = smooth(state.time / CLAMP_RISE) * clamp;
+                    self.rigid(group, state, rise, kicked, Some(on));
+                }
+                Kind::Components(hold) => self.components(group, hold, state, kicked),
+            }
+        }
+        self.groups = groups;
+        self.stretch.displacement += rise;
+    }
+
+    /// Torque about z on the driven grip over its inertia [rad/s²].
+    fn free_torque(&self, state: &State) -> f64 {
+        let (mut torque, mut inertia) = (0.0, 0.0);
+        for p in self.groups.iter().filter(|g| g.driven).flat_map(|g| &g.particles) {
+            let p = *p as usize;
+            let arm = state.x.get(p).truncate() - self.axis;
+            torque += arm.perp_dot(state.force.get(p).truncate()) + state.torque.z[p];
+            inertia += state.mass[p] * arm.length_squared() + state.inertia[p];
+        }
+        if inertia > 0.0 { torque / inertia } else { 0.0 }
+    }
+
+    /// A grip that moves along and about z; under `clamp` its particles are free along the radius.
+    fn rigid(&mut self, group: &Group, state: &mut State, rise: f64, kicked: f64, clamp: Option<f64>) {
+        let dt = state.dt;
+        let (spin, rise) = if group.driven { (self.spin, rise) } else { (0.0, 0.0) };
+        // The chord of the exact rotation, so that particles stay on their circle.
+        let chord = (DMat2::from_angle(spin * dt) - DMat2::IDENTITY) * (1.0 / dt);
+        let mut sum = DVec3::ZERO;
+        let mut torque = 0.0;
+        for p in &group.particles {
+            let p = *p as usize;
+            let arm = state.x.get(p).truncate() - self.axis;
+            let kick = kicked / state.mass[p];
+            let before = state.v.get(p) - state.force.get(p) * kick;
+            let mut after = (chord * arm).extend(rise / dt);
+            let mut load = DVec3::ZERO;
+            if let Some(clamp) = clamp {
+                let outward = arm.normalize_or_zero().extend(0.0);
+                load = outward * -clamp;
+                after += outward * (state.v.get(p) + load * kick).dot(outward);
+            }
+            let push = (after - state.v.get(p)) * (state.mass[p] / kicked);
+            self.work += push.dot(before + after) * (0.5 * kicked);
+            let constraint = push - load;
+            sum += constraint;
+            torque += arm.perp_dot(constraint.truncate());
+            state.v.set(p, after);
+            let turn = DVec3::Z * spin;
+            let twist = (turn - state.w.get(p)) * (state.inertia[p] / kicked);
+            let spin_before = state.w.get(p) - state.torque.get(p) * (kicked / state.inertia[p]);
+            self.work += twist.dot(spin_before + turn) * (0.5 * kicked);
+            torque += twist.z;
+            state.w.set(p, turn);
+        }
+        if group.driven {
+            self.reaction.force[1] = sum.z;
+            self.reaction.torque = torque;
+        } else {
+            self.reaction.force[0] = -sum.z;
+        }
+    }
+
+    /// Components held one by one, and loads.
+    fn components(&mut self, group: &Group, hold: &HoldSpec, state: &mut State, kicked: f64) {
+        let share = if hold.ramp > 0.0 { smooth(state.time / hold.ramp) } else { 1.0 } / group.particles.len() as f64;
+        let (force, moment) = (hold.force * share, hold.moment * share);
+        for p in &group.particles {
+            let p = *p as usize;
+            let (kick, spin_kick) = (kicked / state.mass[p], kicked / state.inertia[p]);
+            let before = state.v.get(p) - state.force.get(p) * kick;
+            let loaded = state.v.get(p) + force * kick;
+            let after = prescribed(&hold.fixed[..3], hold.velocity, loaded);
+            self.work += ((after - state.v.get(p)) / kick).dot(before + after) * (0.5 * kicked);
+            state.v.set(p, after);
+            let before = state.w.get(p) - state.torque.get(p) * spin_kick;
+            let after = prescribed(&hold.fixed[3..], hold.spin, state.w.get(p) + moment * spin_kick);
+            self.work += ((after - state.w.get(p)) / spin_kick).dot(before + after) * (0.5 * kicked);
+            state.w.set(p, after);
+        }
+    }
+
+    /// Work up to the instant of the positions [J]: `work` lags by half a step.
+    pub fn work_now(&self, state: &State) -> f64 {
+        let half = 0.5 * state.dt;
+        let mut sum = self.work;
+        for group in &self.groups {
+            let (force, moment) = match &group.kind {
+                Kind::Components(h) => {
+                    let share = if h.ramp > 0.0 { smooth(state.time / h.ramp) } else { 1.0 };
+                    (
+                        h.force * (share / group.particles.len() as f64),
+                        h.moment * (share / group.particles.len() as f64),
+                    )
+                }
+                _ => (DVec3::ZERO, DVec3::ZERO),
+            };
+            for p in &group.particles {
+                let p = *p as usize;
+                let hold = |k: usize, inner: f64, load: f64| {
+                    if state.fixed[p] >> k & 1 == 1 { -inner } else { load }
+                };
+                let (f, t) = (state.force.get(p), state.torque.get(p));
+                let push = DVec3::new(hold(0, f.x, force.x), hold(1, f.y, force.y), hold(2, f.z, force.z));
+                let twist = DVec3::new(hold(3, t.x, moment.x), hold(4, t.y, moment.y), hold(5, t.z, moment.z));
+                sum += half * (push.dot(state.v.get(p)) + twist.dot(state.w.get(p)));
+            }
+        }
+        sum
+    }
+}
+
+/// `free` with the fixed components replaced.
+fn prescribed(fixed: &[bool], value: DVec3, free: DVec3) -> DVec3 {
+    DVec3::new(
+        if fixed[0] { value.x } else { free.x },
+        if fixed[1] { value.y } else { free.y },
+        if fixed[2] { value.z } else { free.z },
+    )
+}
+
+/// Smooth rise from 0 at 0 to 1 at 1, with no slope at either end.
+fn smooth(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

@@ -1,0 +1,251 @@
+//! What is measured: nominal stress, stresses per wire and layer, energies, snapshots for those who draw and record.
+
+use super::grips::{Holds, Reaction};
+use super::view::{BondState, Energy, RunInfo, Sample, Snapshot, WireInfo};
+use super::{Engine, hardening};
+use crate::scene::spec::{BondLawSpec, DriveSpec, RuptureCriterion, Spec};
+use crate::strand::assembly::Assembly;
+
+/// Running means of the grip forces, and who is broken.
+pub struct Measures {
+    /// Time constant of the running means [s]: a quarter of an elastic wave's way along the body, long enough to
+    /// take its ringing out, short against everything that is measured.
+    window: f64,
+    area: f64,
+    mean: Reaction,
+    seen: bool,
+    /// Bonds in the middle of each wire, whose mean is the wire's stress.
+    middle: Vec<Vec<usize>>,
+    broken: Vec<bool>,
+}
+
+impl Measures {
+    /// For `assembly` between `holds`.
+    pub fn new(spec: &Spec, assembly: &Assembly, holds: &Holds) -> Self {
+        let wave = (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt();
+        let gauge = holds.stretch.gauge;
+        Self {
+            window: 0.25 * assembly.length / wave,
+            area: assembly.area,
+            mean: Reaction::default(),
+            seen: false,
+            middle: (0..assembly.wires.len()).map(|w| middle(assembly, w, gauge)).collect(),
+            broken: vec![false; assembly.wires.len()],
+        }
+    }
+
+    /// Takes in the reactions of a step.
+    pub fn grip(&mut self, now: &Reaction, dt: f64) {
+        let share = if self.seen && self.window > 0.0 { (dt / self.window).min(1.0) } else { 1.0 };
+        self.seen = true;
+        let blend = |mean: &mut f64, now: f64| *mean += (now - *mean) * share;
+        blend(&mut self.mean.force[0], now.force[0]);
+        blend(&mut self.mean.force[1], now.force[1]);
+        blend(&mut self.mean.torque, now.torque);
+    }
+
+    /// Nominal stress: upper grip force over the copper area [Pa].
+    pub fn stress(&self) -> f64 {
+        if self.area > 0.0 { self.mean.force[1] / self.area } else { 0.0 }
+    }
+
+    /// Marks a wire as broken; true when it was whole.
+    pub fn mark_broken(&mut self, wire: usize) -> bool {
+        !std::mem::replace(&mut self.broken[wire], true)
+    }
+}
+
+/// Bonds of wire `w` within a fortieth of the gauge around its middle, at least one.
+fn middle(assembly: &Assembly, w: usize, gauge: [f64; 2]) -> Vec<usize> {
+    let wire = &assembly.wires[w];
+    let z = |slot: usize| 0.5 * (assembly.position.z[slot] + assembly.position.z[slot + 1]);
+    let bonds = wire.bonds();
+    if bonds.is_empty() {
+        return Vec::new();
+    }
+    let half = wire.first + wire.len / 2;
+    if gauge[1] <= gauge[0] {
+        return vec![half.min(bonds.end - 1)];
+    }
+    let centre = 0.5 * (gauge[0] + gauge[1]);
+    let near: Vec<usize> = bonds.clone().filter(|s| (z(*s) - centre).abs() <= 0.025 * (gauge[1] - gauge[0])).collect();
+    if near.is_empty() {
+        bonds.min_by(|a, b| (z(*a) - centre).abs().total_cmp(&(z(*b) - centre).abs())).into_iter().collect()
+    } else {
+        near
+    }
+}
+
+impl Engine {
+    /// A row of the curve.
+    pub fn sample(&self) -> Sample {
+        let wire_stress: Vec<f64> = (0..self.assembly.wires.len()).map(|w| self.wire_stress(w)).collect();
+        let layer_stress = (0..self.assembly.layers.len())
+            .map(|layer| {
+                let of_layer = || (0..wire_stress.len()).filter(|w| self.assembly.wires[*w].layer == layer);
+                of_layer().map(|w| wire_stress[w]).sum::<f64>() / of_layer().count().max(1) as f64
+            })
+            .collect();
+        Sample {
+            step: self.state.step,
+            time: self.state.time,
+            strain: self.strain(),
+            stress: self.stress(),
+            grip_force: self.measures.mean.force,
+            torque: self.measures.mean.torque,
+            layer_stress,
+            wire_stress,
+            wires_broken: self.measures.broken.iter().filter(|b| **b).count(),
+            bonds_broken: self.rupture_count,
+            contacts: self.contacts.as_ref().map_or(0, |c| c.stage.active()),
+            time_step: self.next_dt,
+            energy: self.energy(),
+        }
+    }
+
+    /// Nominal axial stress of a wire at mid-gauge [Pa].
+    fn wire_stress(&self, wire: usize) -> f64 {
+        let Some(bonds) = &self.bonds else { return 0.0 };
+        let slots = &self.measures.middle[wire];
+        if slots.is_empty() {
+            return 0.0;
+        }
+        let force: f64 = slots.iter().map(|s| bonds.axial_force(*s)).sum();
+        force / slots.len() as f64 / self.assembly.wires[wire].area()
+    }
+
+    /// The energy ledger now.
+    pub fn energy(&self) -> Energy {
+        Energy {
+            work: self.holds.work_now(&self.state),
+            kinetic: self.state.kinetic(),
+            elastic_bonds: self.bonds.as_ref().map_or(0.0, |b| b.elastic_energy(&self.state)),
+            elastic_contacts: self.contacts.as_ref().map_or(0.0, |c| c.stage.elastic_energy()),
+            ..self.energy
+        }
+    }
+
+    /// Every particle.
+    pub fn snapshot(&self) -> Snapshot {
+        let state = &self.state;
+        let n = state.len();
+        let mut bond_state = vec![BondState::Absent; n];
+        let mut bond_stress = vec![0.0; n];
+        let mut plastic_strain = vec![0.0; n];
+        if let Some(bonds) = &self.bonds {
+            for slot in (0..n).filter(|s| self.assembly.is_bond(*s)) {
+                let p = bonds.plastic_strain(slot);
+                plastic_strain[slot] = p as f32;
+                bond_stress[slot] = (bonds.stress(slot) * 1e-6) as f32;
+                bond_state[slot] = match (state.whole[slot], p > 0.0) {
+                    (false, _) => BondState::Broken,
+                    (true, true) => BondState::Yielding,
+                    (true, false) => BondState::Whole,
+                };
+            }
+        }
+        Snapshot {
+            sample: self.sample(),
+            position: state.x.iter().map(millimetres).collect(),
+            radius: state.radius.iter().map(|r| (r * 1e3) as f32).collect(),
+            speed: state.v.iter().map(|v| v.length() as f32).collect(),
+            bond_state,
+            bond_stress,
+            plastic_strain,
+        }
+    }
+
+    /// What does not change during the run.
+    pub fn info(&self) -> RunInfo {
+        let a = &self.assembly;
+        let gauge = self.holds.stretch.gauge;
+        let (stress_range, plastic_strain_range) = self.ranges();
+        RunInfo {
+            name: self.spec.name.clone(),
+            about: self.spec.about.clone(),
+            layers: a.layers.iter().map(|l| l.name.clone()).collect(),
+            wires: a
+                .wires
+                .iter()
+                .map(|w| WireInfo { layer: w.layer, first: w.first, len: w.len, diameter: (w.diameter * 1e3) as f32 })
+                .collect(),
+            wire_particles: a.wire_particles,
+            particles: a.len(),
+            radius: a.radius.iter().map(|r| (r * 1e3) as f32).collect(),
+            rest_position: a.position.iter().map(millimetres).collect(),
+            gauge: (gauge[1] > gauge[0]).then(|| gauge.map(|z| (z * 1e3) as f32)),
+            stress_range,
+            plastic_strain_range,
+            speed_range: [0.0, self.greatest_speed() as f32],
+            strain_end: self.strain_end(),
+        }
+    }
+
+    /// The strain at which bonds are expected to break [-]; infinite when they never do.
+    fn rupture_strain(&self) -> f64 {
+        match self.spec.bond.rupture.as_ref().map(|r| &r.criterion) {
+            // True plastic strain to engineering strain.
+            Some(RuptureCriterion::PlasticStrain { strain }) => strain.exp_m1(),
+            Some(RuptureCriterion::FibreStrain { strain }) => *strain,
+            Some(RuptureCriterion::BeamStress { tensile, .. }) => tensile / self.spec.material.young,
+            None => f64::INFINITY,
+        }
+    }
+
+    fn strain_end(&self) -> Option<f64> {
+        let gauge = self.holds.stretch.gauge;
+        if gauge[1] <= gauge[0] {
+            return None;
+        }
+        let DriveSpec::Speed(speed) = self.spec.grip.as_ref()?.drive else { return self.spec.stop.strain };
+        if speed <= 0.0 {
+            return self.spec.stop.strain;
+        }
+        let timed = self.spec.stop.time.map_or(f64::INFINITY, |t| t * speed / (gauge[1] - gauge[0]));
+        let stop = self.spec.stop.strain.unwrap_or(f64::INFINITY).min(timed);
+        let falls = self.spec.stop.stress_fraction.is_some();
+        let end = if falls { stop.min(1.1 * self.rupture_strain()) } else { stop };
+        end.is_finite().then_some(end)
+    }
+
+    /// Fixed ranges of true axial stress [MPa] and plastic strain [-] that the run will not leave.
+    fn ranges(&self) -> ([f32; 2], [f32; 2]) {
+        let strain = self.strain_end().unwrap_or(0.0).min(self.rupture_strain());
+        match &self.spec.bond.law {
+            BondLawSpec::ElastoPlastic(h) => {
+                let p = if strain > 0.0 { strain.ln_1p() } else { 0.01 };
+                let top = round_up(hardening(h).stress(p) * 1e-6);
+                ([0.0, top as f32], [0.0, round_up(p) as f32])
+            }
+            BondLawSpec::Elastic => {
+                let impact = self.spec.material.young * self.greatest_speed()
+                    / (self.spec.material.young / self.spec.material.density).sqrt();
+                let pulled = self.spec.material.young * strain.abs();
+                let top = round_up(pulled.max(impact).max(1e6) * 1e-6) as f32;
+                ([-top, top], [0.0, 1.0])
+            }
+        }
+    }
+
+    fn greatest_speed(&self) -> f64 {
+        let prescribed = self.spec.grip.as_ref().map_or(0.0, |g| match g.drive {
+            DriveSpec::Speed(v) => v.abs(),
+            DriveSpec::Cyclic { amplitude, frequency } => std::f64::consts::TAU * frequency * amplitude,
+        });
+        let free = self.assembly.velocity.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let held = self.spec.holds.iter().map(|h| h.velocity.length()).fold(0.0, f64::max);
+        let fastest = prescribed.max(free).max(held);
+        if fastest > 0.0 { fastest } else { 1.0 }
+    }
+}
+
+fn millimetres(p: glam::DVec3) -> [f32; 3] {
+    (p * 1e3).as_vec3().to_array()
+}
+
+/// The next round number (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 × a power of ten) at or above `value`.
+fn round_up(value: f64) -> f64 {
+    let scale = 10f64.powf(value.log10().floor());
+    let round = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 10.0];
+    round.into_iter().map(|r| r * scale).find(|r| *r >= value * (1.0 - 1e-9)).unwrap_or(value)
+}

@@ -1,0 +1,316 @@
+//! Neighbour search: candidate pairs within reach plus a skin, and the criterion that says when they must be found anew.
+//!
+//! The whole strand stretches by a third, so displacements are measured against the affine stretch of the gauge: a
+//! pair stays covered while 2 max|u − u_affine| + Δε (reach + skin) < skin.
+
+use super::state::{CHUNK, State};
+use crate::base::vectors::Vectors;
+use crate::strand::assembly::Assembly;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Candidate pairs (i < j), sorted.
+#[derive(Debug, Default)]
+pub struct PairList {
+    /// The pairs.
+    pub pairs: Vec<(u32, u32)>,
+}
+
+/// The affine stretch that grips impose: u_z = displacement × clamp((z − z₀)/(z₁ − z₀)).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stretch {
+    /// Gauge before loading [m]; z₁ = z₀ when there are no grips.
+    pub gauge: [f64; 2],
+    /// Displacement of the upper grip since the start [m].
+    pub displacement: f64,
+}
+
+impl Stretch {
+    /// Where a point that is at `z` now would be after `moved` more displacement of the upper grip [m].
+    fn affine(&self, z: f64, moved: f64) -> f64 {
+        let length = self.gauge[1] + self.displacement - self.gauge[0];
+        if length > 0.0 { moved * ((z - self.gauge[0]) / length).clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
+/// Candidate search with its skin.
+pub struct Neighbours {
+    /// Skin beyond the sum of the undeformed radii [m].
+    skin: f64,
+    /// Extra reach, for contacts that are not between particle centres [m].
+    margin: f64,
+    /// Largest undeformed radius [m].
+    largest: f64,
+    /// Bonded neighbours along a wire that cannot touch: |i − j| below this per wire.
+    apart: Vec<u32>,
+    wire_of: Vec<u32>,
+    reference: Vectors,
+    stretch: Stretch,
+    list: PairList,
+    found: Vec<Vec<(u32, u32)>>,
+    cells: Cells,
+    /// Number of searches so far.
+    pub rebuilds: u64,
+}
+
+/// Cell grid by counting sort.
+#[derive(Default)]
+struct Cells {
+    start: Vec<u32>,
+    order: Vec<u32>,
+    of_particle: Vec<u32>,
+    origin: DVec3,
+    size: f64,
+    shape: [usize; 3],
+}
+
+impl Neighbours {
+    /// For `assembly`; `skin` and `margin` in m.
+    pub fn new(assembly: &Assembly, skin: f64, margin: f64) -> Self {
+        // A bent chain cannot touch itself within a quarter turn of the tightest bend, a circle of the wire's diameter.
+        let apart = assembly
+            .wires
+            .iter()
+            .map(|w| {
+                let spacing = assembly.rest_length[w.first];
+                if spacing > 0.0 { (1.6 * w.diameter / spacing).ceil().max(2.0) as u32 } else { 2 }
+            })
+            .collect();
+        Self {
+            skin,
+            margin,
+            largest: assembly.radius.iter().copied().fold(0.0, f64::max),
+            apart,
+            wire_of: assembly.wire_of.clone(),
+            reference: Vectors::default(),
+            stretch: Stretch::default(),
+            list: PairList::default(),
+            found: Vec::new(),
+            cells: Cells::default(),
+            rebuilds: 0,
+        }
+    }
+
+    /// Whether a pair may have come within reach unseen. `largest2` is the greatest squared distance from
+    /// [`Neighbours::residual2`].
+    pub fn stale(&self, largest2: f64, now: &Stretch) -> bool {
+        if self.rebuilds == 0 {
+            return true;
+        }
+        let length = self.stretch.gauge[1] + self.stretch.displacement - self.stretch.gauge[0];
+        let strain = if length > 0.0 { ((now.displacement - self.stretch.displacement) / length).abs() } else { 0.0 };
+        2.0 * largest2.sqrt() + strain * (2.0 * self.largest + self.margin + self.skin) >= self.skin
+    }
+
+    /// Squared distance of particle `i` from where the affine stretch since the last search would have it [m²].
+    #[inline(always)]
+    pub fn residual2(&self, i: usize, x: DVec3, moved: f64) -> f64 {
+        if self.rebuilds == 0 {
+            return 0.0;
+        }
+        let mut d = x - self.reference.get(i);
+        d.z -= self.stretch.affine(self.reference.z[i], moved);
+        d.length_squared()
+    }
+
+    /// Displacement of the upper grip since the last search [m].
+    pub fn moved(&self, now: &Stretch) -> f64 {
+        now.displacement - self.stretch.displacement
+    }
+
+    /// Finds all candidate pairs anew.
+    pub fn search(&mut self, state: &State, now: Stretch) -> &PairList {
+        self.reference.clone_from(&state.x);
+        self.stretch = now;
+        self.rebuilds += 1;
+        self.cells.fill(state, 2.0 * self.largest + self.margin + self.skin);
+        let chunks = state.len().div_ceil(CHUNK);
+        self.found.resize_with(chunks, Vec::new);
+        let broken = broken_before(state);
+        let mut found = std::mem::take(&mut self.found);
+        found.par_iter_mut().enumerate().for_each(|(chunk, out)| {
+            out.clear();
+            let last = ((chunk + 1) * CHUNK).min(state.len());
+            for i in chunk * CHUNK..last {
+                let from = out.len();
+                self.cells.around(i, |j| {
+                    if (j as usize) > i && self.can_touch(i, j as usize, state, &broken) {
+                        out.push((i as u32, j));
+                    }
+                });
+                out[from..].sort_unstable();
+            }
+        });
+        self.found = found;
+        self.list.pairs.clear();
+        self.found.iter().for_each(|f| self.list.pairs.extend_from_slice(f));
+        &self.list
+    }
+
+    fn can_touch(&self, i: usize, j: usize, state: &State, broken: &[u32]) -> bool {
+        let reach = state.radius0[i] + state.radius0[j] + self.margin + self.skin;
+        if (state.x.get(j) - state.x.get(i)).length_squared() >= reach * reach {
+            return false;
+        }
+        if state.hold[i] != 0 && state.hold[i] == state.hold[j] {
+            return false;
+        }
+        let wire = self.wire_of[i];
+        if wire != u32::MAX && wire == self.wire_of[j] {
+            let close = ((j - i) as u32) < self.apart[wire as usize];
+            return !close || broken[j] > broken[i];
+        }
+        true
+    }
+}
+
+/// Number of broken slots before each particle; two particles of a wire are in one piece when theirs agree.
+fn broken_before(state: &State) -> Vec<u32> {
+    let mut sum = 0;
+    state
+        .whole
+        .iter()
+        .map(|whole| {
+            let before = sum;
+            sum += u32::from(!whole);
+            before
+        })
+        .collect()
+}
+
+impl Cells {
+    fn fill(&mut self, state: &State, size: f64) {
+        let n = state.len();
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for p in state.x.iter() {
+            low = low.min(p);
+            high = high.max(p);
+        }
+        self.origin = low;
+        self.size = size;
+        // A far-flung fragment must not blow up the grid: cells grow until there are at most eight per particle.
+        let shape = |size: f64| ((high - low) / size).to_array().map(|c| c.floor() + 1.0);
+        while shape(self.size).iter().product::<f64>() > 8.0 * n as f64 + 64.0 {
+            self.size *= 1.25;
+        }
+        self.shape = shape(self.size).map(|c| c as usize);
+        let count: usize = self.shape.iter().product();
+        self.start.clear();
+        self.start.resize(count + 1, 0);
+        self.of_particle.clear();
+        for p in state.x.iter() {
+            let cell = self.cell(p);
+            let index = ((cell[0] * self.shape[1]) + cell[1]) * self.shape[2] + cell[2];
+            self.of_particle.push(index as u32);
+            self.start[index + 1] += 1;
+        }
+        for c in 0..count {
+            self.start[c + 1] += self.start[c];
+        }
+        self.order.clear();
+        self.order.resize(n, 0);
+        let mut next = self.start.clone();
+        for (i, cell) in self.of_particle.iter().enumerate() {
+            self.order[next[*cell as usize] as usize] = i as u32;
+            next[*cell as usize] += 1;
+        }
+    }
+
+    fn cell(&self, p: DVec3) -> [usize; 3] {
+        let c = ((p - self.origin) / self.size).to_array();
+        std::array::from_fn(|k| (c[k] as usize).min(self.shape[k] - 1))
+    }
+
+    fn around(&self, i: usize, mut visit: impl FnMut(u32)) {
+        let index = self.of_particle[i] as usize;
+        let [_, ny, nz] = self.shape;
+        let (cx, cy, cz) = (index / (ny * nz), index / nz % ny, index % nz);
+        for x in cx.saturating_sub(1)..=(cx + 1).min(self.shape[0] - 1) {
+            for y in cy.saturating_sub(1)..=(cy + 1).min(ny - 1) {
+                let row = (x * ny + y) * nz;
+                let (first, last) = (row + cz.saturating_sub(1), row + (cz + 1).min(nz - 1));
+                // Cells of one row are neighbours in memory.
+                let (from, to) = (self.start[first] as usize, self.start[last + 1] as usize);
+                self.order[from..to].iter().for_each(|j| visit(*j));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::random::uniform;
+
+    fn cloud(n: usize, box_size: f64, radius: f64) -> (Assembly, State) {
+        let position: Vectors = (0..n as u64)
+            .map(|i| DVec3::new(uniform(1, i, 0), uniform(1, i, 1), uniform(1, i, 2)) * box_size)
+            .collect();
+        let assembly = Assembly {
+            layers: Vec::new(),
+            wires: Vec::new(),
+            wire_particles: 0,
+            velocity: Vectors::zeros(n),
+            spin: Vectors::zeros(n),
+            radius: vec![radius; n],
+            mass: vec![1.0; n],
+            inertia: vec![1.0; n],
+            rest_length: vec![0.0; n],
+            wire_of: vec![u32::MAX; n],
+            length: 0.0,
+            area: 0.0,
+            position,
+        };
+        let state = State::new(&assembly);
+        (assembly, state)
+    }
+
+    #[test]
+    fn search_finds_what_brute_force_finds() {
+        let (assembly, state) = cloud(700, 1.0, 0.04);
+        let mut neighbours = Neighbours::new(&assembly, 0.01, 0.0);
+        let found = neighbours.search(&state, Stretch::default()).pairs.clone();
+        let mut expected = Vec::new();
+        for i in 0..state.len() {
+            for j in i + 1..state.len() {
+                if (state.x.get(i) - state.x.get(j)).length() < 0.09 {
+                    expected.push((i as u32, j as u32));
+                }
+            }
+        }
+        assert_eq!(found, expected);
+        assert!(found.len() > 300);
+    }
+
+    #[test]
+    fn a_far_flung_particle_does_not_blow_up_the_grid() {
+        let (assembly, mut state) = cloud(200, 1.0, 0.04);
+        state.x.set(0, DVec3::splat(1e6));
+        let mut neighbours = Neighbours::new(&assembly, 0.01, 0.0);
+        neighbours.search(&state, Stretch::default());
+        assert!(neighbours.cells.start.len() < 8 * 200 + 128);
+    }
+
+    #[test]
+    fn affine_stretch_alone_needs_few_searches() {
+        let stretch = |d: f64| Stretch { gauge: [0.01, 0.11], displacement: d };
+        let (assembly, mut state) = cloud(50, 0.1, 0.0002);
+        let start = state.x.clone();
+        let mut neighbours = Neighbours::new(&assembly, 6e-5, 0.0);
+        for k in 0..=270 {
+            let d = k as f64 * 1e-4;
+            let now = stretch(d);
+            for i in 0..state.len() {
+                let z0 = start.z[i];
+                state.x.z[i] = z0 + d * ((z0 - 0.01) / 0.1).clamp(0.0, 1.0);
+            }
+            let moved = neighbours.moved(&now);
+            let largest = (0..state.len()).map(|i| neighbours.residual2(i, state.x.get(i), moved)).fold(0.0, f64::max);
+            if neighbours.stale(largest, &now) {
+                neighbours.search(&state, now);
+            }
+        }
+        // Each search lasts for a strain of about skin / (diameter + skin) = 13 %.
+        assert!(neighbours.rebuilds <= 4, "{}", neighbours.rebuilds);
+    }
+}

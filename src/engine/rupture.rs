@@ -1,0 +1,98 @@
+//! Rupture stage: which bonds have reached their limit. A pass of its own after the bonds, so that criteria and laws
+//! do not multiply.
+
+use super::state::State;
+use super::view::RuptureCause;
+use crate::base::random::uniform;
+use crate::law::bond::rupture::{BeamStress, fibre_strain, weibull_factor};
+use crate::law::bond::{BondForce, Section};
+use crate::scene::spec::{RuptureCriterion, RuptureSpec};
+use crate::strand::assembly::Assembly;
+use glam::DVec3;
+
+/// Cause of a rupture as the engine books it.
+pub type Criterion = RuptureCause;
+
+/// Rupture limits of all bonds.
+pub struct RuptureCheck {
+    criterion: RuptureCriterion,
+    /// Weibull factor per bond slot [-]; empty when there is no scatter.
+    factor: Vec<f64>,
+    /// Stress-free lengths [m].
+    rest_length: Vec<f64>,
+}
+
+impl RuptureCheck {
+    /// Limits for `assembly`; scatter is indexed by (seed, wire, bond in its wire).
+    pub fn new(spec: &RuptureSpec, seed: u64, assembly: &Assembly) -> Self {
+        let mut factor = Vec::new();
+        if spec.weibull_modulus.is_finite() {
+            factor = vec![1.0; assembly.len()];
+            for (w, wire) in assembly.wires.iter().enumerate() {
+                for slot in wire.bonds() {
+                    let per_100_mm = 0.1 / assembly.rest_length[slot];
+                    let u = uniform(seed, w as u64, (slot - wire.first) as u64);
+                    factor[slot] = weibull_factor(u, spec.weibull_modulus, per_100_mm);
+                }
+            }
+        }
+        Self { criterion: spec.criterion.clone(), factor, rest_length: assembly.rest_length.clone() }
+    }
+
+    /// Slots that broke, in order, with the cause. `bond(slot)` gives (p, forces, section).
+    pub fn broken<'a>(
+        &mut self,
+        whole: &[bool],
+        state: &State,
+        bond: impl Fn(usize) -> (f64, &'a BondForce, Section),
+    ) -> Vec<(usize, Criterion)> {
+        let factor = |slot: usize| self.factor.get(slot).copied().unwrap_or(1.0);
+        let slots = (0..whole.len()).filter(|s| whole[*s]);
+        match &self.criterion {
+            RuptureCriterion::PlasticStrain { strain } => {
+                slots.filter(|s| bond(*s).0 >= strain * factor(*s)).map(|s| (s, RuptureCause::PlasticStrain)).collect()
+            }
+            RuptureCriterion::BeamStress { tensile, shear, moment_share } => {
+                let law = BeamStress { tensile: *tensile, shear: *shear, moment_share: *moment_share };
+                slots
+                    .filter_map(|s| {
+                        let (_, force, section) = bond(s);
+                        let [tension, shear] = law.utilisation(force, &section);
+                        let limit = factor(s);
+                        if tension >= limit {
+                            Some((s, RuptureCause::Tension))
+                        } else {
+                            (shear >= limit).then_some((s, RuptureCause::Shear))
+                        }
+                    })
+                    .collect()
+            }
+            RuptureCriterion::FibreStrain { strain } => slots
+                .filter(|s| {
+                    let (_, _, section) = bond(*s);
+                    let d = state.x.get(s + 1) - state.x.get(*s);
+                    let axial = d.length() / self.rest_length[*s] - 1.0;
+                    fibre_strain(axial, curvature(state, *s, d), section.radius) >= strain * factor(*s)
+                })
+                .map(|s| (s, RuptureCause::FibreStrain))
+                .collect(),
+        }
+    }
+}
+
+/// Curvature of the wire at bond `slot` [1/m], counted from a straight wire: the mean over the angles with its two
+/// neighbours, as far as those hold.
+fn curvature(state: &State, slot: usize, d: DVec3) -> f64 {
+    let turn = |a: DVec3, b: DVec3| a.cross(b).length().atan2(a.dot(b)) / (0.5 * (a.length() + b.length()));
+    let mut sum = 0.0;
+    let mut count = 0.0;
+    if slot > 0 && state.whole[slot - 1] {
+        sum += turn(state.x.get(slot) - state.x.get(slot - 1), d);
+        count += 1.0;
+    }
+    if state.whole.get(slot + 1).is_some_and(|w| *w) {
+        sum += turn(d, state.x.get(slot + 2) - state.x.get(slot + 1));
+        count += 1.0;
+    }
+    if count > 0.0 { sum / count } else { 0.0 }
+}

@@ -1,0 +1,215 @@
+//! Contact stage for spheres: every particle is a ball of its wire's diameter.
+
+use super::contacts::{ContactPoint, Contacts};
+use super::neighbours::PairList;
+use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, part, touch};
+use super::state::{CHUNK, Partial, State};
+use super::time_step::Stiffness;
+use crate::law::contact::NormalLaw;
+use crate::law::contact::constants::reduced_radius;
+use crate::law::tangential::TangentialLaw;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A candidate pair with its history and the force of this step.
+#[derive(Debug, Clone, Copy)]
+struct Contact<N, T> {
+    i: u32,
+    j: u32,
+    history: History<N, T>,
+    action: PairForce,
+    /// n × friction: torque per lever arm on either particle [N].
+    twist: DVec3,
+}
+
+/// Contacts between spheres with normal law `N` and tangential law `T`.
+pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
+    laws: Laws<N, T>,
+    contacts: Vec<Contact<N::State, T::State>>,
+    /// The list before a rebuild; kept for its memory.
+    old: Vec<Contact<N::State, T::State>>,
+    /// For each particle the contacts that it is in: index << 1 | 1 when it is the second of the pair.
+    of_particle: Vec<u32>,
+    start: Vec<u32>,
+    partial: Vec<Partial>,
+}
+
+impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
+    /// Without contacts yet.
+    pub fn new(laws: Laws<N, T>) -> Self {
+        Self {
+            laws,
+            contacts: Vec::new(),
+            old: Vec::new(),
+            of_particle: Vec::new(),
+            start: Vec::new(),
+            partial: Vec::new(),
+        }
+    }
+
+    fn index_particles(&mut self, n: usize) {
+        self.start.clear();
+        self.start.resize(n + 1, 0);
+        for c in &self.contacts {
+            self.start[c.i as usize + 1] += 1;
+            self.start[c.j as usize + 1] += 1;
+        }
+        for p in 0..n {
+            self.start[p + 1] += self.start[p];
+        }
+        self.of_particle.clear();
+        self.of_particle.resize(2 * self.contacts.len(), 0);
+        let mut next = self.start.clone();
+        for (k, c) in self.contacts.iter().enumerate() {
+            for (particle, side) in [(c.i, 0), (c.j, 1)] {
+                self.of_particle[next[particle as usize] as usize] = (k as u32) << 1 | side;
+                next[particle as usize] += 1;
+            }
+        }
+    }
+
+    /// Adds up each particle's contacts in the order of the list.
+    fn gather(&self, state: &mut State) {
+        let (contacts, start, of_particle) = (&self.contacts, &self.start, &self.of_particle);
+        let radius = &state.radius;
+        let f = &mut state.contact_force;
+        let t = &mut state.contact_torque;
+        (
+            f.x.par_chunks_mut(CHUNK),
+            f.y.par_chunks_mut(CHUNK),
+            f.z.par_chunks_mut(CHUNK),
+            t.x.par_chunks_mut(CHUNK),
+            t.y.par_chunks_mut(CHUNK),
+            t.z.par_chunks_mut(CHUNK),
+        )
+            .into_par_iter()
+            .enumerate()
+            .for_each(|(chunk, (fx, fy, fz, tx, ty, tz))| {
+                for k in 0..fx.len() {
+                    let p = chunk * CHUNK + k;
+                    let (mut force, mut torque) = (DVec3::ZERO, DVec3::ZERO);
+                    for entry in &of_particle[start[p] as usize..start[p + 1] as usize] {
+                        let c = &contacts[(entry >> 1) as usize];
+                        if c.history.touching {
+                            let sign = if entry & 1 == 0 { 1.0 } else { -1.0 };
+                            force += c.action.force * sign;
+                            torque += c.twist * (radius[p] - 0.5 * c.history.overlap);
+                        }
+                    }
+                    (fx[k], fy[k], fz[k]) = force.into();
+                    (tx[k], ty[k], tz[k]) = torque.into();
+                }
+            });
+    }
+}
+
+impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
+    fn rebuild(&mut self, list: &PairList, state: &State) -> Partial {
+        std::mem::swap(&mut self.contacts, &mut self.old);
+        self.contacts.clear();
+        let mut lost = Partial::default();
+        let mut k = 0;
+        for (i, j) in list.pairs.iter().copied() {
+            while k < self.old.len() && (self.old[k].i, self.old[k].j) < (i, j) {
+                part::<N, T>(&self.laws, &mut self.old[k].history, &mut lost);
+                k += 1;
+            }
+            if k < self.old.len() && (self.old[k].i, self.old[k].j) == (i, j) {
+                self.contacts.push(self.old[k]);
+                k += 1;
+            } else {
+                let r = reduced_radius(state.radius0[i as usize], state.radius0[j as usize]);
+                self.contacts.push(Contact {
+                    i,
+                    j,
+                    history: History::new(r),
+                    action: PairForce::default(),
+                    twist: DVec3::ZERO,
+                });
+            }
+        }
+        for c in &mut self.old[k..] {
+            part::<N, T>(&self.laws, &mut c.history, &mut lost);
+        }
+        self.partial.clear();
+        self.partial.resize(self.contacts.len().div_ceil(CHUNK), Partial::default());
+        self.index_particles(state.len());
+        lost
+    }
+
+    fn compute(&mut self, state: &mut State) -> Partial {
+        let laws = &self.laws;
+        let shared = &*state;
+        (self.contacts.par_chunks_mut(CHUNK), self.partial.par_iter_mut()).into_par_iter().for_each(
+            |(contacts, partial)| {
+                *partial = Partial::default();
+                contacts.iter_mut().for_each(|c| sphere_pair(laws, shared, c, partial));
+            },
+        );
+        self.gather(state);
+        let mut sum = Partial::default();
+        self.partial.iter().for_each(|p| sum.add(p));
+        sum
+    }
+
+    fn elastic_energy(&self) -> f64 {
+        self.contacts.iter().map(|c| elastic_energy(&self.laws, &c.history)).sum()
+    }
+
+    fn active(&self) -> usize {
+        self.contacts.iter().filter(|c| c.history.touching).count()
+    }
+
+    fn candidates(&self) -> usize {
+        self.contacts.len()
+    }
+
+    fn deepest(&self) -> Option<ContactPoint> {
+        self.contacts.iter().max_by(|a, b| a.history.overlap.total_cmp(&b.history.overlap)).map(|c| ContactPoint {
+            i: c.i as usize,
+            j: c.j as usize,
+            overlap: c.history.overlap,
+        })
+    }
+
+    fn stiffness(&self, state: &State, out: &mut Stiffness) {
+        for c in self.contacts.iter().filter(|c| c.history.touching) {
+            let (i, j) = (c.i as usize, c.j as usize);
+            let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);
+            let k = c.history.stiffness;
+            let damping = 2.0 * self.laws.damping * (mass / k[0].max(f64::MIN_POSITIVE)).sqrt();
+            out.contact([c.i, c.j, 0], [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], damping);
+        }
+    }
+}
+
+/// Kinematics and response of one candidate pair.
+#[inline(always)]
+fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
+    laws: &Laws<N, T>,
+    state: &State,
+    c: &mut Contact<N::State, T::State>,
+    partial: &mut Partial,
+) {
+    let (i, j) = (c.i as usize, c.j as usize);
+    let d = state.x.get(j) - state.x.get(i);
+    let reach = state.radius[i] + state.radius[j];
+    let distance2 = d.length_squared();
+    if distance2 >= reach * reach {
+        part::<N, T>(laws, &mut c.history, partial);
+        return;
+    }
+    let distance = distance2.sqrt();
+    let normal = d / distance;
+    let overlap = reach - distance;
+    let mut velocity = state.v.get(j) - state.v.get(i);
+    if T::ACTIVE {
+        let arms =
+            state.w.get(i) * (state.radius[i] - 0.5 * overlap) + state.w.get(j) * (state.radius[j] - 0.5 * overlap);
+        velocity -= arms.cross(normal);
+    }
+    let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);
+    let meeting = Meeting { normal, overlap, reach, velocity, mass, dt: state.dt };
+    c.action = touch(laws, &mut c.history, &meeting, partial);
+    c.twist = normal.cross(c.action.friction);
+}

@@ -1,0 +1,148 @@
+//! State of all particles as structure of arrays, and what the stages leave for each other.
+
+use crate::base::vectors::Vectors;
+use crate::strand::assembly::Assembly;
+use glam::DVec3;
+
+/// Number of items that one task works on. Fixed, so that partial sums do not depend on the number of threads.
+pub const CHUNK: usize = 512;
+
+/// What a bond does to its two particles.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BondAction {
+    /// Force on the first particle [N]; the second feels minus this.
+    pub pull: DVec3,
+    /// Moment on the first particle [N m]; the second feels minus this.
+    pub moment: DVec3,
+    /// Moment of the shear force about both particles, (l/2) n × pull [N m].
+    pub arm: DVec3,
+}
+
+/// All particles.
+pub struct State {
+    /// Centres x_n [m].
+    pub x: Vectors,
+    /// Velocities v_{n−1/2} [m/s].
+    pub v: Vectors,
+    /// Spins ω_{n−1/2} [rad/s].
+    pub w: Vectors,
+    /// Forces F_n [N].
+    pub force: Vectors,
+    /// Torques about the centres [N m].
+    pub torque: Vectors,
+    /// Forces from contacts [N].
+    pub contact_force: Vectors,
+    /// Torques from contacts [N m].
+    pub contact_torque: Vectors,
+    /// What each bond slot does; zero where no bond is.
+    pub bond: Vec<BondAction>,
+    /// Whether each bond slot holds.
+    pub whole: Vec<bool>,
+    /// Factor on the radius of each bond, e^(−ε_p/2) [-].
+    pub thinning: Vec<f64>,
+    /// Current contact radii [m].
+    pub radius: Vec<f64>,
+    /// Undeformed radii [m].
+    pub radius0: Vec<f64>,
+    /// Masses [kg].
+    pub mass: Vec<f64>,
+    /// Rotational inertias [kg m²].
+    pub inertia: Vec<f64>,
+    /// Hold that each particle belongs to, from 1; 0 when free. Two particles of one hold never need a contact.
+    pub hold: Vec<u16>,
+    /// Prescribed components of each particle, bits 0–2 for translation, 3–5 for rotation.
+    pub fixed: Vec<u8>,
+    /// Steps done.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Step that led here [s].
+    pub dt: f64,
+}
+
+impl State {
+    /// From the assembly, at rest where the scene gives no velocity.
+    pub fn new(a: &Assembly) -> Self {
+        let n = a.len();
+        Self {
+            x: a.position.clone(),
+            v: a.velocity.clone(),
+            w: a.spin.clone(),
+            force: Vectors::zeros(n),
+            torque: Vectors::zeros(n),
+            contact_force: Vectors::zeros(n),
+            contact_torque: Vectors::zeros(n),
+            bond: vec![BondAction::default(); n],
+            whole: (0..n).map(|i| a.is_bond(i)).collect(),
+            thinning: vec![1.0; n],
+            radius: a.radius.clone(),
+            radius0: a.radius.clone(),
+            mass: a.mass.clone(),
+            inertia: a.inertia.clone(),
+            hold: vec![0; n],
+            fixed: vec![0; n],
+            step: 0,
+            time: 0.0,
+            dt: 0.0,
+        }
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// True without particles.
+    pub fn is_empty(&self) -> bool {
+        self.mass.is_empty()
+    }
+
+    /// Kinetic energy at the instant of the positions [J]: free components are carried half a step on by the forces.
+    pub fn kinetic(&self) -> f64 {
+        (0..self.len())
+            .map(|i| {
+                let v = self.carried(self.v.get(i), self.force.get(i), self.mass[i], self.fixed[i]);
+                let w = self.carried(self.w.get(i), self.torque.get(i), self.inertia[i], self.fixed[i] >> 3);
+                0.5 * (self.mass[i] * v.length_squared() + self.inertia[i] * w.length_squared())
+            })
+            .sum()
+    }
+
+    fn carried(&self, v: DVec3, force: DVec3, mass: f64, fixed: u8) -> DVec3 {
+        let free = |k: u8| if fixed >> k & 1 == 1 { 0.0 } else { 0.5 * self.dt / mass };
+        v + force * DVec3::new(free(0), free(1), free(2))
+    }
+}
+
+/// Sums of one chunk each; added up in order.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Partial {
+    /// Plastic work [J].
+    pub plastic: f64,
+    /// Viscous damping [J].
+    pub damping: f64,
+    /// Friction [J].
+    pub friction: f64,
+    /// Work of contact pressure on thinning wires [J].
+    pub thinning: f64,
+}
+
+impl Partial {
+    /// Adds another partial sum.
+    pub fn add(&mut self, other: &Partial) {
+        self.plastic += other.plastic;
+        self.damping += other.damping;
+        self.friction += other.friction;
+        self.thinning += other.thinning;
+    }
+
+    /// All terms times `factor`.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            plastic: self.plastic * factor,
+            damping: self.damping * factor,
+            friction: self.friction * factor,
+            thinning: self.thinning * factor,
+        }
+    }
+}

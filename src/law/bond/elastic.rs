@@ -1,0 +1,80 @@
+//! `elastic`: linear in all modes, the classic parallel bond (Potyondy & Cundall 2004), on log strain.
+
+use super::{BondForce, BondIncrement, BondLaw, BondShape, BondStiffness, Moduli, Section};
+use super::{add_transverse, transverse_energy};
+
+/// Elastic bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elastic {
+    /// Elastic constants.
+    pub moduli: Moduli,
+}
+
+impl BondLaw for Elastic {
+    type State = ();
+
+    fn initial(&self) {}
+
+    #[inline(always)]
+    fn response(&self, shape: &BondShape, force: &mut BondForce, state: &mut (), step: &BondIncrement) -> f64 {
+        let k = self.stiffness(shape, state);
+        add_transverse(force, &k, step);
+        self.axial_response(shape, force, state, step)
+    }
+
+    #[inline(always)]
+    fn axial_response(&self, shape: &BondShape, force: &mut BondForce, _: &mut (), step: &BondIncrement) -> f64 {
+        force.axial = self.moduli.young * Section::round(shape.radius).area * step.log_strain;
+        0.0
+    }
+
+    #[inline(always)]
+    fn stiffness(&self, shape: &BondShape, _: &()) -> BondStiffness {
+        Section::round(shape.radius).stiffness(&self.moduli, shape.rest_length)
+    }
+
+    /// The axial part is the potential of N = EA ln(l/l₀): EA (l ln(l/l₀) − l + l₀).
+    fn elastic_energy(&self, shape: &BondShape, force: &BondForce, state: &()) -> f64 {
+        let stiffness = self.moduli.young * Section::round(shape.radius).area;
+        let strain = force.axial / stiffness;
+        let axial = stiffness * shape.rest_length * (strain * strain.exp() - strain.exp_m1());
+        axial + transverse_energy(force, &self.stiffness(shape, state))
+    }
+
+    fn section(&self, shape: &BondShape, _: &()) -> Section {
+        Section::round(shape.radius)
+    }
+
+    fn plastic_strain(&self, _: &()) -> f64 {
+        0.0
+    }
+
+    #[inline(always)]
+    fn thinning(&self, _: &()) -> f64 {
+        1.0
+    }
+
+    fn yield_stress(&self, _: &()) -> f64 {
+        f64::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axial_force_is_the_slope_of_its_energy() {
+        let law = Elastic { moduli: Moduli::new(115e9, 0.34) };
+        let shape = BondShape { rest_length: 0.39e-3, radius: 0.195e-3 };
+        let energy = |l: f64| {
+            let mut force = BondForce::default();
+            let step = BondIncrement { log_strain: (l / shape.rest_length).ln(), length: l, ..Default::default() };
+            law.axial_response(&shape, &mut force, &mut (), &step);
+            (law.elastic_energy(&shape, &force, &()), force.axial)
+        };
+        let (l, h) = (0.40e-3, 1e-9);
+        let slope = (energy(l + h).0 - energy(l - h).0) / (2.0 * h);
+        assert!((slope / energy(l).1 - 1.0).abs() < 1e-6);
+    }
+}

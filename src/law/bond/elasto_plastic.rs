@@ -1,0 +1,424 @@
+//! `elasto-plastic`: true stress, isotropic hardening, plastic incompressibility, coupled section plasticity.
+//!
+//! Axial stress σ = E(ε − ε_p) on log strain; the section is A = A₀e^(−ε_p) and the stress-free length l₀e^(ε_p), so
+//! every stiffness follows the plastic stretch. Yield surface of the round section (physics of beams):
+//! f = (N/N_p)² + |M|/M_p + (T/T_p)² + (V/V_p)² − 1 with N_p = σ_yA, M_p = (4/3)σ_yr³, T_p = (2π/3)(σ_y/√3)r³,
+//! V_p = (σ_y/√3)A. The return is associative and implicit; the equivalent plastic strain grows with the plastic work,
+//! dp = dW_p/(σ_yAl). At M = 0 the surface has a true apex: a return that would turn M's sign ends there.
+
+use super::hardening::Hardening;
+use super::{
+    BondForce, BondIncrement, BondLaw, BondShape, BondStiffness, Moduli, Section, add_transverse, transverse_energy,
+};
+use std::f64::consts::PI;
+
+/// Elastoplastic bond.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElastoPlastic {
+    /// Elastic constants.
+    pub moduli: Moduli,
+    /// Hardening law.
+    pub hardening: Hardening,
+}
+
+/// History of an elastoplastic bond; everything after `equivalent` is derived and kept because it is read every step
+/// and changes only in plastic ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlasticState {
+    /// Plastic log strain along the axis ε_p [-].
+    pub axial: f64,
+    /// Equivalent plastic strain p [-].
+    pub equivalent: f64,
+    /// e^(−ε_p/2), factor on the radius [-].
+    pub thinning: f64,
+    /// σ_y(p) [Pa].
+    pub yield_stress: f64,
+    /// dσ_y/dp [Pa].
+    pub slope: f64,
+}
+
+/// Where a return ends: factors on the trial values, and the plastic multiplier.
+struct Return {
+    /// Plastic multiplier over A l, x = λ/(Al) [Pa].
+    multiplier: f64,
+    /// σ/σ* [-].
+    axial: f64,
+    /// M/M*, T/T*, V/V* [-].
+    bend: f64,
+    twist: f64,
+    shear: f64,
+    /// Increment of p [-].
+    equivalent: f64,
+}
+
+/// Trial point and compliances of the return, all relative to the yield values at the start of the step.
+#[derive(Default)]
+struct Trial {
+    /// σ*/σ_y, |M*|/M_p, T*/T_p, |V*|/V_p [-].
+    axial: f64,
+    bend: f64,
+    twist: f64,
+    shear: f64,
+    /// What one unit of x takes off each of them [1/Pa].
+    axial_rate: f64,
+    bend_rate: f64,
+    twist_rate: f64,
+    shear_rate: f64,
+    /// Growth of σ_y/σ_y₀ with x at unit plastic work [1/Pa].
+    hardening_rate: f64,
+    /// σ_y at the start [Pa].
+    yield_stress: f64,
+}
+
+impl Trial {
+    fn outside(&self) -> bool {
+        self.axial * self.axial + self.bend + self.twist * self.twist + self.shear * self.shear > 1.0
+    }
+
+    /// Newton on x. f is convex and falls with x, so from x = 0 Newton never oversteps.
+    #[inline(always)]
+    fn solve(&self) -> Return {
+        let (mut x, mut bend) = (0.0, self.bend);
+        let mut end = Return { multiplier: 0.0, axial: 1.0, bend: 1.0, twist: 1.0, shear: 1.0, equivalent: 0.0 };
+        for _ in 0..60 {
+            // σ_y/σ_y₀ along the return; plastic work per x is 2 − m on the surface.
+            let growth = 1.0 + self.hardening_rate * x * (2.0 - bend);
+            let (g1, g2) = (1.0 / growth, 1.0 / (growth * growth));
+            let soft = |rate: f64| 1.0 / (1.0 + x * rate * g2);
+            let (fa, ft, fs) = (soft(self.axial_rate), soft(self.twist_rate), soft(self.shear_rate));
+            let (n, t, v) = (self.axial * g1 * fa, self.twist * g1 * ft, self.shear * g1 * fs);
+            bend = (self.bend * g1 - x * self.bend_rate * g2).max(0.0);
+            let f = n * n + bend + t * t + v * v - 1.0;
+            end = Return {
+                multiplier: x,
+                axial: fa,
+                bend: if self.bend > 0.0 { bend * growth / self.bend } else { 0.0 },
+                twist: ft,
+                shear: fs,
+                equivalent: x * (2.0 - bend) / (self.yield_stress * growth),
+            };
+            if f.abs() < 1e-12 {
+                break;
+            }
+            let mut slope = -2.0
+                * g2
+                * (n * n * self.axial_rate * fa + t * t * self.twist_rate * ft + v * v * self.shear_rate * fs);
+            if bend > 0.0 {
+                slope -= self.bend_rate * g2;
+            }
+            slope -= self.hardening_rate * (2.0 - bend) * (2.0 - bend);
+            let next = x - f / slope;
+            if next == x {
+                break;
+            }
+            x = next.max(0.0);
+        }
+        end
+    }
+}
+
+impl ElastoPlastic {
+    fn trial_axial(&self, stress: f64, state: &PlasticState) -> Trial {
+        let y = state.yield_stress;
+        Trial {
+            axial: stress / y,
+            axial_rate: 2.0 * self.moduli.young / (y * y),
+            hardening_rate: state.slope / (y * y),
+            yield_stress: y,
+            ..Default::default()
+        }
+    }
+
+    /// Books a return: plastic strains, hardening, section.
+    #[inline(always)]
+    fn advance(&self, state: &mut PlasticState, plastic_axial: f64, equivalent: f64) {
+        state.axial += plastic_axial;
+        state.equivalent += equivalent;
+        state.thinning = (-0.5 * state.axial).exp();
+        (state.yield_stress, state.slope) = self.hardening.evaluate(state.equivalent);
+    }
+
+    /// Plastic work that tension does, ½(σ + σ')A l Δε_p [J]; stresses in Pa before and after the step.
+    #[inline(always)]
+    fn axial_work(section: &Section, stress: [f64; 2], plastic: f64, step: &BondIncrement) -> f64 {
+        0.5 * (stress[0] + stress[1]) * section.area * step.length * plastic
+    }
+}
+
+impl BondLaw for ElastoPlastic {
+    type State = PlasticState;
+
+    fn initial(&self) -> PlasticState {
+        let (yield_stress, slope) = self.hardening.evaluate(0.0);
+        PlasticState { axial: 0.0, equivalent: 0.0, thinning: 1.0, yield_stress, slope }
+    }
+
+    #[inline(always)]
+    fn response(
+        &self,
+        shape: &BondShape,
+        force: &mut BondForce,
+        state: &mut PlasticState,
+        step: &BondIncrement,
+    ) -> f64 {
+        let section = self.section(shape, state);
+        let k = section.stiffness(&self.moduli, natural_length(shape, state));
+        let before = *force;
+        add_transverse(force, &k, step);
+        let stress = self.moduli.young * (step.log_strain - state.axial);
+        let y = state.yield_stress;
+        let r3 = section.radius * section.radius * section.radius;
+        let (bend_limit, twist_limit, shear_limit) =
+            ((4.0 / 3.0) * y * r3, (2.0 * PI / 3.0) * INV_SQRT_3 * y * r3, INV_SQRT_3 * y * section.area);
+        let volume = section.area * step.length;
+        let (bend_size, shear_size) = (force.bend_size(), force.shear_size());
+        let trial = Trial {
+            bend: bend_size / bend_limit,
+            twist: force.twist.abs() / twist_limit,
+            shear: shear_size / shear_limit,
+            bend_rate: k.bend * volume / (bend_limit * bend_limit),
+            twist_rate: 2.0 * k.twist * volume / (twist_limit * twist_limit),
+            shear_rate: 2.0 * k.shear * volume / (shear_limit * shear_limit),
+            ..self.trial_axial(stress, state)
+        };
+        if !trial.outside() {
+            force.axial = stress * section.area;
+            return 0.0;
+        }
+        let end = trial.solve();
+        for axis in 0..2 {
+            force.shear[axis] *= end.shear;
+            force.bend[axis] *= end.bend;
+        }
+        force.twist *= end.twist;
+        let plastic_axial = stress * (1.0 - end.axial) / self.moduli.young;
+        let stress_before = before.axial / section.area;
+        let mut work = Self::axial_work(&section, [stress_before, stress * end.axial], plastic_axial, step);
+        work += transverse_plastic_work(&before, force, &k, step);
+        self.advance(state, plastic_axial, end.equivalent);
+        force.axial = self.moduli.young * (step.log_strain - state.axial) * self.section(shape, state).area;
+        // Elastic shear, bending and torsion stay what they were while the section thins: forces follow the stiffness,
+        // and the energy that goes counts as plastic work.
+        let softer = self.stiffness(shape, state);
+        let held = transverse_energy(force, &k);
+        for axis in 0..2 {
+            force.shear[axis] *= softer.shear / k.shear;
+            force.bend[axis] *= softer.bend / k.bend;
+        }
+        force.twist *= softer.twist / k.twist;
+        work + held - transverse_energy(force, &softer)
+    }
+
+    #[inline(always)]
+    fn axial_response(
+        &self,
+        shape: &BondShape,
+        force: &mut BondForce,
+        state: &mut PlasticState,
+        step: &BondIncrement,
+    ) -> f64 {
+        let section = self.section(shape, state);
+        let stress = self.moduli.young * (step.log_strain - state.axial);
+        let trial = self.trial_axial(stress, state);
+        if !trial.outside() {
+            force.axial = stress * section.area;
+            return 0.0;
+        }
+        let end = trial.solve();
+        let plastic_axial = stress * (1.0 - end.axial) / self.moduli.young;
+        let stress_before = force.axial / section.area;
+        let work = Self::axial_work(&section, [stress_before, stress * end.axial], plastic_axial, step);
+        self.advance(state, plastic_axial, end.equivalent);
+        force.axial = self.moduli.young * (step.log_strain - state.axial) * self.section(shape, state).area;
+        work
+    }
+
+    #[inline(always)]
+    fn stiffness(&self, shape: &BondShape, state: &PlasticState) -> BondStiffness {
+        self.section(shape, state).stiffness(&self.moduli, natural_length(shape, state))
+    }
+
+    /// The axial part is exact for σ = E ε_e on the volume A₀l₀e^(ε_e): E A₀l₀[(ε_e − 1)e^(ε_e) + 1].
+    fn elastic_energy(&self, shape: &BondShape, force: &BondForce, state: &PlasticState) -> f64 {
+        let strain = force.axial / (self.moduli.young * self.section(shape, state).area);
+        let volume = Section::round(shape.radius).area * shape.rest_length;
+        let axial = self.moduli.young * volume * (strain * strain.exp() - strain.exp_m1());
+        axial + transverse_energy(force, &self.stiffness(shape, state))
+    }
+
+    #[inline(always)]
+    fn section(&self, shape: &BondShape, state: &PlasticState) -> Section {
+        Section::round(shape.radius * state.thinning)
+    }
+
+    fn plastic_strain(&self, state: &PlasticState) -> f64 {
+        state.equivalent
+    }
+
+    #[inline(always)]
+    fn thinning(&self, state: &PlasticState) -> f64 {
+        state.thinning
+    }
+
+    fn yield_stress(&self, state: &PlasticState) -> f64 {
+        state.yield_stress
+    }
+}
+
+const INV_SQRT_3: f64 = 0.577_350_269_189_625_8;
+
+/// Stress-free length l₀e^(ε_p) [m].
+#[inline(always)]
+fn natural_length(shape: &BondShape, state: &PlasticState) -> f64 {
+    shape.rest_length / (state.thinning * state.thinning)
+}
+
+/// Mean force times plastic displacement over shear, bending and torsion [J]; the plastic displacement is what the
+/// elastic change of force does not explain.
+#[inline(always)]
+fn transverse_plastic_work(before: &BondForce, after: &BondForce, k: &BondStiffness, step: &BondIncrement) -> f64 {
+    let mode = |f0: f64, f1: f64, k: f64, total: f64| 0.5 * (f0 + f1) * (total - (f1 - f0) / k);
+    let mut work = mode(before.twist, after.twist, k.twist, step.twist);
+    for axis in 0..2 {
+        work += mode(before.shear[axis], after.shear[axis], k.shear, step.shear[axis]);
+        work += mode(before.bend[axis], after.bend[axis], k.bend, step.bend[axis]);
+    }
+    work
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHAPE: BondShape = BondShape { rest_length: 0.39e-3, radius: 0.195e-3 };
+
+    fn copper(linear: f64) -> ElastoPlastic {
+        ElastoPlastic {
+            moduli: Moduli::new(115e9, 0.34),
+            hardening: Hardening::Voce { yield_stress: 100e6, saturation: 180e6, rate: 12.0, linear },
+        }
+    }
+
+    fn perfectly_plastic() -> ElastoPlastic {
+        ElastoPlastic { moduli: Moduli::new(115e9, 0.34), hardening: Hardening::Table(vec![[0.0, 100e6]]) }
+    }
+
+    fn still() -> BondIncrement {
+        BondIncrement { length: SHAPE.rest_length, ..Default::default() }
+    }
+
+    #[test]
+    fn one_wire_pulled_follows_the_hardening_law() {
+        let law = copper(450e6);
+        let (mut force, mut state, mut work) = (BondForce::default(), law.initial(), 0.0);
+        let (steps, last) = (20_000, 0.25);
+        let mut done = 0.0;
+        let mut length = SHAPE.rest_length;
+        for k in 1..=steps {
+            let log_strain = last * k as f64 / steps as f64;
+            let next = SHAPE.rest_length * f64::exp(log_strain);
+            let before = force.axial;
+            let step = BondIncrement { log_strain, length: next, ..Default::default() };
+            work += law.response(&SHAPE, &mut force, &mut state, &step);
+            done += 0.5 * (before + force.axial) * (next - length);
+            length = next;
+        }
+        let stress = force.axial / law.section(&SHAPE, &state).area;
+        let exact = law.hardening.stress(state.equivalent);
+        assert!((stress / exact - 1.0).abs() < 1e-6, "{stress} {exact}");
+        assert!((state.axial - state.equivalent).abs() < 1e-6);
+        let held = law.elastic_energy(&SHAPE, &force, &state);
+        assert!(((work + held) / done - 1.0).abs() < 1e-4, "{work} {held} {done}");
+    }
+
+    #[test]
+    fn a_bond_bent_and_one_twisted_past_yield_reach_the_plastic_moments() {
+        let law = perfectly_plastic();
+        let r3 = SHAPE.radius.powi(3);
+        let (mut force, mut state) = (BondForce::default(), law.initial());
+        for _ in 0..4000 {
+            let step = BondIncrement { bend: [1e-4, 0.5e-4], ..still() };
+            law.response(&SHAPE, &mut force, &mut state, &step);
+        }
+        let exact = (4.0 / 3.0) * 100e6 * r3;
+        assert!((force.bend_size() / exact - 1.0).abs() < 1e-9, "{}", force.bend_size() / exact);
+        let (mut force, mut state) = (BondForce::default(), law.initial());
+        for _ in 0..4000 {
+            let step = BondIncrement { twist: 1e-4, ..still() };
+            law.response(&SHAPE, &mut force, &mut state, &step);
+        }
+        let exact = (2.0 * PI / 3.0) * (100e6 / 3f64.sqrt()) * r3;
+        assert!((force.twist / exact - 1.0).abs() < 1e-9, "{}", force.twist / exact);
+    }
+
+    #[test]
+    fn tension_straightens_a_bent_bond_and_stops_at_the_apex() {
+        let law = perfectly_plastic();
+        let (mut force, mut state) = (BondForce::default(), law.initial());
+        for _ in 0..200 {
+            law.response(&SHAPE, &mut force, &mut state, &BondIncrement { bend: [1e-4, 0.0], ..still() });
+        }
+        assert!(force.bend[0] > 0.0);
+        for k in 1..=4000 {
+            let log_strain = 1e-5 * k as f64;
+            let length = SHAPE.rest_length * f64::exp(log_strain);
+            law.response(&SHAPE, &mut force, &mut state, &BondIncrement { log_strain, length, ..Default::default() });
+            assert!(force.bend[0] >= 0.0);
+        }
+        assert_eq!(force.bend[0], 0.0);
+        let stress = force.axial / law.section(&SHAPE, &state).area;
+        assert!((stress / 100e6 - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn any_path_dissipates_and_closes_its_ledger() {
+        use crate::base::random::uniform;
+        let law = copper(450e6);
+        for path in 0..8 {
+            let (mut force, mut state) = (BondForce::default(), law.initial());
+            let (mut log_strain, mut length) = (0.0f64, SHAPE.rest_length);
+            let (mut done, mut plastic) = (0.0, 0.0);
+            for k in 0..20_000u64 {
+                // A direction is kept for 500 steps, then another is drawn.
+                let draw = |c: u64| uniform(path, c, k / 500) - 0.5;
+                log_strain += 4e-6 * draw(0);
+                let next = SHAPE.rest_length * log_strain.exp();
+                let step = BondIncrement {
+                    log_strain,
+                    length: next,
+                    shear: [3e-9 * draw(1), 3e-9 * draw(2)],
+                    bend: [2e-5 * draw(3), 2e-5 * draw(4)],
+                    twist: 2e-5 * draw(5),
+                };
+                let before = force;
+                let work = law.response(&SHAPE, &mut force, &mut state, &step);
+                plastic += work;
+                let mean = |a: f64, b: f64, by: f64| 0.5 * (a + b) * by;
+                done += mean(before.axial, force.axial, next - length) + mean(before.twist, force.twist, step.twist);
+                for axis in 0..2 {
+                    done += mean(before.shear[axis], force.shear[axis], step.shear[axis])
+                        + mean(before.bend[axis], force.bend[axis], step.bend[axis]);
+                }
+                length = next;
+            }
+            let held = law.elastic_energy(&SHAPE, &force, &state);
+            assert!(plastic > 0.0 && held >= 0.0);
+            assert!((done - plastic - held).abs() < 2e-3 * plastic, "path {path}: {done} {plastic} {held}");
+        }
+    }
+
+    #[test]
+    fn the_axial_path_has_the_bits_of_the_general_one() {
+        let law = copper(450e6);
+        let (mut a, mut sa) = (BondForce::default(), law.initial());
+        let (mut b, mut sb) = (a, sa);
+        for k in 1..=3000 {
+            let log_strain = 2e-6 * k as f64;
+            let step =
+                BondIncrement { log_strain, length: SHAPE.rest_length * f64::exp(log_strain), ..Default::default() };
+            let wa = law.response(&SHAPE, &mut a, &mut sa, &step);
+            let wb = law.axial_response(&SHAPE, &mut b, &mut sb, &step);
+            assert_eq!((a, sa, wa.to_bits()), (b, sb, wb.to_bits()));
+        }
+    }
+}

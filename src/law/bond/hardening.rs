@@ -1,0 +1,123 @@
+//! Isotropic hardening: true yield stress σ_y over equivalent plastic strain p.
+//!
+//! | form | equation | source |
+//! | --- | --- | --- |
+//! | `voce` | σ₀ + Q(1 − e^(−bp)) + Hp | Voce 1948, linear term added |
+//! | `swift` | K(ε₀ + p)^n | Swift 1952 |
+//! | `ludwik` | σ₀ + K p^n | Ludwik 1909 |
+//! | `table` | straight lines between points, last slope kept | – |
+
+/// Hardening law with its parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Hardening {
+    /// σ₀ + Q(1 − e^(−bp)) + Hp.
+    Voce {
+        /// σ₀ [Pa].
+        yield_stress: f64,
+        /// Q [Pa].
+        saturation: f64,
+        /// b [-].
+        rate: f64,
+        /// H [Pa].
+        linear: f64,
+    },
+    /// K(ε₀ + p)^n.
+    Swift {
+        /// K [Pa].
+        strength: f64,
+        /// ε₀ [-].
+        prestrain: f64,
+        /// n [-].
+        exponent: f64,
+    },
+    /// σ₀ + K p^n.
+    Ludwik {
+        /// σ₀ [Pa].
+        yield_stress: f64,
+        /// K [Pa].
+        strength: f64,
+        /// n [-].
+        exponent: f64,
+    },
+    /// Points of (true plastic strain [-], true stress [Pa]), strain increasing from 0.
+    Table(Vec<[f64; 2]>),
+}
+
+impl Hardening {
+    /// (σ_y [Pa], dσ_y/dp [Pa]) at equivalent plastic strain `p` [-].
+    #[inline]
+    pub fn evaluate(&self, p: f64) -> (f64, f64) {
+        match self {
+            Hardening::Voce { yield_stress, saturation, rate, linear } => {
+                let decay = (-rate * p).exp();
+                (yield_stress + saturation * (1.0 - decay) + linear * p, saturation * rate * decay + linear)
+            }
+            Hardening::Swift { strength, prestrain, exponent } => {
+                let stress = strength * (prestrain + p).powf(*exponent);
+                (stress, exponent * stress / (prestrain + p))
+            }
+            Hardening::Ludwik { yield_stress, strength, exponent } => {
+                // The slope of p^n is infinite at p = 0; the secant over the first 1e-8 stands in for it there.
+                let p_slope = p.max(1e-8);
+                (yield_stress + strength * p.powf(*exponent), exponent * strength * p_slope.powf(exponent - 1.0))
+            }
+            Hardening::Table(points) => table(points, p),
+        }
+    }
+
+    /// σ_y [Pa] at `p` [-].
+    pub fn stress(&self, p: f64) -> f64 {
+        self.evaluate(p).0
+    }
+
+    /// The least plastic strain below `limit` [-] at which uniform straining stops being stable, dσ_y/dp ≤ σ_y
+    /// (Considère 1885), or `None`.
+    pub fn considere(&self, limit: f64) -> Option<f64> {
+        const STEPS: usize = 2000;
+        (0..=STEPS).map(|k| limit * k as f64 / STEPS as f64).find(|p| {
+            let (stress, slope) = self.evaluate(*p);
+            slope <= stress
+        })
+    }
+}
+
+fn table(points: &[[f64; 2]], p: f64) -> (f64, f64) {
+    if points.len() == 1 {
+        return (points[0][1], 0.0);
+    }
+    let upper = points.partition_point(|point| point[0] <= p).clamp(1, points.len() - 1);
+    let ([p0, s0], [p1, s1]) = (points[upper - 1], points[upper]);
+    let slope = (s1 - s0) / (p1 - p0);
+    (s0 + slope * (p - p0), slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_are_derivatives() {
+        let laws = [
+            Hardening::Voce { yield_stress: 90e6, saturation: 190e6, rate: 12.0, linear: 450e6 },
+            Hardening::Swift { strength: 500e6, prestrain: 0.01, exponent: 0.3 },
+            Hardening::Ludwik { yield_stress: 90e6, strength: 400e6, exponent: 0.5 },
+            Hardening::Table(vec![[0.0, 90e6], [0.1, 250e6], [0.3, 400e6]]),
+        ];
+        for law in laws {
+            for p in [0.02, 0.15, 0.4] {
+                let h = 1e-6;
+                let numeric = (law.stress(p + h) - law.stress(p - h)) / (2.0 * h);
+                let slope = law.evaluate(p).1;
+                assert!((slope / numeric - 1.0).abs() < 1e-5, "{law:?} {p}");
+            }
+        }
+    }
+
+    #[test]
+    fn considere_finds_where_the_slope_meets_the_stress() {
+        // Swift: n/(ε₀+p) = 1 at p = n − ε₀.
+        let law = Hardening::Swift { strength: 500e6, prestrain: 0.01, exponent: 0.2 };
+        assert!((law.considere(0.5).unwrap() - 0.19).abs() < 1e-3);
+        assert_eq!(law.considere(0.15), None);
+    }
+}

@@ -1,0 +1,87 @@
+//! Rupture criteria and the scatter of rupture values.
+//!
+//! | name | breaks when | source |
+//! | --- | --- | --- |
+//! | `plastic-strain` | p ≥ p_f | ductile failure at a limit of equivalent plastic strain |
+//! | `beam-stress` | N/A + β\|M\|r/I ≥ σ_c or \|V\|/A + β\|T\|r/J ≥ τ_c | Potyondy & Cundall 2004 |
+//! | `fibre-strain` | axial + bending strain of the outermost fibre ≥ ε_f | beam theory |
+
+use super::{BondForce, Section};
+use std::f64::consts::LN_2;
+
+/// Beam-stress criterion of Potyondy & Cundall 2004; compression never breaks a bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamStress {
+    /// σ_c [Pa].
+    pub tensile: f64,
+    /// τ_c [Pa].
+    pub shear: f64,
+    /// β, share of moments and torque that counts [-].
+    pub moment_share: f64,
+}
+
+impl BeamStress {
+    /// (tensile stress over σ_c, shear stress over τ_c) at the outermost fibre [-]; breaks at 1.
+    pub fn utilisation(&self, force: &BondForce, section: &Section) -> [f64; 2] {
+        let tension = if force.axial > 0.0 {
+            (force.axial / section.area + self.moment_share * force.bend_size() * section.radius / section.inertia)
+                / self.tensile
+        } else {
+            0.0
+        };
+        let shear = (force.shear_size() / section.area
+            + self.moment_share * force.twist.abs() * section.radius / section.polar())
+            / self.shear;
+        [tension, shear]
+    }
+}
+
+/// Strain of the outermost fibre: axial strain plus r times the whole curvature [-].
+///
+/// `axial` is engineering strain l/l₀ − 1, `curvature` counts from a straight wire [1/m], `radius` in m.
+pub fn fibre_strain(axial: f64, curvature: f64, radius: f64) -> f64 {
+    axial + radius * curvature
+}
+
+/// Weibull factor on the rupture value of one bond [-] (Weibull 1951, weakest link).
+///
+/// `uniform` is in (0, 1); `modulus` m may be infinite (factor 1); `bonds_per_100_mm` is how many bonds of this length
+/// make 100 mm. Normalised so that the weakest of those has median factor 1: the median 100 mm wire breaks at the
+/// stated value whatever the spacing.
+pub fn weibull_factor(uniform: f64, modulus: f64, bonds_per_100_mm: f64) -> f64 {
+    if modulus.is_infinite() {
+        return 1.0;
+    }
+    // −ln(1 − u) is exponential with mean 1; the least of n of them has median ln 2 / n.
+    (-(-uniform).ln_1p() * bonds_per_100_mm / LN_2).powf(1.0 / modulus)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::random::uniform;
+
+    #[test]
+    fn median_wire_of_100_mm_breaks_at_the_stated_value() {
+        for (modulus, bonds) in [(12.0, 256), (30.0, 64)] {
+            let mut weakest: Vec<f64> = (0..2001)
+                .map(|wire| {
+                    (0..bonds)
+                        .map(|b| weibull_factor(uniform(3, wire, b), modulus, bonds as f64))
+                        .fold(f64::MAX, f64::min)
+                })
+                .collect();
+            weakest.sort_by(f64::total_cmp);
+            let median = weakest[1000];
+            assert!((median - 1.0).abs() < 3.0 / (modulus * 2001f64.sqrt()), "{modulus} {median}");
+        }
+    }
+
+    #[test]
+    fn compression_never_breaks_a_bond() {
+        let criterion = BeamStress { tensile: 1e6, shear: 1e9, moment_share: 1.0 };
+        let section = Section::round(0.2e-3);
+        let force = BondForce { axial: -1e4, bend: [1.0, 0.0], ..Default::default() };
+        assert_eq!(criterion.utilisation(&force, &section)[0], 0.0);
+    }
+}

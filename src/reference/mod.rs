@@ -1,0 +1,25 @@
+//! Floor 1: closed forms to verify against, and the numbers of the reference paper. Nothing here simulates.
+//!
+//! | module | what it answers |
+//! | --- | --- |
+//! | [`beam`] | cantilever, torsion bar, free vibration, Euler buckling, wave speed |
+//! | [`helix`] | lay angle, arc length, curvature and torsion of a helical wire |
+//! | [`hertz`] | duration and depth of an elastic collision of two spheres |
+//! | [`thornton`] | yield velocity and restitution of an elastoplastic collision |
+//! | [`mindlin`] | tangential force at constant normal force |
+//! | [`sliding`] | a sphere that slides until it rolls |
+//! | [`strand`] | stiffness and strength of a strand from its geometry |
+//! | [`plasticity`] | section limits of a round wire, its engineering curve, Considère's strain |
+//! | [`stability`] | exact critical step of uniform chains |
+//! | [`paper`] | what the reference paper prints |
+
+pub mod beam;
+pub mod helix;
+pub mod hertz;
+pub mod mindlin;
+pub mod paper;
+pub mod plasticity;
+pub mod sliding;
+pub mod stability;
+pub mod strand;
+pub mod thornton;

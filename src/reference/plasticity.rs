@@ -1,0 +1,192 @@
+//! Plastic limits of a round section, the engineering curve of a wire in uniform tension, Considère's strain.
+//!
+//! Source: Lubliner, *Plasticity Theory*, 1990, chapter 4; Considère, Ann. Ponts et Chaussées 9 (1885) 574.
+
+use std::f64::consts::PI;
+
+/// A round section of one yield stress.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// Radius r [m].
+    pub radius: f64,
+    /// Yield stress σ_y [Pa].
+    pub yield_stress: f64,
+}
+
+impl Section {
+    /// Axial force at yield, N_p = σ_y π r² [N].
+    pub fn plastic_force(&self) -> f64 {
+        self.yield_stress * PI * self.radius.powi(2)
+    }
+
+    /// Fully plastic bending moment, M_p = (4/3) σ_y r³ [N m].
+    pub fn plastic_moment(&self) -> f64 {
+        4.0 / 3.0 * self.yield_stress * self.radius.powi(3)
+    }
+
+    /// Bending moment at first yield, M_e = (π/4) σ_y r³ [N m].
+    pub fn first_yield_moment(&self) -> f64 {
+        PI / 4.0 * self.yield_stress * self.radius.powi(3)
+    }
+
+    /// Fully plastic torque, T_p = (2π/3)(σ_y/√3) r³ [N m] (von Mises).
+    pub fn plastic_torque(&self) -> f64 {
+        2.0 * PI / 3.0 * self.yield_stress / 3.0_f64.sqrt() * self.radius.powi(3)
+    }
+
+    /// Shear force at yield, V_p = (σ_y/√3) π r² [N] (von Mises).
+    pub fn plastic_shear(&self) -> f64 {
+        self.yield_stress / 3.0_f64.sqrt() * PI * self.radius.powi(2)
+    }
+}
+
+/// One point of a uniform tension test.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TensionPoint {
+    /// True plastic strain p [-].
+    pub plastic_strain: f64,
+    /// True stress σ_y(p) [Pa].
+    pub true_stress: f64,
+    /// True (logarithmic) strain ε = p + σ/E [-].
+    pub true_strain: f64,
+    /// Engineering strain e^ε − 1 [-].
+    pub engineering_strain: f64,
+    /// Engineering stress σ e^(−p), force over initial area [Pa].
+    pub engineering_stress: f64,
+}
+
+/// The point of uniform tension at true plastic strain `plastic_strain` p [-] with true stress `stress` σ_y(p) [Pa]
+/// and Young's modulus `young` E [Pa].
+///
+/// The area is A₀ e^(−p): plastic flow keeps the volume, elastic contraction is left out, as in the bonds (physics
+/// page, section 3). Counting the elastic strain too, σ e^(−ε), is lower by the factor e^(−σ/E), 0.3 % for copper.
+pub fn tension_point(plastic_strain: f64, stress: f64, young: f64) -> TensionPoint {
+    let true_strain = plastic_strain + stress / young;
+    TensionPoint {
+        plastic_strain,
+        true_stress: stress,
+        true_strain,
+        engineering_strain: true_strain.exp_m1(),
+        engineering_stress: stress * (-plastic_strain).exp(),
+    }
+}
+
+/// The point of uniform tension at engineering strain `strain` [-], for a hardening law `stress` σ_y(p) [Pa] that does
+/// not fall; below yield the wire is elastic (p = 0, σ = E ε).
+pub fn tension_at(strain: f64, stress: impl Fn(f64) -> f64, young: f64) -> TensionPoint {
+    let true_strain = strain.ln_1p();
+    if young * true_strain <= stress(0.0) {
+        return tension_point(0.0, young * true_strain, young);
+    }
+    // p + σ(p)/E grows with p, so the root is bracketed by 0 and ε.
+    let p = bisect(0.0, true_strain, |p| p + stress(p) / young - true_strain);
+    tension_point(p, stress(p), young)
+}
+
+/// Least plastic strain [-] in `0..=limit` at which dσ/dp has fallen to σ, so that the tension force stops growing and
+/// a neck can form; `None` when the wire strains uniformly up to `limit`.
+///
+/// `stress` is σ_y(p) [Pa], `slope` its derivative [Pa]. With the area A₀ e^(−p) the force σ A₀ e^(−p) peaks where
+/// dσ/dp = σ (Considère 1885).
+pub fn considere_strain(
+    stress: impl Fn(f64) -> f64,
+    slope: impl Fn(f64) -> f64,
+    limit: f64,
+) -> Option<f64> {
+    // A law may harden anew, so the first crossing is looked for in pieces before it is refined.
+    const PIECES: usize = 4000;
+    let excess = |p: f64| slope(p) - stress(p);
+    if excess(0.0) <= 0.0 {
+        return Some(0.0);
+    }
+    let at = |i: usize| limit * i as f64 / PIECES as f64;
+    (0..PIECES)
+        .find(|&i| excess(at(i + 1)) <= 0.0)
+        .map(|i| bisect(at(i), at(i + 1), excess))
+}
+
+/// Root of `f` between `a` and `b`, where it changes sign, to the last bits.
+fn bisect(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let rising = f(b) > f(a);
+    for _ in 0..200 {
+        let middle = 0.5 * (a + b);
+        if middle <= a || middle >= b {
+            break;
+        }
+        if (f(middle) > 0.0) == rising {
+            b = middle;
+        } else {
+            a = middle;
+        }
+    }
+    0.5 * (a + b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The section's limits are integrals of the stress over it; a fine sum over its points must agree.
+    #[test]
+    fn limits_are_integrals_over_the_section() {
+        let section = Section {
+            radius: 0.195e-3,
+            yield_stress: 90e6,
+        };
+        let n = 2000;
+        let dr = section.radius / n as f64;
+        let sum = |weight: fn(f64) -> f64| -> f64 {
+            (0..n)
+                .map(|i| weight((i as f64 + 0.5) * dr) * dr * section.yield_stress)
+                .sum()
+        };
+        let near = |value: f64, expected: f64| assert!((value / expected - 1.0).abs() < 1e-6);
+        near(section.plastic_force(), sum(|r| 2.0 * PI * r));
+        // |y| = r |sin θ|, and ∫|sin θ| dθ over the circle is 4.
+        near(section.plastic_moment(), sum(|r| 4.0 * r * r));
+        let root3 = 3.0_f64.sqrt();
+        near(section.plastic_torque() * root3, sum(|r| 2.0 * PI * r * r));
+        near(section.plastic_shear() * root3, sum(|r| 2.0 * PI * r));
+        near(
+            section.plastic_moment() / section.first_yield_moment(),
+            16.0 / (3.0 * PI),
+        );
+    }
+
+    /// For σ = K p^n the neck starts at p = n.
+    #[test]
+    fn considere_of_a_power_law_is_its_exponent() {
+        let (k, n) = (450e6, 0.31);
+        let strain = considere_strain(
+            |p: f64| k * p.powf(n),
+            |p: f64| n * k * p.powf(n - 1.0),
+            1.0,
+        );
+        assert!((strain.unwrap() - n).abs() < 1e-12);
+        let early = considere_strain(|p: f64| k * p.powf(n), |p| n * k * p.powf(n - 1.0), 0.2);
+        assert_eq!(early, None);
+    }
+
+    /// The engineering stress of the curve peaks at Considère's strain.
+    #[test]
+    fn engineering_stress_peaks_at_considere() {
+        let stress = |p: f64| 80e6 + 200e6 * (1.0 - (-8.0 * p).exp()) + 150e6 * p;
+        let slope = |p: f64| 1600e6 * (-8.0 * p).exp() + 150e6;
+        let p = considere_strain(stress, slope, 1.0).unwrap();
+        let nominal = |p: f64| tension_point(p, stress(p), 115e9).engineering_stress;
+        assert!(nominal(p) > nominal(p - 1e-3) && nominal(p) > nominal(p + 1e-3));
+    }
+
+    #[test]
+    fn tension_at_inverts_tension_point() {
+        let stress = |p: f64| 80e6 + 300e6 * p.sqrt();
+        let young = 115e9;
+        let point = tension_point(0.2, stress(0.2), young);
+        let back = tension_at(point.engineering_strain, stress, young);
+        assert!((back.plastic_strain - 0.2).abs() < 1e-12);
+        assert!((back.engineering_stress / point.engineering_stress - 1.0).abs() < 1e-12);
+        let elastic = tension_at(3e-4, stress, young);
+        assert_eq!(elastic.plastic_strain, 0.0);
+        assert!((elastic.true_stress - young * 3e-4_f64.ln_1p()).abs() < 1.0);
+    }
+}

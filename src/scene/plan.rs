@@ -1,0 +1,226 @@
+//! `Plan`: what a scene needs, each component present or absent with its reason.
+
+use super::spec::{BondLawSpec, DriveSpec, GripKind, NormalSpec, PathSpec, PlanMode, Shape, Spec, TangentialSpec};
+use std::fmt;
+
+/// Whether contacts are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactPlan {
+    /// Never.
+    Absent,
+    /// From the first step.
+    Present,
+    /// From the first rupture on: a lone wire can only touch itself once it has snapped.
+    AfterRupture,
+}
+
+/// One line of a plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Component {
+    /// What it is.
+    pub name: &'static str,
+    /// Whether it runs, in a word or two.
+    pub state: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// What a run computes. The engine builds its stages from this and from nothing else.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Whether there are bonds.
+    pub bonds: bool,
+    /// Whether particles turn: spins, shear, bending, torsion.
+    pub rotations: bool,
+    /// Contacts.
+    pub contacts: ContactPlan,
+    /// Whether bonds can break.
+    pub rupture: bool,
+    /// Whether each bond has its own rupture value.
+    pub scatter: bool,
+    /// Every component with its reason, for people.
+    pub components: Vec<Component>,
+}
+
+impl Plan {
+    /// Decides what `spec` needs.
+    pub fn new(spec: &Spec) -> Self {
+        let general = spec.plan == PlanMode::General;
+        let wires = spec.strand.as_ref().map_or(0, |s| s.layers.iter().map(|l| l.wires).sum()) + spec.wires.len();
+        let bodies = wires + spec.spheres.len();
+        let bonds = wires > 0;
+        let rupture = bonds && spec.bond.rupture.is_some();
+        let scatter = spec.bond.rupture.as_ref().is_some_and(|r| r.weibull_modulus.is_finite());
+        let contacts = contacts(spec, bodies, rupture, general);
+        let rotations = rotations(spec, contacts.0, general);
+        let components = vec![
+            bond_component(spec, bonds),
+            Component { name: "rotations", state: on(rotations.0), reason: rotations.1.clone() },
+            plastic_component(spec, bonds),
+            rupture_component(spec, rupture),
+            Component {
+                name: "scatter",
+                state: on(scatter),
+                reason: match &spec.bond.rupture {
+                    Some(r) if scatter => format!("Weibull modulus {}", r.weibull_modulus),
+                    Some(_) => "Weibull modulus is infinite: every bond has the stated rupture value".into(),
+                    None => "bonds never break".into(),
+                },
+            },
+            contact_component(spec, &contacts),
+            tangential_component(spec, contacts.0),
+            Component {
+                name: "grips",
+                state: on(spec.grip.is_some() || !spec.holds.is_empty()),
+                reason: match &spec.grip {
+                    Some(g) => match g.kind {
+                        GripKind::All => "every wire is held at both ends".into(),
+                        GripKind::Jaw { pressure } => format!("outer layer clamped at {} MPa", pressure / 1e6),
+                    },
+                    None if spec.holds.is_empty() => "free bodies".into(),
+                    None => format!("{} holds or loads on single bodies", spec.holds.len()),
+                },
+            },
+            Component { name: "energy ledger", state: on(true), reason: "the tables ask for it".into() },
+        ];
+        Self { bonds, rotations: rotations.0, contacts: contacts.0, rupture, scatter, components }
+    }
+}
+
+fn on(yes: bool) -> String {
+    if yes { "runs" } else { "left out" }.into()
+}
+
+fn bond_component(spec: &Spec, bonds: bool) -> Component {
+    let law = match spec.bond.law {
+        BondLawSpec::Elastic => "elastic",
+        BondLawSpec::ElastoPlastic(_) => "elasto-plastic",
+    };
+    let reason = if bonds { format!("wires with the {law} law") } else { "no wires".into() };
+    Component { name: "bonds", state: on(bonds), reason }
+}
+
+fn plastic_component(spec: &Spec, bonds: bool) -> Component {
+    let plastic = bonds && matches!(spec.bond.law, BondLawSpec::ElastoPlastic(_));
+    let reason = if plastic {
+        "bonds harden and thin"
+    } else if bonds {
+        "the elastic law has no history"
+    } else {
+        "no wires"
+    };
+    Component { name: "plastic state", state: on(plastic), reason: reason.into() }
+}
+
+fn rupture_component(spec: &Spec, rupture: bool) -> Component {
+    use super::spec::RuptureCriterion as C;
+    let reason = match &spec.bond.rupture {
+        Some(r) if rupture => match r.criterion {
+            C::PlasticStrain { strain } => format!("plastic-strain at {} %", 100.0 * strain),
+            C::BeamStress { tensile, shear, .. } => {
+                format!("beam-stress at {} MPa tension, {} MPa shear", tensile / 1e6, shear / 1e6)
+            }
+            C::FibreStrain { strain } => format!("fibre-strain at {} %", 100.0 * strain),
+        },
+        Some(_) => "no wires".into(),
+        None => "the scene states no rupture criterion".into(),
+    };
+    Component { name: "rupture", state: on(rupture), reason }
+}
+
+fn contacts(spec: &Spec, bodies: usize, rupture: bool, general: bool) -> (ContactPlan, String) {
+    let straight = spec.strand.is_none() && spec.wires.iter().all(|w| matches!(w.path, PathSpec::Straight { .. }))
+        || spec.strand.as_ref().is_some_and(|s| s.layers.iter().all(|l| l.pitch.is_infinite()));
+    if spec.contact.is_none() {
+        (ContactPlan::Absent, "the scene has no contact law".into())
+    } else if general {
+        (ContactPlan::Present, "plan = \"general\"".into())
+    } else if bodies > 1 {
+        (ContactPlan::Present, format!("{bodies} bodies can touch"))
+    } else if !straight || bends(spec) {
+        (ContactPlan::Present, "a wire that is curved or bends can touch itself".into())
+    } else if rupture {
+        (ContactPlan::AfterRupture, "one straight wire; its pieces can touch once it has snapped".into())
+    } else {
+        (ContactPlan::Absent, "one straight body that never breaks touches nothing".into())
+    }
+}
+
+fn contact_component(spec: &Spec, contacts: &(ContactPlan, String)) -> Component {
+    let state = match contacts.0 {
+        ContactPlan::Absent => "left out",
+        ContactPlan::Present => "runs",
+        ContactPlan::AfterRupture => "from the first rupture on",
+    };
+    let law = spec.contact.as_ref().map(|c| {
+        let shape = match c.shape {
+            Shape::Sphere => "spheres",
+            Shape::Capsule => "capsules",
+        };
+        match c.normal {
+            NormalSpec::Hertz => format!("; {shape}, hertz"),
+            NormalSpec::Thornton { limiting_pressure } => {
+                format!("; {shape}, thornton with limiting pressure {:.4} MPa", limiting_pressure / 1e6)
+            }
+        }
+    });
+    Component { name: "contacts", state: state.into(), reason: format!("{}{}", contacts.1, law.unwrap_or_default()) }
+}
+
+fn tangential_component(spec: &Spec, contacts: ContactPlan) -> Component {
+    let law = spec.contact.as_ref().and_then(|c| c.tangential);
+    let runs = contacts != ContactPlan::Absent && law.is_some();
+    let reason = match law {
+        _ if contacts == ContactPlan::Absent => "no contacts".into(),
+        Some(TangentialSpec::Mindlin) => "mindlin".into(),
+        Some(TangentialSpec::MindlinDeresiewicz) => "mindlin-deresiewicz".into(),
+        None => "frictionless".to_string(),
+    };
+    Component { name: "friction", state: on(runs), reason }
+}
+
+/// Whether anything turns or pushes the bodies sideways.
+fn bends(spec: &Spec) -> bool {
+    let grip = spec.grip.as_ref().is_some_and(|g| {
+        let pushes = match g.drive {
+            DriveSpec::Speed(speed) => speed < 0.0,
+            DriveSpec::Cyclic { .. } => true,
+        };
+        pushes || g.rotation_rate != 0.0 || g.free_rotation || matches!(g.kind, GripKind::Jaw { .. })
+    });
+    let wire = spec.wires.iter().any(|w| w.velocity.length() > 0.0 || w.spin.length() > 0.0);
+    grip || wire || !spec.holds.is_empty()
+}
+
+fn rotations(spec: &Spec, contacts: ContactPlan, general: bool) -> (bool, String) {
+    let along_z = |w: &super::spec::WireSpec| match &w.path {
+        PathSpec::Straight { from, to } => from.x == to.x && from.y == to.y,
+        PathSpec::File { .. } => false,
+    };
+    let straight = spec.wires.iter().all(along_z)
+        && spec.strand.as_ref().is_none_or(|s| s.layers.iter().all(|l| l.pitch.is_infinite()));
+    let spins = spec.spheres.iter().any(|s| s.spin.length() > 0.0);
+    let friction = spec.contact.as_ref().is_some_and(|c| c.tangential.is_some() && c.friction > 0.0);
+    if general {
+        (true, "plan = \"general\"".into())
+    } else if !straight {
+        (true, "wires are curved: they bend and twist".into())
+    } else if bends(spec) {
+        (true, "holds, loads or drives can bend or turn the bodies".into())
+    } else if contacts == ContactPlan::Present && (friction || spec.bond.rupture.is_some() || !spec.wires.is_empty()) {
+        (true, "contacts can turn particles".into())
+    } else if spins {
+        (true, "bodies spin".into())
+    } else {
+        (false, "straight bodies under axial load: nothing turns".into())
+    }
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in &self.components {
+            writeln!(f, "  {:<14} {:<26} {}", c.name, c.state, c.reason)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,575 @@
+//! A scene as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference
+//! of all keys: each with its unit, its default and its meaning.
+//!
+//! A quantity is text with a unit, `"39 mm"`; any unit of the right kind will do. A ratio may be a plain number or
+//! per cent, `0.12` or `"12 %"`. Unknown keys are refused.
+
+use serde::Deserialize;
+use serde::de::{self, Deserializer, MapAccess, Visitor};
+use std::fmt;
+
+/// A quantity before its unit is read: text or a plain number.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Scalar {
+    /// `"39 mm"`.
+    Text(String),
+    /// `0.2`.
+    Number(f64),
+}
+
+/// A vector of three quantities.
+pub type Triple = [Scalar; 3];
+
+/// A whole scene file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawScene {
+    /// Name of the scene, also of its folder under `out/`. Default: the file's name without `.toml`.
+    pub name: Option<String>,
+    /// What the scene shows, one or more sentences. Required.
+    pub about: Option<String>,
+    /// Seed of the scatter [-]. Default 1.
+    pub seed: Option<i64>,
+    /// Particle spacing over wire diameter [-]. Default 1: touching spheres.
+    pub spacing: Option<Scalar>,
+    /// `auto` (default): only the stages that the scene needs; `general`: every stage, for comparison.
+    pub plan: Option<RawPlan>,
+    /// The wire material.
+    pub material: Option<RawMaterial>,
+    /// Bonds along the wires. Absent: elastic, undamped, unbreakable.
+    pub bond: Option<RawBond>,
+    /// Contacts between surfaces. Absent: none at all.
+    pub contact: Option<RawContact>,
+    /// A strand laid up in helical layers around z.
+    pub strand: Option<RawStrand>,
+    /// `[[wire]]`: wires given one by one.
+    #[serde(default)]
+    pub wire: Vec<RawWire>,
+    /// `[[sphere]]`: free spheres.
+    #[serde(default)]
+    pub sphere: Vec<RawSphere>,
+    /// The two grips. Absent: free bodies.
+    pub grip: Option<RawGrip>,
+    /// `[[hold]]`: holds and loads on single bodies.
+    #[serde(default)]
+    pub hold: Vec<RawHold>,
+    /// Time stepping.
+    #[serde(default)]
+    pub time: RawTime,
+    /// When to stop. At least one key is required.
+    #[serde(default)]
+    pub stop: RawStop,
+    /// What to write and how often.
+    #[serde(default)]
+    pub output: RawOutput,
+}
+
+/// `plan`.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawPlan {
+    /// Only what the scene needs.
+    Auto,
+    /// Everything.
+    General,
+}
+
+/// `[material]`. Defaults: annealed copper.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawMaterial {
+    /// Density, "kg/m^3". Default "8960 kg/m^3".
+    pub density: Option<Scalar>,
+    /// Young's modulus, "GPa". Default "115 GPa".
+    pub young: Option<Scalar>,
+    /// Poisson's ratio, above -1 and below 0.5 [-]. Default 0.34.
+    pub poisson: Option<Scalar>,
+}
+
+/// `[bond]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawBond {
+    /// `elastic` (default) or `elasto-plastic`.
+    pub law: Option<RawBondLaw>,
+    /// Damping as a fraction of critical [-]: one number for all modes, or `{ axial, shear, bending, torsion }`.
+    /// Default 0.
+    pub damping: Option<RawDamping>,
+    /// Hardening of the elasto-plastic law; required there and refused elsewhere.
+    pub hardening: Option<RawHardening>,
+    /// When a bond breaks. Absent: never.
+    pub rupture: Option<RawRupture>,
+}
+
+/// `bond.law`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawBondLaw {
+    /// Linear in all modes.
+    Elastic,
+    /// Isotropic hardening, coupled section plasticity.
+    ElastoPlastic,
+}
+
+/// `bond.damping`: one number or one per mode.
+#[derive(Debug, Clone)]
+pub enum RawDamping {
+    /// The same in all modes.
+    All(Scalar),
+    /// Mode by mode.
+    Modes(RawDampingModes),
+}
+
+/// `bond.damping` mode by mode.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawDampingModes {
+    /// Axial [-]. Default 0.
+    pub axial: Option<Scalar>,
+    /// Shear [-]. Default 0.
+    pub shear: Option<Scalar>,
+    /// Bending [-]. Default 0.
+    pub bending: Option<Scalar>,
+    /// Torsion [-]. Default 0.
+    pub torsion: Option<Scalar>,
+}
+
+/// `bond.hardening`. Which keys belong to which form stands at each key.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawHardening {
+    /// `voce`: σ₀ + Q (1 − e^(−b p)) + H p; `swift`: K (ε₀ + p)^n; `ludwik`: σ₀ + K p^n; `table`;
+    /// `engineering-curve`. Required.
+    pub form: Option<RawForm>,
+    /// σ₀ of voce and ludwik, "MPa". Required there.
+    pub yield_stress: Option<Scalar>,
+    /// Q of voce, "MPa". Default 0.
+    pub saturation: Option<Scalar>,
+    /// b of voce [-]. Default 0; required with a saturation.
+    pub rate: Option<Scalar>,
+    /// H of voce, "MPa". Default 0.
+    pub linear: Option<Scalar>,
+    /// K of swift and ludwik, "MPa". Required there.
+    pub strength: Option<Scalar>,
+    /// ε₀ of swift [-]. Required there.
+    pub prestrain: Option<Scalar>,
+    /// n of swift and ludwik [-]. Required there.
+    pub exponent: Option<Scalar>,
+    /// Points [strain, stress]. `table`: true plastic strain, from 0 on, and true stress. `engineering-curve`: the
+    /// engineering curve of a single wire, converted with Young's modulus.
+    pub points: Option<Vec<[Scalar; 2]>>,
+}
+
+/// `bond.hardening.form`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawForm {
+    /// Voce with a linear term.
+    Voce,
+    /// Swift.
+    Swift,
+    /// Ludwik.
+    Ludwik,
+    /// True stress over true plastic strain.
+    Table,
+    /// Engineering stress over engineering strain.
+    EngineeringCurve,
+}
+
+/// `bond.rupture`. Which keys belong to which criterion stands at each key.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawRupture {
+    /// `plastic-strain`, `beam-stress` or `fibre-strain`. Required.
+    pub criterion: Option<RawCriterion>,
+    /// Rupture strain of plastic-strain and fibre-strain [-]. Required there.
+    pub strain: Option<Scalar>,
+    /// σ_c of beam-stress, "MPa". Required there.
+    pub tensile: Option<Scalar>,
+    /// τ_c of beam-stress, "MPa". Required there.
+    pub shear: Option<Scalar>,
+    /// β_m of beam-stress, 0 to 1 [-]. Default 1.
+    pub moment_share: Option<Scalar>,
+    /// Weibull modulus of the scatter of the rupture value from bond to bond [-]. Default "inf": no scatter.
+    pub weibull_modulus: Option<Scalar>,
+}
+
+/// `bond.rupture.criterion`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawCriterion {
+    /// Equivalent plastic strain; needs the elasto-plastic law.
+    PlasticStrain,
+    /// Beam stresses at the surface.
+    BeamStress,
+    /// Strain of the outermost fibre.
+    FibreStrain,
+}
+
+/// `[contact]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawContact {
+    /// `hertz`, `thornton`, or `none` for no contacts at all. Required.
+    pub normal: Option<RawNormal>,
+    /// `mindlin` (default), `mindlin-deresiewicz`, or `none` for frictionless.
+    pub tangential: Option<RawTangential>,
+    /// Coulomb friction coefficient [-]. Default 0.2; without effect when `tangential = "none"`.
+    pub friction: Option<Scalar>,
+    /// Shape of a wire in contact: `sphere` (default), a chain of them, or `capsule`, a smooth wire.
+    pub shape: Option<RawShape>,
+    /// Thornton: limiting pressure over yield stress [-]. Default 2.8. Needs an elasto-plastic bond law.
+    pub hardness_factor: Option<Scalar>,
+    /// Thornton: plastic strain at which that yield stress is taken [-]; Tabor's representative strain is "8 %".
+    /// Default 0.
+    pub hardness_strain: Option<Scalar>,
+    /// Thornton: limiting contact pressure, "MPa", instead of the two keys above.
+    pub limiting_pressure: Option<Scalar>,
+    /// Viscous damping as a fraction of critical [-]. Default 0.
+    pub damping: Option<Scalar>,
+    /// Skin of the neighbour list over the largest diameter [-]. Default 0.15.
+    pub skin: Option<Scalar>,
+}
+
+/// `contact.normal`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawNormal {
+    /// Elastic.
+    Hertz,
+    /// Elastoplastic.
+    Thornton,
+    /// No contacts.
+    None,
+}
+
+/// `contact.tangential`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawTangential {
+    /// No-slip with Coulomb cap.
+    Mindlin,
+    /// Partial slip.
+    MindlinDeresiewicz,
+    /// Frictionless.
+    None,
+}
+
+/// `contact.shape`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawShape {
+    /// A chain of spheres.
+    Sphere,
+    /// Swept segments.
+    Capsule,
+}
+
+/// `[strand]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawStrand {
+    /// Length along z, "mm". Required.
+    pub length: Option<Scalar>,
+    /// Wire diameter of layers that give none, "mm".
+    pub wire_diameter: Option<Scalar>,
+    /// Pitch of layers that give none, "mm", or "inf" for straight wires.
+    pub pitch: Option<Scalar>,
+    /// Lay direction of layers that give none. Default `right`.
+    pub lay: Option<RawLay>,
+    /// `[[strand.layer]]`, from the inside out. At least one.
+    #[serde(default)]
+    pub layer: Vec<RawLayer>,
+}
+
+/// `[[strand.layer]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawLayer {
+    /// Name, used in tables. Default "layer N", N from 1.
+    pub name: Option<String>,
+    /// Number of wires. Required.
+    pub wires: Option<i64>,
+    /// Lay radius (axis to wire centre), "mm", or `auto` (default): the least radius without overlap; 0 for a single
+    /// wire in the first layer.
+    pub lay_radius: Option<Scalar>,
+    /// Wire diameter, "mm". Default `strand.wire_diameter`.
+    pub wire_diameter: Option<Scalar>,
+    /// Pitch, "mm" or "inf". Default `strand.pitch`; "inf" for a single wire on the axis when that is absent too.
+    pub pitch: Option<Scalar>,
+    /// Lay direction. Default `strand.lay`.
+    pub lay: Option<RawLay>,
+    /// Angle of the first wire at z = 0, "deg". Default 0.
+    pub phase: Option<Scalar>,
+}
+
+/// Lay direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawLay {
+    /// Z lay.
+    Right,
+    /// S lay.
+    Left,
+}
+
+/// `[[wire]]`: either `from` and `to`, or `file`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawWire {
+    /// Wire diameter, "mm". Required, unless the centreline file gives it.
+    pub diameter: Option<Scalar>,
+    /// Name of the layer it is counted in. Default: the centreline file's, else "wire".
+    pub layer: Option<String>,
+    /// First point of a straight wire, three lengths.
+    pub from: Option<Triple>,
+    /// Last point of a straight wire, three lengths.
+    pub to: Option<Triple>,
+    /// Centreline text file, relative to the scene's folder.
+    pub file: Option<String>,
+    /// Which wire of the file, from 0. May be left out when the file has one wire.
+    pub index: Option<i64>,
+    /// Take all wires of the file. Default false.
+    pub all: Option<bool>,
+    /// Initial velocity, three velocities. Default 0.
+    pub velocity: Option<Triple>,
+    /// Initial spin, three angular velocities. Default 0.
+    pub spin: Option<Triple>,
+}
+
+/// `[[sphere]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawSphere {
+    /// Diameter, "mm". Required.
+    pub diameter: Option<Scalar>,
+    /// Centre, three lengths. Required.
+    pub position: Option<Triple>,
+    /// Initial velocity, three velocities. Default 0.
+    pub velocity: Option<Triple>,
+    /// Initial spin, three angular velocities. Default 0.
+    pub spin: Option<Triple>,
+}
+
+/// `[grip]`: either `speed`, or `displacement_amplitude` and `frequency`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawGrip {
+    /// `all` (default): every wire is held; `jaw`: the outermost layer only, pressed inwards.
+    pub kind: Option<RawGripKind>,
+    /// Length of each grip along z, "mm". Required.
+    pub length: Option<Scalar>,
+    /// Radial clamp pressure of a jaw, "MPa". Required there and refused elsewhere.
+    pub clamp_pressure: Option<Scalar>,
+    /// Constant speed of the upper grip along z, "m/s"; positive pulls.
+    pub speed: Option<Scalar>,
+    /// Amplitude of a sinusoidal displacement, "mm".
+    pub displacement_amplitude: Option<Scalar>,
+    /// Frequency of that displacement, "Hz".
+    pub frequency: Option<Scalar>,
+    /// Rotation rate of the upper grip about z, "rad/s". Default 0.
+    pub rotation_rate: Option<Scalar>,
+    /// The upper grip turns freely about z. Default false.
+    pub free_rotation: Option<bool>,
+}
+
+/// `grip.kind`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawGripKind {
+    /// Every wire.
+    All,
+    /// The outermost layer.
+    Jaw,
+}
+
+/// `[[hold]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawHold {
+    /// Body number from 0: strand wires inside out, then `[[wire]]`, then `[[sphere]]`. Required.
+    pub body: Option<i64>,
+    /// `start`, `end` or `all` (default).
+    pub part: Option<RawPart>,
+    /// Prescribed components, of `x y z rx ry rz`. Default none.
+    #[serde(default)]
+    pub fix: Vec<RawFix>,
+    /// Velocity of the prescribed x, y, z, three velocities. Default 0.
+    pub velocity: Option<Triple>,
+    /// Spin of the prescribed rx, ry, rz, three angular velocities. Default 0.
+    pub spin: Option<Triple>,
+    /// Total force on the part, three forces. Default 0.
+    pub force: Option<Triple>,
+    /// Total moment on the part, three moments. Default 0.
+    pub moment: Option<Triple>,
+    /// Time over which force and moment rise smoothly from zero, "ms". Default 0.
+    pub ramp: Option<Scalar>,
+}
+
+/// `hold.part`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawPart {
+    /// First particle.
+    Start,
+    /// Last particle.
+    End,
+    /// All particles.
+    All,
+}
+
+/// An element of `hold.fix`, in the order of [`super::spec::HoldSpec::fixed`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawFix {
+    /// Displacement along x.
+    X,
+    /// Displacement along y.
+    Y,
+    /// Displacement along z.
+    Z,
+    /// Rotation about x.
+    Rx,
+    /// Rotation about y.
+    Ry,
+    /// Rotation about z.
+    Rz,
+}
+
+/// `[time]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawTime {
+    /// Fraction of the bound on the stable step, above 0 and at most 1 [-]. Default 0.8.
+    pub safety: Option<Scalar>,
+    /// Fixed step, "s". Default: from the bound.
+    pub step: Option<Scalar>,
+    /// Factor on mass [-]. Default 1.
+    pub mass_scale: Option<Scalar>,
+    /// Factor on rotational inertia [-]. Default 1.
+    pub inertia_scale: Option<Scalar>,
+    /// Kinetic over internal energy above which the run says that it is not quasi-static [-]. Default "5 %".
+    pub kinetic_limit: Option<Scalar>,
+    /// Relative difference of the grip forces above which the run says so [-]. Default "5 %".
+    pub mismatch_limit: Option<Scalar>,
+}
+
+/// `[stop]`: the first that holds ends the run.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawStop {
+    /// Grip displacement over gauge length [-]; needs a grip.
+    pub strain: Option<Scalar>,
+    /// Nominal stress over its peak, after a rupture [-]; needs a grip and a rupture criterion.
+    pub stress_fraction: Option<Scalar>,
+    /// Simulated time, "ms".
+    pub time: Option<Scalar>,
+    /// Number of steps.
+    pub steps: Option<i64>,
+}
+
+/// `[output]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawOutput {
+    /// Number of curve samples over the planned run. Default 2000.
+    pub samples: Option<i64>,
+    /// Number of snapshots (recording and frames) over the planned run. Default 160.
+    pub snapshots: Option<i64>,
+    /// How many times denser snapshots are between the first rupture and the end [-]. Default 4.
+    pub rupture_density: Option<Scalar>,
+    /// Width and height of frames in pixels. Default [1280, 720].
+    pub frame_size: Option<[i64; 2]>,
+    /// What colours the wires: `stress` (default), `plastic-strain`, `layer`, `wire`, `velocity`.
+    pub colour: Option<RawColour>,
+}
+
+/// `output.colour`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RawColour {
+    /// True axial stress.
+    Stress,
+    /// Equivalent plastic strain.
+    PlasticStrain,
+    /// Layer.
+    Layer,
+    /// Wire.
+    Wire,
+    /// Speed.
+    Velocity,
+}
+
+impl fmt::Display for Scalar {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Scalar::Text(text) => write!(f, "{text:?}"),
+            Scalar::Number(number) => write!(f, "{number}"),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Scalar {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ScalarVisitor)
+    }
+}
+
+struct ScalarVisitor;
+
+impl Visitor<'_> for ScalarVisitor {
+    type Value = Scalar;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or text with a unit")
+    }
+
+    fn visit_str<E: de::Error>(self, text: &str) -> Result<Scalar, E> {
+        Ok(Scalar::Text(text.to_owned()))
+    }
+
+    fn visit_i64<E: de::Error>(self, number: i64) -> Result<Scalar, E> {
+        Ok(Scalar::Number(number as f64))
+    }
+
+    fn visit_u64<E: de::Error>(self, number: u64) -> Result<Scalar, E> {
+        Ok(Scalar::Number(number as f64))
+    }
+
+    fn visit_f64<E: de::Error>(self, number: f64) -> Result<Scalar, E> {
+        Ok(Scalar::Number(number))
+    }
+}
+
+impl<'de> Deserialize<'de> for RawDamping {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(DampingVisitor)
+    }
+}
+
+struct DampingVisitor;
+
+impl<'de> Visitor<'de> for DampingVisitor {
+    type Value = RawDamping;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or { axial, shear, bending, torsion }")
+    }
+
+    fn visit_str<E: de::Error>(self, text: &str) -> Result<RawDamping, E> {
+        ScalarVisitor.visit_str(text).map(RawDamping::All)
+    }
+
+    fn visit_i64<E: de::Error>(self, number: i64) -> Result<RawDamping, E> {
+        ScalarVisitor.visit_i64(number).map(RawDamping::All)
+    }
+
+    fn visit_f64<E: de::Error>(self, number: f64) -> Result<RawDamping, E> {
+        ScalarVisitor.visit_f64(number).map(RawDamping::All)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RawDamping, A::Error> {
+        RawDampingModes::deserialize(de::value::MapAccessDeserializer::new(map))
+            .map(RawDamping::Modes)
+    }
+}

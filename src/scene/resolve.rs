@@ -1,0 +1,351 @@
+//! Raw tables → [`Spec`]: units read, defaults filled in, values checked against each other. Every error points at the
+//! key that is wrong.
+
+use super::at::{At, Range};
+use super::raw::*;
+use super::spec::*;
+use super::{hardening, resolve_bodies, resolve_drive};
+use crate::base::error::Result;
+use crate::base::units::Dimension;
+use std::path::Path;
+
+/// Young's modulus of annealed copper where a scene gives none [Pa].
+const COPPER_YOUNG: f64 = 115e9;
+/// Density of copper where a scene gives none [kg/m³].
+const COPPER_DENSITY: f64 = 8960.0;
+/// Poisson's ratio of copper where a scene gives none [-].
+const COPPER_POISSON: f64 = 0.34;
+/// Friction between bare copper wires where a scene gives none [-] (the reference paper's).
+const FRICTION: f64 = 0.2;
+/// Limiting contact pressure over yield stress [-] (Tabor 1951: hardness is 2.8 to 3 times the flow stress).
+const HARDNESS_FACTOR: f64 = 2.8;
+/// Neighbour skin over the largest diameter [-].
+const SKIN: f64 = 0.15;
+/// Side of a frame, least and greatest [pixels].
+const FRAME_SIDE: std::ops::RangeInclusive<i64> = 16..=8192;
+
+/// Resolves a scene. `name` is that of its file, `folder` where its centreline files are looked for.
+pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Result<Spec> {
+    let material = material(&at.key("material"), raw.material.as_ref())?;
+    let bond = bond(&at.key("bond"), raw.bond.as_ref(), &material)?;
+    let strand = raw
+        .strand
+        .as_ref()
+        .map(|raw| resolve_bodies::strand(&at.key("strand"), raw))
+        .transpose()?;
+    let wires = resolve_bodies::wires(&at.key("wire"), &raw.wire, folder)?;
+    let spheres = resolve_bodies::spheres(&at.key("sphere"), &raw.sphere)?;
+    if strand.is_none() && wires.is_empty() && spheres.is_empty() {
+        return Err(at.error(
+            "the scene has no body",
+            "add a [strand], a [[wire]] or a [[sphere]]",
+        ));
+    }
+    let bodies = resolve_bodies::count(strand.as_ref(), &wires, &spheres);
+    let extent = resolve_bodies::extent(strand.as_ref(), &wires);
+    let grip = raw
+        .grip
+        .as_ref()
+        .map(|raw| resolve_drive::grip(&at.key("grip"), raw, extent))
+        .transpose()?;
+    Ok(Spec {
+        name: scene_name(at, raw, name)?,
+        about: about(at, raw)?,
+        seed: at.count_or("seed", raw.seed, 1, 0)?,
+        contact: contact(&at.key("contact"), raw.contact.as_ref(), &bond)?,
+        spacing: at.ratio_or("spacing", &raw.spacing, 1.0, Range::Positive)?,
+        holds: resolve_drive::holds(&at.key("hold"), &raw.hold, bodies)?,
+        time: time(&at.key("time"), &raw.time)?,
+        stop: resolve_drive::stop(
+            &at.key("stop"),
+            &raw.stop,
+            grip.as_ref(),
+            bond.rupture.is_some(),
+        )?,
+        output: output(&at.key("output"), &raw.output)?,
+        plan: match raw.plan {
+            None | Some(RawPlan::Auto) => PlanMode::Auto,
+            Some(RawPlan::General) => PlanMode::General,
+        },
+        material,
+        bond,
+        strand,
+        wires,
+        spheres,
+        grip,
+    })
+}
+
+fn scene_name(at: &At, raw: &RawScene, file: &str) -> Result<String> {
+    let Some(name) = &raw.name else {
+        return Ok(file.to_owned());
+    };
+    let allowed = |c: char| c.is_alphanumeric() || "-_.+".contains(c);
+    if name.is_empty() || name.starts_with('.') || !name.chars().all(allowed) {
+        let what = format!("`name` is {name:?}, which cannot name a folder");
+        return Err(at.key("name").error(what, "use letters, digits, - and _"));
+    }
+    Ok(name.clone())
+}
+
+fn about(at: &At, raw: &RawScene) -> Result<String> {
+    let about = raw
+        .about
+        .as_ref()
+        .ok_or_else(|| at.missing("about", "\"What this scene shows.\""))?;
+    match about.trim() {
+        "" => Err(at
+            .key("about")
+            .error("`about` is empty", "say in a sentence what the scene shows")),
+        text => Ok(text.to_owned()),
+    }
+}
+
+fn material(at: &At, raw: Option<&RawMaterial>) -> Result<Material> {
+    let none = RawMaterial::default();
+    let raw = raw.unwrap_or(&none);
+    let density = at.optional("density", &raw.density, Dimension::Density, Range::Positive)?;
+    let young = at.optional("young", &raw.young, Dimension::Pressure, Range::Positive)?;
+    Ok(Material {
+        density: density.unwrap_or(COPPER_DENSITY),
+        young: young.unwrap_or(COPPER_YOUNG),
+        poisson: at.ratio_or("poisson", &raw.poisson, COPPER_POISSON, Range::Poisson)?,
+    })
+}
+
+fn bond(at: &At, raw: Option<&RawBond>, material: &Material) -> Result<BondSpec> {
+    let none = RawBond::default();
+    let raw = raw.unwrap_or(&none);
+    let law = match raw.law.unwrap_or(RawBondLaw::Elastic) {
+        RawBondLaw::Elastic => {
+            at.refuse(
+                "hardening",
+                &raw.hardening,
+                "has no effect under the elastic bond law",
+            )?;
+            BondLawSpec::Elastic
+        }
+        RawBondLaw::ElastoPlastic => {
+            let example = "{ form = \"voce\", yield_stress = \"90 MPa\" }";
+            let given = raw
+                .hardening
+                .as_ref()
+                .ok_or_else(|| at.missing("hardening", example))?;
+            BondLawSpec::ElastoPlastic(hardening::resolve(
+                &at.key("hardening"),
+                given,
+                material.young,
+            )?)
+        }
+    };
+    let rupture = raw
+        .rupture
+        .as_ref()
+        .map(|raw| rupture(&at.key("rupture"), raw, &law))
+        .transpose()?;
+    Ok(BondSpec {
+        damping: damping(at, raw.damping.as_ref())?,
+        law,
+        rupture,
+    })
+}
+
+fn damping(at: &At, raw: Option<&RawDamping>) -> Result<[f64; 4]> {
+    match raw {
+        None => Ok([0.0; 4]),
+        Some(RawDamping::All(raw)) => {
+            let value = at
+                .key("damping")
+                .quantity(raw, Dimension::Ratio, Range::NotNegative)?;
+            Ok([value; 4])
+        }
+        Some(RawDamping::Modes(raw)) => {
+            let at = at.key("damping");
+            let mode = |name, raw| at.ratio_or(name, raw, 0.0, Range::NotNegative);
+            Ok([
+                mode("axial", &raw.axial)?,
+                mode("shear", &raw.shear)?,
+                mode("bending", &raw.bending)?,
+                mode("torsion", &raw.torsion)?,
+            ])
+        }
+    }
+}
+
+fn rupture(at: &At, raw: &RawRupture, law: &BondLawSpec) -> Result<RuptureSpec> {
+    let form = raw
+        .criterion
+        .ok_or_else(|| at.missing("criterion", "\"plastic-strain\""))?;
+    let beam = form == RawCriterion::BeamStress;
+    if beam {
+        at.refuse(
+            "strain",
+            &raw.strain,
+            "does not belong to beam-stress, which takes tensile, shear and moment_share",
+        )?;
+    } else {
+        let why = "belongs to beam-stress only; this criterion takes strain";
+        at.refuse("tensile", &raw.tensile, why)?;
+        at.refuse("shear", &raw.shear, why)?;
+        at.refuse("moment_share", &raw.moment_share, why)?;
+    }
+    if form == RawCriterion::PlasticStrain && *law == BondLawSpec::Elastic {
+        let help = "set bond.law = \"elasto-plastic\", or take beam-stress or fibre-strain";
+        return Err(at.key("criterion").error(
+            "plastic-strain never holds under the elastic bond law",
+            help,
+        ));
+    }
+    let strain = || at.required("strain", &raw.strain, Dimension::Ratio, Range::Positive);
+    let stress = |name, raw| at.required(name, raw, Dimension::Pressure, Range::Positive);
+    let criterion = match form {
+        RawCriterion::PlasticStrain => RuptureCriterion::PlasticStrain { strain: strain()? },
+        RawCriterion::FibreStrain => RuptureCriterion::FibreStrain { strain: strain()? },
+        RawCriterion::BeamStress => RuptureCriterion::BeamStress {
+            tensile: stress("tensile", &raw.tensile)?,
+            shear: stress("shear", &raw.shear)?,
+            moment_share: at.ratio_or(
+                "moment_share",
+                &raw.moment_share,
+                1.0,
+                Range::UnitInterval,
+            )?,
+        },
+    };
+    let modulus = at.ratio_or(
+        "weibull_modulus",
+        &raw.weibull_modulus,
+        f64::INFINITY,
+        Range::PositiveOrInfinite,
+    )?;
+    Ok(RuptureSpec {
+        criterion,
+        weibull_modulus: modulus,
+    })
+}
+
+fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<ContactSpec>> {
+    let Some(raw) = raw else { return Ok(None) };
+    // Values are checked even where `normal = "none"` leaves them without effect: switching contacts off for one run
+    // must not need the rest of the table to go.
+    let friction = at.ratio_or("friction", &raw.friction, FRICTION, Range::NotNegative)?;
+    let damping = at.ratio_or("damping", &raw.damping, 0.0, Range::NotNegative)?;
+    let skin = at.ratio_or("skin", &raw.skin, SKIN, Range::Positive)?;
+    let normal = match raw
+        .normal
+        .ok_or_else(|| at.missing("normal", "\"thornton\""))?
+    {
+        RawNormal::None => return Ok(None),
+        RawNormal::Hertz => {
+            let why = "belongs to contact.normal = \"thornton\" only";
+            at.refuse("hardness_factor", &raw.hardness_factor, why)?;
+            at.refuse("hardness_strain", &raw.hardness_strain, why)?;
+            at.refuse("limiting_pressure", &raw.limiting_pressure, why)?;
+            NormalSpec::Hertz
+        }
+        RawNormal::Thornton => NormalSpec::Thornton {
+            limiting_pressure: limiting_pressure(at, raw, bond)?,
+        },
+    };
+    Ok(Some(ContactSpec {
+        normal,
+        tangential: match raw.tangential.unwrap_or(RawTangential::Mindlin) {
+            RawTangential::Mindlin => Some(TangentialSpec::Mindlin),
+            RawTangential::MindlinDeresiewicz => Some(TangentialSpec::MindlinDeresiewicz),
+            RawTangential::None => None,
+        },
+        friction,
+        shape: match raw.shape.unwrap_or(RawShape::Sphere) {
+            RawShape::Sphere => Shape::Sphere,
+            RawShape::Capsule => Shape::Capsule,
+        },
+        damping,
+        skin,
+    }))
+}
+
+/// Thornton's p_y [Pa]: given, or a multiple of the bonds' yield stress.
+fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<f64> {
+    if let Some(pressure) = at.optional(
+        "limiting_pressure",
+        &raw.limiting_pressure,
+        Dimension::Pressure,
+        Range::Positive,
+    )? {
+        let why = "has no effect beside limiting_pressure";
+        at.refuse("hardness_factor", &raw.hardness_factor, why)?;
+        at.refuse("hardness_strain", &raw.hardness_strain, why)?;
+        return Ok(pressure);
+    }
+    let BondLawSpec::ElastoPlastic(law) = &bond.law else {
+        return Err(at.missing(
+            "limiting_pressure",
+            "\"600 MPa\" (under an elastic bond law there is no yield stress)",
+        ));
+    };
+    let factor = at.ratio_or(
+        "hardness_factor",
+        &raw.hardness_factor,
+        HARDNESS_FACTOR,
+        Range::Positive,
+    )?;
+    let strain = at.ratio_or(
+        "hardness_strain",
+        &raw.hardness_strain,
+        0.0,
+        Range::NotNegative,
+    )?;
+    Ok(factor * hardening::yield_stress(law, strain))
+}
+
+fn time(at: &At, raw: &RawTime) -> Result<TimeSpec> {
+    Ok(TimeSpec {
+        safety: at.ratio_or("safety", &raw.safety, 0.8, Range::Fraction)?,
+        step: at.optional("step", &raw.step, Dimension::Time, Range::Positive)?,
+        mass_scale: at.ratio_or("mass_scale", &raw.mass_scale, 1.0, Range::Positive)?,
+        inertia_scale: at.ratio_or("inertia_scale", &raw.inertia_scale, 1.0, Range::Positive)?,
+        kinetic_limit: at.ratio_or("kinetic_limit", &raw.kinetic_limit, 0.05, Range::Positive)?,
+        mismatch_limit: at.ratio_or(
+            "mismatch_limit",
+            &raw.mismatch_limit,
+            0.05,
+            Range::Positive,
+        )?,
+    })
+}
+
+fn output(at: &At, raw: &RawOutput) -> Result<OutputSpec> {
+    let [width, height] = raw.frame_size.unwrap_or([1280, 720]);
+    let side = |index: usize, pixels: i64| -> Result<u32> {
+        if !FRAME_SIDE.contains(&pixels) {
+            let what = format!(
+                "`frame_size` holds {pixels}, but a side must have {} to {} pixels",
+                FRAME_SIDE.start(),
+                FRAME_SIDE.end()
+            );
+            return Err(at
+                .key("frame_size")
+                .element(index)
+                .error(what, "for example [1280, 720]"));
+        }
+        Ok(pixels as u32)
+    };
+    Ok(OutputSpec {
+        samples: at.count_or("samples", raw.samples, 2000, 1)? as usize,
+        snapshots: at.count_or("snapshots", raw.snapshots, 160, 1)? as usize,
+        rupture_density: at.ratio_or(
+            "rupture_density",
+            &raw.rupture_density,
+            4.0,
+            Range::AtLeastOne,
+        )?,
+        frame_size: [side(0, width)?, side(1, height)?],
+        colour: match raw.colour.unwrap_or(RawColour::Stress) {
+            RawColour::Stress => ColourBy::Stress,
+            RawColour::PlasticStrain => ColourBy::PlasticStrain,
+            RawColour::Layer => ColourBy::Layer,
+            RawColour::Wire => ColourBy::Wire,
+            RawColour::Velocity => ColourBy::Velocity,
+        },
+    })
+}

@@ -1,0 +1,301 @@
+//! Bodies of a scene: strand, wires, spheres.
+
+use super::at::{At, Range};
+use super::centreline_text::{self, CentrelineWire};
+use super::raw::{RawLay, RawLayer, RawSphere, RawStrand, RawWire, Scalar};
+use super::spec::{LayerSpec, PathSpec, SphereSpec, StrandSpec, WireSpec};
+use crate::base::error::Result;
+use crate::base::units::Dimension;
+use std::path::{Path, PathBuf};
+
+/// Layer of a wire that names none.
+const DEFAULT_LAYER: &str = "wire";
+
+/// Resolves `[strand]`.
+pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
+    let length = at.required("length", &raw.length, Dimension::Length, Range::Positive)?;
+    if raw.layer.is_empty() {
+        return Err(at.error(
+            "the strand has no layer",
+            "add [[strand.layer]] with `wires`",
+        ));
+    }
+    let mut layers: Vec<LayerSpec> = Vec::with_capacity(raw.layer.len());
+    for (index, layer) in raw.layer.iter().enumerate() {
+        let here = at.key("layer").element(index);
+        let layer = self::layer(&here, at, layer, raw, index)?;
+        if layers.iter().any(|before| before.name == layer.name) {
+            let what = format!("two layers are named {:?}", layer.name);
+            return Err(here.key("name").error(what, "give each layer its own name"));
+        }
+        layers.push(layer);
+    }
+    Ok(StrandSpec { length, layers })
+}
+
+fn layer(
+    at: &At,
+    strand: &At,
+    raw: &RawLayer,
+    defaults: &RawStrand,
+    index: usize,
+) -> Result<LayerSpec> {
+    let wires = raw.wires.ok_or_else(|| at.missing("wires", "6"))?;
+    let wires = at.key("wires").count(wires, 1)? as usize;
+    let lay_radius = lay_radius(at, raw.lay_radius.as_ref(), wires, index)?;
+    let on_axis = lay_radius == Some(0.0);
+    let pitch = match layer_or_strand(
+        at,
+        strand,
+        "pitch",
+        &raw.pitch,
+        &defaults.pitch,
+        Range::PositiveOrInfinite,
+    )? {
+        Some(pitch) => pitch,
+        None if on_axis => f64::INFINITY,
+        None => return Err(at.missing("pitch", "\"39 mm\"")),
+    };
+    let diameter = layer_or_strand(
+        at,
+        strand,
+        "wire_diameter",
+        &raw.wire_diameter,
+        &defaults.wire_diameter,
+        Range::Positive,
+    )?;
+    Ok(LayerSpec {
+        name: raw
+            .name
+            .clone()
+            .unwrap_or_else(|| format!("layer {}", index + 1)),
+        wires,
+        wire_diameter: diameter.ok_or_else(|| at.missing("wire_diameter", "\"0.39 mm\""))?,
+        lay_radius,
+        pitch,
+        lay: match raw.lay.or(defaults.lay).unwrap_or(RawLay::Right) {
+            RawLay::Right => 1.0,
+            RawLay::Left => -1.0,
+        },
+        phase: at
+            .optional("phase", &raw.phase, Dimension::Angle, Range::Any)?
+            .unwrap_or(0.0),
+    })
+}
+
+/// A length that the layer gives, or the strand for all layers.
+fn layer_or_strand(
+    layer: &At,
+    strand: &At,
+    name: &str,
+    own: &Option<Scalar>,
+    common: &Option<Scalar>,
+    range: Range,
+) -> Result<Option<f64>> {
+    match own {
+        Some(_) => layer.optional(name, own, Dimension::Length, range),
+        None => strand.optional(name, common, Dimension::Length, range),
+    }
+}
+
+/// `None` for `auto`, except that a single wire in the first layer lies on the axis.
+fn lay_radius(at: &At, raw: Option<&Scalar>, wires: usize, index: usize) -> Result<Option<f64>> {
+    let auto = match raw {
+        None => true,
+        Some(Scalar::Text(text)) => text == "auto",
+        Some(Scalar::Number(_)) => false,
+    };
+    if auto {
+        return Ok((wires == 1 && index == 0).then_some(0.0));
+    }
+    let here = at.key("lay_radius");
+    let radius = raw
+        .map(|raw| here.quantity(raw, Dimension::Length, Range::NotNegative))
+        .transpose()?;
+    if radius == Some(0.0) && wires > 1 {
+        return Err(here.error(
+            format!("{wires} wires cannot all lie on the axis"),
+            "give a radius, or lay_radius = \"auto\"",
+        ));
+    }
+    Ok(radius)
+}
+
+/// Resolves all `[[wire]]`; one that takes all wires of a file becomes as many.
+pub(super) fn wires(at: &At, raw: &[RawWire], folder: &Path) -> Result<Vec<WireSpec>> {
+    let mut wires = Vec::new();
+    for (index, raw) in raw.iter().enumerate() {
+        let here = at.element(index);
+        match &raw.file {
+            Some(file) => wires.extend(wires_of_file(&here, raw, file, folder)?),
+            None => wires.push(straight_wire(&here, raw)?),
+        }
+    }
+    Ok(wires)
+}
+
+fn straight_wire(at: &At, raw: &RawWire) -> Result<WireSpec> {
+    let why = "has no effect without `file`";
+    at.refuse("index", &raw.index, why)?;
+    at.refuse("all", &raw.all, why)?;
+    let (Some(from), Some(to)) = (&raw.from, &raw.to) else {
+        let example = "[\"0 mm\", \"0 mm\", \"20 mm\"]";
+        let missing = if raw.from.is_none() { "from" } else { "to" };
+        return Err(at.missing(missing, example));
+    };
+    let from = at.key("from").vector(from, Dimension::Length)?;
+    let to = at.key("to").vector(to, Dimension::Length)?;
+    if from == to {
+        return Err(at.key("to").error(
+            "the wire has no length: `to` is the same point as `from`",
+            "",
+        ));
+    }
+    let diameter = at.required(
+        "diameter",
+        &raw.diameter,
+        Dimension::Length,
+        Range::Positive,
+    )?;
+    wire(
+        at,
+        raw,
+        DEFAULT_LAYER,
+        diameter,
+        PathSpec::Straight { from, to },
+    )
+}
+
+fn wire(at: &At, raw: &RawWire, layer: &str, diameter: f64, path: PathSpec) -> Result<WireSpec> {
+    Ok(WireSpec {
+        layer: raw.layer.clone().unwrap_or_else(|| layer.to_owned()),
+        diameter,
+        path,
+        velocity: at.vector_or_zero("velocity", &raw.velocity, Dimension::Velocity)?,
+        spin: at.vector_or_zero("spin", &raw.spin, Dimension::AngularVelocity)?,
+    })
+}
+
+fn wires_of_file(at: &At, raw: &RawWire, file: &str, folder: &Path) -> Result<Vec<WireSpec>> {
+    at.refuse("from", &raw.from, "has no effect beside `file`")?;
+    at.refuse("to", &raw.to, "has no effect beside `file`")?;
+    let (path, centrelines) = read_centrelines(at, file, folder)?;
+    let numbers = chosen_wires(at, raw, centrelines.len())?;
+    let given = at.optional(
+        "diameter",
+        &raw.diameter,
+        Dimension::Length,
+        Range::Positive,
+    )?;
+    numbers
+        .map(|index| {
+            let CentrelineWire {
+                layer,
+                diameter,
+                points,
+            } = &centrelines[index];
+            let diameter = given
+                .or(*diameter)
+                .ok_or_else(|| at.missing("diameter", "\"0.39 mm\""))?;
+            let path = PathSpec::File {
+                file: path.clone(),
+                index,
+                points: points.clone(),
+            };
+            wire(at, raw, layer, diameter, path)
+        })
+        .collect()
+}
+
+/// The file's full path, so that the resolved scene may be kept in any folder, and its wires.
+fn read_centrelines(at: &At, file: &str, folder: &Path) -> Result<(PathBuf, Vec<CentrelineWire>)> {
+    let unreadable = |path: &Path, source: std::io::Error| {
+        let what = format!("cannot read {}: {source}", path.display());
+        at.key("file")
+            .error(what, "the path is taken from the scene's folder")
+    };
+    let given = folder.join(file);
+    let path = std::path::absolute(&given).map_err(|source| unreadable(&given, source))?;
+    let text = std::fs::read_to_string(&path).map_err(|source| unreadable(&path, source))?;
+    let wires = centreline_text::parse(&text, &path)?;
+    Ok((path, wires))
+}
+
+/// Which wires of a file of `len` a scene takes.
+fn chosen_wires(at: &At, raw: &RawWire, len: usize) -> Result<std::ops::Range<usize>> {
+    match (raw.all.unwrap_or(false), raw.index) {
+        (true, Some(_)) => Err(at.key("index").refused("has no effect beside `all = true`")),
+        (true, None) => Ok(0..len),
+        (false, None) if len == 1 => Ok(0..1),
+        (false, None) => Err(at.key("file").error(
+            format!("the file has {len} wires, and the scene does not say which"),
+            "add `index`, from 0, or `all = true`",
+        )),
+        (false, Some(index)) => {
+            let number = at.key("index").count(index, 0)? as usize;
+            match number < len {
+                true => Ok(number..number + 1),
+                false => {
+                    let what = format!("`index` is {number}, but the file has {len} wires");
+                    Err(at.key("index").error(what, "they are numbered from 0"))
+                }
+            }
+        }
+    }
+}
+
+/// Resolves all `[[sphere]]`.
+pub(super) fn spheres(at: &At, raw: &[RawSphere]) -> Result<Vec<SphereSpec>> {
+    raw.iter()
+        .enumerate()
+        .map(|(index, raw)| sphere(&at.element(index), raw))
+        .collect()
+}
+
+fn sphere(at: &At, raw: &RawSphere) -> Result<SphereSpec> {
+    let example = "[\"0 mm\", \"0 mm\", \"5 mm\"]";
+    let position = raw
+        .position
+        .as_ref()
+        .ok_or_else(|| at.missing("position", example))?;
+    Ok(SphereSpec {
+        diameter: at.required(
+            "diameter",
+            &raw.diameter,
+            Dimension::Length,
+            Range::Positive,
+        )?,
+        position: at.key("position").vector(position, Dimension::Length)?,
+        velocity: at.vector_or_zero("velocity", &raw.velocity, Dimension::Velocity)?,
+        spin: at.vector_or_zero("spin", &raw.spin, Dimension::AngularVelocity)?,
+    })
+}
+
+/// Number of bodies: strand wires, wires, spheres.
+pub(super) fn count(
+    strand: Option<&StrandSpec>,
+    wires: &[WireSpec],
+    spheres: &[SphereSpec],
+) -> usize {
+    let in_strand: usize = strand.map_or(0, |strand| {
+        strand.layers.iter().map(|layer| layer.wires).sum()
+    });
+    in_strand + wires.len() + spheres.len()
+}
+
+/// Length along z of all that grips can hold [m]; `None` without wires.
+pub(super) fn extent(strand: Option<&StrandSpec>, wires: &[WireSpec]) -> Option<f64> {
+    let ends = strand
+        .map(|strand| [0.0, strand.length])
+        .into_iter()
+        .flatten();
+    let heights = wires.iter().flat_map(|wire| match &wire.path {
+        PathSpec::Straight { from, to } => vec![from.z, to.z],
+        PathSpec::File { points, .. } => points.iter().map(|point| point.z).collect(),
+    });
+    let (least, greatest) = ends.chain(heights).fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(least, greatest), z| (z.min(least), z.max(greatest)),
+    );
+    (least <= greatest).then_some(greatest - least)
+}

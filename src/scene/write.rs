@@ -1,0 +1,362 @@
+//! A resolved scene as TOML that reads back to an equal [`Spec`].
+
+use super::spec::*;
+use crate::base::units::{self, Dimension};
+use glam::DVec3;
+use std::fmt::Write;
+
+/// Writes a resolved scene. [`super::parse`] of the text gives an equal [`Spec`], bit for bit.
+pub fn to_toml(spec: &Spec) -> String {
+    let mut out = Lines::default();
+    out.comment("Resolved scene, written by strandsnap: every default filled in.");
+    out.entry("name", text(&spec.name));
+    out.entry("about", text(&spec.about));
+    out.entry("seed", spec.seed.to_string());
+    out.entry("spacing", number(spec.spacing));
+    out.entry("plan", text(plan_name(spec.plan)));
+    material(&mut out, &spec.material);
+    bond(&mut out, &spec.bond);
+    contact(&mut out, spec.contact.as_ref());
+    strand(&mut out, spec.strand.as_ref());
+    spec.wires
+        .iter()
+        .for_each(|wire| self::wire(&mut out, wire));
+    spec.spheres
+        .iter()
+        .for_each(|sphere| self::sphere(&mut out, sphere));
+    grip(&mut out, spec.grip.as_ref());
+    spec.holds
+        .iter()
+        .for_each(|hold| self::hold(&mut out, hold));
+    time(&mut out, &spec.time);
+    stop(&mut out, &spec.stop);
+    output(&mut out, &spec.output);
+    out.text
+}
+
+#[derive(Default)]
+struct Lines {
+    text: String,
+}
+
+impl Lines {
+    fn comment(&mut self, words: &str) {
+        let _ = writeln!(self.text, "# {words}");
+    }
+
+    fn table(&mut self, header: &str) {
+        let _ = writeln!(self.text, "\n{header}");
+    }
+
+    fn entry(&mut self, key: &str, value: String) {
+        let _ = writeln!(self.text, "{key} = {value}");
+    }
+
+    fn quantity(&mut self, key: &str, value: f64, dimension: Dimension) {
+        self.entry(key, quantity(value, dimension));
+    }
+
+    /// A vector, left out when zero, which is its default.
+    fn vector(&mut self, key: &str, value: DVec3, dimension: Dimension) {
+        if value != DVec3::ZERO {
+            self.entry(key, vector(value, dimension));
+        }
+    }
+}
+
+/// A TOML string.
+fn text(words: &str) -> String {
+    toml_edit::Value::from(words).to_string()
+}
+
+/// A TOML float with all its digits.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+fn quantity(value: f64, dimension: Dimension) -> String {
+    match value.is_infinite() {
+        true => text("inf"),
+        false => text(&units::format(value, dimension)),
+    }
+}
+
+fn vector(value: DVec3, dimension: Dimension) -> String {
+    let [x, y, z] = value.to_array().map(|value| quantity(value, dimension));
+    format!("[{x}, {y}, {z}]")
+}
+
+fn plan_name(plan: PlanMode) -> &'static str {
+    match plan {
+        PlanMode::Auto => "auto",
+        PlanMode::General => "general",
+    }
+}
+
+fn material(out: &mut Lines, material: &Material) {
+    out.table("[material]");
+    out.quantity("density", material.density, Dimension::Density);
+    out.quantity("young", material.young, Dimension::Pressure);
+    out.entry("poisson", number(material.poisson));
+}
+
+fn bond(out: &mut Lines, bond: &BondSpec) {
+    out.table("[bond]");
+    match &bond.law {
+        BondLawSpec::Elastic => out.entry("law", text("elastic")),
+        BondLawSpec::ElastoPlastic(law) => {
+            out.entry("law", text("elasto-plastic"));
+            out.entry("hardening", hardening(law));
+        }
+    }
+    let [axial, shear, bending, torsion] = bond.damping.map(number);
+    out.entry(
+        "damping",
+        format!("{{ axial = {axial}, shear = {shear}, bending = {bending}, torsion = {torsion} }}"),
+    );
+    if let Some(rupture) = &bond.rupture {
+        out.entry("rupture", self::rupture(rupture));
+    }
+}
+
+fn hardening(law: &HardeningSpec) -> String {
+    let stress = |value| quantity(value, Dimension::Pressure);
+    match law {
+        HardeningSpec::Voce {
+            yield_stress,
+            saturation,
+            rate,
+            linear,
+        } => format!(
+            "{{ form = \"voce\", yield_stress = {}, saturation = {}, rate = {}, linear = {} }}",
+            stress(*yield_stress),
+            stress(*saturation),
+            number(*rate),
+            stress(*linear)
+        ),
+        HardeningSpec::Swift {
+            strength,
+            prestrain,
+            exponent,
+        } => format!(
+            "{{ form = \"swift\", strength = {}, prestrain = {}, exponent = {} }}",
+            stress(*strength),
+            number(*prestrain),
+            number(*exponent)
+        ),
+        HardeningSpec::Ludwik {
+            yield_stress,
+            strength,
+            exponent,
+        } => format!(
+            "{{ form = \"ludwik\", yield_stress = {}, strength = {}, exponent = {} }}",
+            stress(*yield_stress),
+            stress(*strength),
+            number(*exponent)
+        ),
+        HardeningSpec::Table(points) => {
+            let points: Vec<String> = points
+                .iter()
+                .map(|[strain, value]| format!("[{}, {}]", number(*strain), stress(*value)))
+                .collect();
+            format!("{{ form = \"table\", points = [{}] }}", points.join(", "))
+        }
+    }
+}
+
+fn rupture(rupture: &RuptureSpec) -> String {
+    let criterion = match rupture.criterion {
+        RuptureCriterion::PlasticStrain { strain } => {
+            format!(
+                "criterion = \"plastic-strain\", strain = {}",
+                number(strain)
+            )
+        }
+        RuptureCriterion::FibreStrain { strain } => {
+            format!("criterion = \"fibre-strain\", strain = {}", number(strain))
+        }
+        RuptureCriterion::BeamStress {
+            tensile,
+            shear,
+            moment_share,
+        } => format!(
+            "criterion = \"beam-stress\", tensile = {}, shear = {}, moment_share = {}",
+            quantity(tensile, Dimension::Pressure),
+            quantity(shear, Dimension::Pressure),
+            number(moment_share)
+        ),
+    };
+    format!(
+        "{{ {criterion}, weibull_modulus = {} }}",
+        number(rupture.weibull_modulus)
+    )
+}
+
+fn contact(out: &mut Lines, contact: Option<&ContactSpec>) {
+    let Some(contact) = contact else { return };
+    out.table("[contact]");
+    match contact.normal {
+        NormalSpec::Hertz => out.entry("normal", text("hertz")),
+        NormalSpec::Thornton { limiting_pressure } => {
+            out.entry("normal", text("thornton"));
+            out.quantity("limiting_pressure", limiting_pressure, Dimension::Pressure);
+        }
+    }
+    let tangential = match contact.tangential {
+        Some(TangentialSpec::Mindlin) => "mindlin",
+        Some(TangentialSpec::MindlinDeresiewicz) => "mindlin-deresiewicz",
+        None => "none",
+    };
+    out.entry("tangential", text(tangential));
+    out.entry("friction", number(contact.friction));
+    let shape = match contact.shape {
+        Shape::Sphere => "sphere",
+        Shape::Capsule => "capsule",
+    };
+    out.entry("shape", text(shape));
+    out.entry("damping", number(contact.damping));
+    out.entry("skin", number(contact.skin));
+}
+
+fn strand(out: &mut Lines, strand: Option<&StrandSpec>) {
+    let Some(strand) = strand else { return };
+    out.table("[strand]");
+    out.quantity("length", strand.length, Dimension::Length);
+    for layer in &strand.layers {
+        out.table("[[strand.layer]]");
+        out.entry("name", text(&layer.name));
+        out.entry("wires", layer.wires.to_string());
+        out.quantity("wire_diameter", layer.wire_diameter, Dimension::Length);
+        match layer.lay_radius {
+            Some(radius) => out.quantity("lay_radius", radius, Dimension::Length),
+            None => out.entry("lay_radius", text("auto")),
+        }
+        out.quantity("pitch", layer.pitch, Dimension::Length);
+        out.entry("lay", text(if layer.lay > 0.0 { "right" } else { "left" }));
+        out.quantity("phase", layer.phase, Dimension::Angle);
+    }
+}
+
+fn wire(out: &mut Lines, wire: &WireSpec) {
+    out.table("[[wire]]");
+    out.entry("layer", text(&wire.layer));
+    out.quantity("diameter", wire.diameter, Dimension::Length);
+    match &wire.path {
+        PathSpec::Straight { from, to } => {
+            out.entry("from", vector(*from, Dimension::Length));
+            out.entry("to", vector(*to, Dimension::Length));
+        }
+        PathSpec::File { file, index, .. } => {
+            out.entry("file", text(&file.to_string_lossy()));
+            out.entry("index", index.to_string());
+        }
+    }
+    out.vector("velocity", wire.velocity, Dimension::Velocity);
+    out.vector("spin", wire.spin, Dimension::AngularVelocity);
+}
+
+fn sphere(out: &mut Lines, sphere: &SphereSpec) {
+    out.table("[[sphere]]");
+    out.quantity("diameter", sphere.diameter, Dimension::Length);
+    out.entry("position", vector(sphere.position, Dimension::Length));
+    out.vector("velocity", sphere.velocity, Dimension::Velocity);
+    out.vector("spin", sphere.spin, Dimension::AngularVelocity);
+}
+
+fn grip(out: &mut Lines, grip: Option<&GripSpec>) {
+    let Some(grip) = grip else { return };
+    out.table("[grip]");
+    match grip.kind {
+        GripKind::All => out.entry("kind", text("all")),
+        GripKind::Jaw { pressure } => {
+            out.entry("kind", text("jaw"));
+            out.quantity("clamp_pressure", pressure, Dimension::Pressure);
+        }
+    }
+    out.quantity("length", grip.length, Dimension::Length);
+    match grip.drive {
+        DriveSpec::Speed(speed) => out.quantity("speed", speed, Dimension::Velocity),
+        DriveSpec::Cyclic {
+            amplitude,
+            frequency,
+        } => {
+            out.quantity("displacement_amplitude", amplitude, Dimension::Length);
+            out.quantity("frequency", frequency, Dimension::Frequency);
+        }
+    }
+    out.quantity(
+        "rotation_rate",
+        grip.rotation_rate,
+        Dimension::AngularVelocity,
+    );
+    out.entry("free_rotation", grip.free_rotation.to_string());
+}
+
+fn hold(out: &mut Lines, hold: &HoldSpec) {
+    out.table("[[hold]]");
+    out.entry("body", hold.body.to_string());
+    let part = match hold.part {
+        BodyPart::Start => "start",
+        BodyPart::End => "end",
+        BodyPart::All => "all",
+    };
+    out.entry("part", text(part));
+    let names = ["x", "y", "z", "rx", "ry", "rz"];
+    let fixed: Vec<String> = names
+        .iter()
+        .zip(hold.fixed)
+        .filter(|(_, fixed)| *fixed)
+        .map(|(name, _)| text(name))
+        .collect();
+    out.entry("fix", format!("[{}]", fixed.join(", ")));
+    out.vector("velocity", hold.velocity, Dimension::Velocity);
+    out.vector("spin", hold.spin, Dimension::AngularVelocity);
+    out.vector("force", hold.force, Dimension::Force);
+    out.vector("moment", hold.moment, Dimension::Moment);
+    out.quantity("ramp", hold.ramp, Dimension::Time);
+}
+
+fn time(out: &mut Lines, time: &TimeSpec) {
+    out.table("[time]");
+    out.entry("safety", number(time.safety));
+    if let Some(step) = time.step {
+        out.quantity("step", step, Dimension::Time);
+    }
+    out.entry("mass_scale", number(time.mass_scale));
+    out.entry("inertia_scale", number(time.inertia_scale));
+    out.entry("kinetic_limit", number(time.kinetic_limit));
+    out.entry("mismatch_limit", number(time.mismatch_limit));
+}
+
+fn stop(out: &mut Lines, stop: &StopSpec) {
+    out.table("[stop]");
+    if let Some(strain) = stop.strain {
+        out.entry("strain", number(strain));
+    }
+    if let Some(fraction) = stop.stress_fraction {
+        out.entry("stress_fraction", number(fraction));
+    }
+    if let Some(time) = stop.time {
+        out.quantity("time", time, Dimension::Time);
+    }
+    if let Some(steps) = stop.steps {
+        out.entry("steps", steps.to_string());
+    }
+}
+
+fn output(out: &mut Lines, output: &OutputSpec) {
+    out.table("[output]");
+    out.entry("samples", output.samples.to_string());
+    out.entry("snapshots", output.snapshots.to_string());
+    out.entry("rupture_density", number(output.rupture_density));
+    let [width, height] = output.frame_size;
+    out.entry("frame_size", format!("[{width}, {height}]"));
+    let colour = match output.colour {
+        ColourBy::Stress => "stress",
+        ColourBy::PlasticStrain => "plastic-strain",
+        ColourBy::Layer => "layer",
+        ColourBy::Wire => "wire",
+        ColourBy::Velocity => "velocity",
+    };
+    out.entry("colour", text(colour));
+}
