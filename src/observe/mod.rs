@@ -1,5 +1,11 @@
 //! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
 
+pub mod partial;
+#[cfg(feature = "record")]
+pub mod recording;
+pub mod trajectory;
+pub mod wording;
+
 use crate::base::error::Result;
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use std::sync::Arc;
