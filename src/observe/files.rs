@@ -1,5 +1,6 @@
 //! Files that are either whole or not there under their own name.
 
+use super::partial;
 use crate::base::error::{Error, Result};
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -30,13 +31,6 @@ pub fn write_whole(path: &Path, text: &str) -> Result<()> {
     Ok(())
 }
 
-/// The name under which a file grows until it is whole: `curve.csv` → `curve.csv.partial`.
-pub fn partial(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".partial");
-    PathBuf::from(name)
-}
-
 /// A CSV table that grows row by row as `NAME.partial` and gets its name when it is finished.
 pub struct LiveTable {
     path: PathBuf,
@@ -49,7 +43,7 @@ impl LiveTable {
     /// # Errors
     /// [`Error::Io`] when the file cannot be created.
     pub fn create(path: PathBuf, header: &[String]) -> Result<Self> {
-        let growing = partial(&path);
+        let growing = partial::name(&path);
         let file = File::create(&growing).map_err(|e| Error::io("cannot write", &growing, e))?;
         let writer = csv::Writer::from_writer(BufWriter::new(file));
         let mut table = Self { path, writer };
@@ -68,7 +62,7 @@ impl LiveTable {
             .map_err(std::io::Error::from);
         written
             .and_then(|()| self.writer.flush())
-            .map_err(|e| Error::io("cannot write", partial(&self.path), e))
+            .map_err(|e| Error::io("cannot write", partial::name(&self.path), e))
     }
 
     /// Gives the table its name.
@@ -76,11 +70,8 @@ impl LiveTable {
     /// # Errors
     /// [`Error::Io`] when it cannot be flushed or renamed.
     pub fn finish(mut self) -> Result<()> {
-        let growing = partial(&self.path);
-        self.writer
-            .flush()
-            .and_then(|()| std::fs::rename(&growing, &self.path))
-            .map_err(|e| Error::io("cannot write", &self.path, e))
+        self.writer.flush().map_err(|e| Error::io("cannot write", partial::name(&self.path), e))?;
+        partial::complete(&self.path)
     }
 }
 
@@ -114,12 +105,12 @@ mod tests {
         table.row(&["1".into(), "x, y".into()]).unwrap();
         assert!(!path.exists());
         assert_eq!(
-            std::fs::read_to_string(partial(&path)).unwrap(),
+            std::fs::read_to_string(partial::name(&path)).unwrap(),
             "a,b\n1,\"x, y\"\n"
         );
         table.finish().unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "a,b\n1,\"x, y\"\n");
-        assert!(!partial(&path).exists());
+        assert!(!partial::name(&path).exists());
     }
 
     #[cfg(target_os = "linux")]

@@ -1,8 +1,7 @@
 //! The output folder: checked before the simulation, cleared only when nothing else can fail.
 
 use crate::base::error::{Error, Result};
-use crate::observe::files::partial;
-use crate::observe::tables;
+use crate::observe::{partial, tables};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -59,7 +58,7 @@ impl OutFolder {
         let tables = tables::FILES.into_iter();
         for name in tables.chain([SCENE, SUMMARY, RECORDING, TRAJECTORY]) {
             let file = self.path.join(name);
-            remove_if_there(&partial(&file))?;
+            remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;
         }
         clear_pictures(&self.path.join(FRAMES))
