@@ -4,5 +4,7 @@ pub mod base;
 pub mod engine;
 pub mod law;
 pub mod observe;
+#[cfg(feature = "render")]
+pub mod render;
 pub mod scene;
 pub mod strand;
