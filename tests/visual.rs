@@ -7,7 +7,7 @@ mod common;
 use common::{curve, ka4_like, snapped};
 use image::RgbImage;
 use strandsnap::engine::view::{RunInfo, Rupture, Snapshot};
-use strandsnap::render::{FrameOptions, Renderer};
+use strandsnap::render::{FrameOptions, Renderer, Theme, View};
 
 /// Whether `test` can run here; else says that it did not.
 fn adapter(test: &str) -> bool {
@@ -48,6 +48,12 @@ fn a_frame_has_the_size_asked_for() {
     }
     let info = ka4_like();
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
+    let all = FrameOptions {
+        views: View::ALL[..6].to_vec(),
+        theme: Theme::Light,
+        ..Default::default()
+    };
+    keep("all", &draw(&info, &all, &snapshot, &ruptures));
     for size in [[1280, 720], [641, 363]] {
         let options = FrameOptions {
             size,

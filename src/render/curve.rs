@@ -150,7 +150,7 @@ fn ruptures(canvas: &mut Canvas, axes: &Axes, data: &Data) {
         colour: data.style.signal,
         align: Align::Right,
     };
-    canvas.text(x - 8.0 * u, y + 18.0 * u, kind, "first break");
+    canvas.text(x + 6.0 * u, y - 11.0 * u, kind, "first break");
 }
 
 fn current(canvas: &mut Canvas, axes: &Axes, data: &Data) {

@@ -12,7 +12,7 @@ use super::target::Target;
 use super::timings::Timings;
 use super::viewpoint::{self, Body};
 use super::wires::{self, Looks, Segment};
-use super::{curve, header, marks, unrolled};
+use super::{curve, cut, exploded, header, marks, unrolled};
 use crate::base::error::{Error, Result};
 use crate::engine::view::{RunInfo, Rupture, Snapshot};
 use glam::Vec3;
@@ -168,13 +168,9 @@ impl Renderer {
         };
         let [w, h] = self.options.size;
         let mut picture = RgbImage::from_pixel(w, h, Pixel(self.style.page));
-        let cameras = cameras(&data, &self.options, &self.layout);
+        let shots = shots(&data, &self.options, &self.layout);
         if let Some(solid) = &self.solid {
-            let looks = Looks {
-                colour: colours.clone(),
-                occlusion: occlusion(&self.info, &snapshot.position, &snapshot.radius),
-            };
-            solid.draw(&data, &looks, &cameras)?;
+            solid.draw(&data, &shots)?;
             self.timings.draw += start.elapsed();
             let start = Instant::now();
             solid.read_into(&mut picture)?;
@@ -186,7 +182,7 @@ impl Renderer {
             fonts: &self.fonts,
             unit: self.layout.unit,
         };
-        overlay(&mut canvas, &data, &self.layout, &cameras);
+        overlay(&mut canvas, &data, &self.options, &self.layout, &shots);
         self.timings.overlay += start.elapsed();
         self.timings.frames += 1;
         Ok(canvas.image)
@@ -198,6 +194,8 @@ struct Shot {
     view: View,
     camera: Camera,
     caption: &'static str,
+    /// Depth over which things darken [mm].
+    fade: f32,
 }
 
 fn is_solid(view: View) -> bool {
@@ -207,61 +205,86 @@ fn is_solid(view: View) -> bool {
     )
 }
 
-fn cameras(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
+fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
     let u = layout.unit;
-    let z = focus(data, options);
+    let body = data.body;
+    let z = viewpoint::current_z(data.info, data.snapshot, focus(data, options));
     let mut shots = Vec::new();
     for (view, panel) in &layout.panels {
-        let mut shot = |camera, caption| {
+        let mut shot = |camera, caption, fade| {
             shots.push(Shot {
                 view: *view,
                 camera,
                 caption,
+                fade,
             })
         };
         match view {
             View::Overview => {
-                shot(
-                    viewpoint::overview(data.info, data.body, &options.camera, *panel, u),
-                    "whole strand",
-                );
+                let camera = viewpoint::overview(data.info, body, &options.camera, *panel, u);
+                shot(camera, "whole strand", body.radius);
             }
             View::Midsection => {
                 let half = ((panel.w - 4.0 * u) * 0.5).floor();
                 let front = Rect::new(panel.x, panel.y, half, panel.h);
                 let back = Rect::new(panel.right() - half, panel.y, half, panel.h);
+                for (panel, caption, turn) in [(front, "front", 0.0), (back, "back", 180.0)] {
+                    let camera = viewpoint::section(body, &options.camera, panel, z, turn);
+                    let slant = options.camera.azimuth_deg.to_radians().sin().abs();
+                    shot(
+                        camera,
+                        caption,
+                        body.radius + slant * panel.w / camera.scale,
+                    );
+                }
+            }
+            View::Exploded => {
+                let (_, height) = exploded::lifts(data.info, body);
                 shot(
-                    viewpoint::section(data.body, &options.camera, front, z, 0.0),
-                    "front",
-                );
-                shot(
-                    viewpoint::section(data.body, &options.camera, back, z, 180.0),
-                    "back",
+                    exploded::camera(body, &options.camera, *panel, u, z, height),
+                    "layers apart",
+                    body.radius,
                 );
             }
-            View::Scene => shot(
-                viewpoint::everything(data.body, data.snapshot, &options.camera, *panel),
-                "",
-            ),
-            _ => {}
+            View::Scene => {
+                let camera = viewpoint::everything(body, data.snapshot, &options.camera, *panel);
+                shot(camera, "", 2.0 * (body.high - body.low).length());
+            }
+            View::CrossSection | View::Unrolled | View::Curve => {}
         }
     }
     shots
 }
 
-/// z now [mm] of the section that the close-up follows.
+/// z before loading [mm] of the section that close-ups follow.
 fn focus(data: &Data, options: &FrameOptions) -> f32 {
     let [low, high] = data
         .info
         .gauge
         .unwrap_or([data.body.low.z, data.body.high.z]);
     let first = data.ruptures.first().map(|r| r.rest_z as f32 * 1e3);
-    let rest = options
+    options
         .camera
         .focus_z_mm
         .or(first)
-        .unwrap_or(0.5 * (low + high));
-    viewpoint::current_z(data.info, data.snapshot, rest)
+        .unwrap_or(0.5 * (low + high))
+}
+
+/// The strand's segments as the snapshot has them or with the layers apart, appended to `all`.
+fn append_segments(
+    data: &Data,
+    position: Vec<[f32; 3]>,
+    all: &mut Vec<Segment>,
+) -> std::ops::Range<u32> {
+    let occlusion = occlusion(data.info, &position, &data.snapshot.radius);
+    let looks = Looks {
+        position,
+        colour: data.colours.to_vec(),
+        occlusion,
+    };
+    let start = all.len() as u32;
+    all.extend(wires::segments(data.info, data.snapshot, &looks));
+    start..all.len() as u32
 }
 
 impl Solid {
@@ -294,18 +317,23 @@ impl Solid {
         }))
     }
 
-    fn draw(&self, data: &Data, looks: &Looks, shots: &[Shot]) -> Result<()> {
-        let segments: Vec<Segment> =
-            wires::segments(data.info, data.snapshot, looks, |_| Vec3::ZERO);
-        let all = 0..segments.len() as u32;
-        let drawings: Vec<Drawing> = shots
-            .iter()
-            .map(|s| Drawing {
-                camera: s.camera,
-                instances: all.clone(),
-                body_radius: data.body.radius,
-            })
-            .collect();
+    fn draw(&self, data: &Data, shots: &[Shot]) -> Result<()> {
+        let mut segments = Vec::new();
+        let whole = append_segments(data, data.snapshot.position.clone(), &mut segments);
+        let mut drawings = Vec::new();
+        for shot in shots {
+            let mut instances = whole.clone();
+            if shot.view == View::Exploded {
+                let (lifts, _) = exploded::lifts(data.info, data.body);
+                let position = exploded::positions(data, &lifts, &shot.camera);
+                instances = append_segments(data, position, &mut segments);
+            }
+            drawings.push(Drawing {
+                camera: shot.camera,
+                instances,
+                fade: shot.fade,
+            });
+        }
         let origin = [self.area.x, self.area.y];
         self.pipeline.draw(
             &self.gpu,
@@ -341,7 +369,14 @@ fn around(a: Rect, b: Rect) -> Rect {
     )
 }
 
-fn overlay(canvas: &mut Canvas, data: &Data, layout: &Layout, shots: &[Shot]) {
+fn overlay(
+    canvas: &mut Canvas,
+    data: &Data,
+    options: &FrameOptions,
+    layout: &Layout,
+    shots: &[Shot],
+) {
+    let focus = focus(data, options);
     header::draw(canvas, layout.header, data);
     let window = shots.iter().find(|s| s.view == View::Midsection).map(|s| {
         let half = 0.5 * s.camera.panel.w / s.camera.scale;
@@ -353,9 +388,13 @@ fn overlay(canvas: &mut Canvas, data: &Data, layout: &Layout, shots: &[Shot]) {
         match shot.view {
             View::Overview => marks::overview(canvas, &shot.camera, data, window),
             View::Midsection => {
-                let text = format!("z {:.1} mm", shot.camera.centre.z);
+                let text = format!("around z {focus:.1} mm");
                 marks::subtitle(canvas, x, shot.camera.panel, data, &text);
                 marks::break_numbers(canvas, &shot.camera, data);
+            }
+            View::Exploded => {
+                let (lifts, _) = exploded::lifts(data.info, data.body);
+                exploded::names(canvas, &shot.camera, data, &lifts);
             }
             _ => {}
         }
@@ -364,6 +403,7 @@ fn overlay(canvas: &mut Canvas, data: &Data, layout: &Layout, shots: &[Shot]) {
         match view {
             View::Unrolled => unrolled::draw(canvas, *panel, data),
             View::Curve => curve::draw(canvas, *panel, data),
+            View::CrossSection => cut::draw(canvas, *panel, data, focus),
             _ => {}
         }
     }

@@ -69,7 +69,7 @@ fn caption(data: &Data) -> Vec<Block> {
         let value = format!(
             "wire {} · {layer} · z {:.1} mm",
             first.wire + 1,
-            first.position[2] * 1e3
+            first.rest_z * 1e3
         );
         let detail = format!(
             "at {:.2} % and {:.1} MPa",

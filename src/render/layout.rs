@@ -26,7 +26,7 @@ const ROWS: [(&[(View, f32)], f32); 3] = [
         &[
             (View::Midsection, 1.0),
             (View::Exploded, 0.62),
-            (View::CrossSection, 0.34),
+            (View::CrossSection, 0.29),
             (View::Scene, 1.0),
         ],
         0.44,
@@ -40,6 +40,7 @@ pub fn default_views(gripped: bool) -> Vec<View> {
         vec![
             View::Overview,
             View::Midsection,
+            View::CrossSection,
             View::Unrolled,
             View::Curve,
         ]

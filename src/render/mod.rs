@@ -9,6 +9,8 @@ pub mod camera;
 pub mod canvas;
 pub mod colour;
 pub mod curve;
+pub mod cut;
+pub mod exploded;
 pub mod frame;
 pub mod header;
 pub mod layout;

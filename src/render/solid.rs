@@ -31,8 +31,8 @@ pub struct Drawing {
     pub camera: Camera,
     /// Which segments.
     pub instances: Range<u32>,
-    /// Radius of the body, over which depth darkens [mm].
-    pub body_radius: f32,
+    /// Depth over which things darken [mm].
+    pub fade: f32,
 }
 
 /// The pipeline.
@@ -192,7 +192,7 @@ impl SolidPipeline {
                 1.0 / camera.scale,
             ],
             rim: [r, g, b, style.edge],
-            fade: [0.0, drawing.body_radius, 0.0, 0.0],
+            fade: [0.0, drawing.fade, 0.0, 0.0],
             signal: wires::signal(),
         };
         let buffer = gpu

@@ -31,7 +31,7 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data) {
     canvas.fill(panel, data.style.panel, 1.0);
     let x = marks::title(canvas, panel, data, "wires unrolled");
     marks::subtitle(canvas, x, panel, data, "numbers: order of break");
-    let rows = rows(panel.inset(76.0 * u, 28.0 * u, 18.0 * u, 38.0 * u), data, u);
+    let rows = rows(panel.inset(76.0 * u, 42.0 * u, 18.0 * u, 38.0 * u), data, u);
     for (wire, top) in data.info.wires.iter().zip(&rows.top) {
         row(canvas, &rows, *top, wire, data);
     }
@@ -196,12 +196,10 @@ fn breaks(canvas: &mut Canvas, rows: &Rows, data: &Data) {
         for i in wire.first..wire.first + wire.len.saturating_sub(1) {
             if data.snapshot.bond_state[i] == BondState::Broken {
                 let z = 0.5 * (data.info.rest_position[i][2] + data.info.rest_position[i + 1][2]);
-                let mark = Rect::new(rows.x(z) - 2.5 * u, top - u, 5.0 * u, rows.height + u);
-                canvas.fill(
-                    Rect::new(mark.x - u, mark.y, mark.w + 2.0 * u, mark.h),
-                    data.style.panel,
-                    1.0,
-                );
+                let reach = 0.5 * rows.height.max(9.0 * u);
+                let middle = top + 0.45 * rows.height;
+                let mark = Rect::new(rows.x(z) - 2.5 * u, middle - reach, 5.0 * u, 2.0 * reach);
+                canvas.fill(mark.inset(-u, -u, -u, -u), data.style.panel, 1.0);
                 canvas.fill(mark, data.style.signal, 1.0);
             }
         }

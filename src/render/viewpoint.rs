@@ -78,8 +78,8 @@ pub fn overview(
 
 /// Camera of a close-up on the section at `z` [mm]; `turn_deg` is added to the elevation.
 pub fn section(body: &Body, options: &CameraOptions, panel: Rect, z: f32, turn_deg: f32) -> Camera {
-    // The strand fills half of the height: the rest is for wires that spring out.
-    let scale = options.zoom * panel.h / (4.0 * body.radius);
+    // The strand fills a little more than half of the height: the rest is for wires that spring out.
+    let scale = options.zoom * panel.h / (3.5 * body.radius);
     Camera {
         rotation: Camera::orientation(options.azimuth_deg, options.elevation_deg + turn_deg),
         centre: Vec3::new(body.axis.x, body.axis.y, z),

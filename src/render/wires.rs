@@ -34,22 +34,18 @@ pub const END: f32 = 1.0;
 /// The wire ends where a bond broke.
 pub const BROKEN: f32 = 2.0;
 
-/// What is drawn of a snapshot: per particle a colour and its occlusion.
+/// What is drawn of a snapshot, per particle.
 pub struct Looks {
+    /// Centres [mm]: those of the snapshot, or moved apart.
+    pub position: Vec<[f32; 3]>,
     /// Colours, sRGB.
     pub colour: Vec<Rgb>,
     /// Occlusion.
     pub occlusion: Vec<[f32; 4]>,
 }
 
-/// The segments of every wire and sphere. `offset(layer)` is added to the wires of a layer [mm]; zero draws the
-/// strand as it is.
-pub fn segments(
-    info: &RunInfo,
-    snapshot: &Snapshot,
-    looks: &Looks,
-    offset: impl Fn(usize) -> Vec3,
-) -> Vec<Segment> {
+/// The segments of every wire and sphere.
+pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks) -> Vec<Segment> {
     let mut all = Vec::with_capacity(snapshot.position.len());
     for wire in &info.wires {
         let chain = Chain {
@@ -57,7 +53,6 @@ pub fn segments(
             snapshot,
             looks,
             wire,
-            offset: offset(wire.layer),
         };
         chain.segments(&mut all);
     }
@@ -86,7 +81,6 @@ struct Chain<'a> {
     snapshot: &'a Snapshot,
     looks: &'a Looks,
     wire: &'a WireInfo,
-    offset: Vec3,
 }
 
 impl Chain<'_> {
@@ -113,7 +107,7 @@ impl Chain<'_> {
     }
 
     fn position(&self, i: usize) -> Vec3 {
-        Vec3::from(self.snapshot.position[i])
+        Vec3::from(self.looks.position[i])
     }
 
     /// Mean direction of the bonds that hold particle `i`; along z for a lone one.
@@ -136,9 +130,8 @@ impl Chain<'_> {
     }
 
     fn between(&self, i: usize, j: usize) -> Segment {
-        let end = |k: usize| self.position(k) + self.offset;
         let last = self.wire.first + self.wire.len - 1;
-        let point = |k: usize| end(k).extend(self.snapshot.radius[k]).to_array();
+        let point = |k: usize| self.position(k).extend(self.snapshot.radius[k]).to_array();
         let kind_a = self.kind(i, self.holds_before(i), self.wire.first);
         let kind_b = self.kind(j, self.holds_after(j), last);
         Segment {
@@ -164,7 +157,7 @@ impl Chain<'_> {
 }
 
 fn sphere(snapshot: &Snapshot, looks: &Looks, i: usize) -> Segment {
-    let point = Vec3::from(snapshot.position[i])
+    let point = Vec3::from(looks.position[i])
         .extend(snapshot.radius[i])
         .to_array();
     let tangent = Vec3::Z.extend(END).to_array();

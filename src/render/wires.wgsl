@@ -152,7 +152,7 @@ fn shade(p: vec2<f32>, in: Varying) -> Lit {
   let base = mix(mix(in.ca.rgb, in.cb.rgb, s), view.signal.rgb, broken);
 
   let o = mix(in.oa, in.ob, s);
-  let open = clamp(1.0 - 0.55 * (0.25 * o.w + 0.5 * dot(o.xyz, n)), 0.12, 1.0);
+  let open = clamp(1.0 - 0.8 * (0.25 * o.w + 0.5 * dot(o.xyz, n)), 0.12, 1.0);
   // Deeper parts are a little darker, so that layers read in depth.
   let deep = smoothstep(-1.0, 0.9, (hit.z - view.fade.x) / view.fade.y);
   let light = normalize(vec3<f32>(-0.35, 0.62, 0.70));
