@@ -5,8 +5,9 @@ pub mod cli;
 pub mod engine;
 pub mod law;
 pub mod observe;
-pub mod pending;
 pub mod reference;
+#[cfg(feature = "render")]
+pub mod render;
 pub mod run;
 pub mod scene;
 pub mod strand;

@@ -23,9 +23,9 @@ use crate::observe::files::write_whole;
 use crate::observe::progress::Progress;
 use crate::observe::summary::{Cost, Summariser};
 use crate::observe::tables::Tables;
-use crate::pending::scene::{Scene, write};
-use crate::pending::strand;
+use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
+use crate::strand::discretise;
 use folder::OutFolder;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -70,18 +70,7 @@ pub fn run(scene: &Scene, options: &RunOptions, stop: &AtomicBool) -> Result<Run
         folder.open()?;
         write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
         let written = outputs::open(options, &scene.spec, &folder)?;
-        drive_and_summarise(
-            Job {
-                scene,
-                options,
-                folder: &folder,
-                clock,
-                bonds,
-            },
-            engine,
-            written,
-            stop,
-        )
+        drive_and_summarise(Job { scene, options, folder: &folder, clock, bonds }, engine, written, stop)
     })?
 }
 
@@ -90,7 +79,7 @@ pub fn run(scene: &Scene, options: &RunOptions, stop: &AtomicBool) -> Result<Run
 /// # Errors
 /// Geometry that cannot be, at the line of the scene that asks for it.
 pub fn assemble(scene: &Scene) -> Result<Assembly> {
-    strand::build(&scene.spec).map_err(|e| scene.source.error(&e.key, e.what, e.help))
+    discretise::build(&scene.spec).map_err(|e| scene.source.error(&e.key, e.message, e.help))
 }
 
 /// Calls `work` with a given number of threads behind every parallel loop in it.
@@ -99,9 +88,7 @@ pub fn assemble(scene: &Scene) -> Result<Assembly> {
 /// [`Error::Missing`] when the system refuses the threads.
 pub fn in_pool<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T> {
     // Zero means one thread per core.
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
-        .build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     let pool = pool.map_err(|e| Error::Missing {
         what: format!("cannot start the threads: {e}"),
         help: Some("ask for fewer with --threads".into()),
@@ -116,10 +103,7 @@ struct Clock {
 
 impl Clock {
     fn start() -> Self {
-        Self {
-            wall: Instant::now(),
-            cpu: cost::cpu_time(),
-        }
+        Self { wall: Instant::now(), cpu: cost::cpu_time() }
     }
 
     fn cost(&self, outcome: &Outcome) -> Cost {
@@ -128,9 +112,7 @@ impl Clock {
             steps: outcome.steps,
             simulated_s: outcome.time,
             wall_s: self.wall.elapsed().as_secs_f64(),
-            cpu_s: cost::cpu_time()
-                .zip(self.cpu)
-                .map(|(now, begin)| now - begin),
+            cpu_s: cost::cpu_time().zip(self.cpu).map(|(now, begin)| now - begin),
             ms_per_step: (outcome.steps > 0).then(|| stepping_ms / outcome.steps as f64),
             threads: rayon::current_num_threads(),
             versions: cost::versions(),
@@ -177,8 +159,8 @@ fn drive_and_summarise(
 }
 
 fn write_summary(path: &Path, summary: &RunSummary) -> Result<()> {
-    let text = serde_json::to_string_pretty(summary)
-        .map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
+    let text =
+        serde_json::to_string_pretty(summary).map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
     write_whole(path, &(text + "\n"))
 }
 

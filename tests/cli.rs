@@ -32,16 +32,8 @@ fn plain(text: &str) -> String {
 }
 
 /// Arguments of the shortest run that writes everything but pictures and recording.
-const SHORT: [&str; 8] = [
-    "run",
-    "single-wire",
-    "--set",
-    "stop.steps=400",
-    "--set",
-    "output.samples=40",
-    "--set",
-    "output.snapshots=4",
-];
+const SHORT: [&str; 8] =
+    ["run", "single-wire", "--set", "stop.steps=400", "--set", "output.samples=40", "--set", "output.snapshots=4"];
 
 fn short_run(folder: &Path, more: &[&str]) -> Output {
     let arguments = [&SHORT[..], more].concat();
@@ -107,8 +99,7 @@ fn every_scene_is_listed_shown_and_checked() {
     let folder = tempfile::tempdir().unwrap();
     let list = strandsnap(folder.path(), &["scene", "list"]);
     assert_code(&list, 0);
-    let names: Vec<String> =
-        stdout(&list).lines().filter_map(|l| Some(l.split_whitespace().next()?.into())).collect();
+    let names: Vec<String> = stdout(&list).lines().filter_map(|l| Some(l.split_whitespace().next()?.into())).collect();
     for name in ["ka4", "single-wire", "strand-1x7", "two-spheres", "cantilever", "torsion", "jaw-grip"] {
         assert!(names.iter().any(|n| n == name), "{name} is not in {names:?}");
     }
@@ -261,10 +252,8 @@ fn pulling_to_fracture_tells_where_it_broke() {
     assert!((first["z_mm"].as_f64().unwrap() - z).abs() < 1e-6 * z.abs());
     assert_eq!(rows(&out.join("wires.csv"))[0]["broken"], "yes");
     assert!(stdout(&output).contains("wire 1,"), "{}", stdout(&output));
-    let peak = rows(&out.join("curve.csv"))
-        .iter()
-        .map(|row| row["stress_mpa"].parse::<f64>().unwrap())
-        .fold(0.0, f64::max);
+    let peak =
+        rows(&out.join("curve.csv")).iter().map(|row| row["stress_mpa"].parse::<f64>().unwrap()).fold(0.0, f64::max);
     let strength = summary["tensile_strength_mpa"].as_f64().unwrap();
     assert!((strength - peak).abs() < 1e-6 * peak, "{strength} {peak}");
 }

@@ -45,10 +45,7 @@ fn files(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
 
 /// The text without comments: they may name anything.
 fn code(text: &str) -> String {
-    text.lines()
-        .map(|line| line.split_once("//").map_or(line, |(code, _)| code))
-        .collect::<Vec<_>>()
-        .join("\n")
+    text.lines().map(|line| line.split_once("//").map_or(line, |(code, _)| code)).collect::<Vec<_>>().join("\n")
 }
 
 fn height(floor: &str) -> Option<usize> {
@@ -137,8 +134,7 @@ fn sources() -> Vec<(String, String)> {
 
 #[test]
 fn nothing_imports_upward() {
-    let wrong: Vec<String> =
-        sources().iter().flat_map(|(path, text)| upward_imports(path, text)).collect();
+    let wrong: Vec<String> = sources().iter().flat_map(|(path, text)| upward_imports(path, text)).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

@@ -3,9 +3,9 @@
 use super::values::SceneArgs;
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
-use crate::pending::scene;
-use crate::pending::strand::centrelines;
 use crate::run;
+use crate::scene;
+use crate::strand::centrelines;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -23,16 +23,9 @@ pub fn export(args: &Args) -> Result<()> {
     let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
     let assembly = run::assemble(&scene)?;
     if args.file.exists() && !args.overwrite {
-        return Err(Error::input(
-            format!("{} exists", args.file.display()),
-            "give --overwrite to replace it",
-        ));
+        return Err(Error::input(format!("{} exists", args.file.display()), "give --overwrite to replace it"));
     }
     write_whole(&args.file, &centrelines::export(&assembly))?;
-    println!(
-        "{} wires written to {}",
-        assembly.wires.len(),
-        args.file.display()
-    );
+    println!("{} wires written to {}", assembly.wires.len(), args.file.display());
     Ok(())
 }

@@ -17,13 +17,9 @@ pub fn install() -> Result<&'static AtomicBool> {
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(EXIT_CODE));
         }
-        eprintln!(
-            "\nstopping; results so far are kept. Press Ctrl-C again to end at once, without them."
-        );
+        eprintln!("\nstopping; results so far are kept. Press Ctrl-C again to end at once, without them.");
     };
-    ctrlc::set_handler(handler).map_err(|e| Error::Missing {
-        what: format!("cannot listen for Ctrl-C: {e}"),
-        help: None,
-    })?;
+    ctrlc::set_handler(handler)
+        .map_err(|e| Error::Missing { what: format!("cannot listen for Ctrl-C: {e}"), help: None })?;
     Ok(&STOP)
 }

@@ -2,8 +2,8 @@
 
 use super::values::SceneArgs;
 use crate::base::error::Result;
-use crate::pending::scene::{self, plan::Plan};
 use crate::run;
+use crate::scene::{self, plan::Plan};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -25,20 +25,10 @@ pub struct Args {
     #[arg(long)]
     overwrite: bool,
     /// Turn of the eye about the vertical, in degrees
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
     azimuth: f32,
     /// Turn of the eye about the horizontal, in degrees
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
     elevation: f32,
     /// Magnification over what fits
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
@@ -60,14 +50,12 @@ pub struct Args {
 #[cfg(not(feature = "render"))]
 pub fn render(_args: Args) -> Result<Ended> {
     let instead = "draw on a machine where it is";
-    Err(crate::run::outputs::built_without(
-        "frames", "render", instead,
-    ))
+    Err(crate::run::outputs::built_without("frames", "render", instead))
 }
 
 #[cfg(feature = "render")]
 pub fn render(args: Args) -> Result<Ended> {
-    use crate::pending::render as drawing;
+    use crate::render as drawing;
     use crate::run::{folder::OutFolder, replay};
     use std::sync::atomic::Ordering;
 
@@ -75,16 +63,8 @@ pub fn render(args: Args) -> Result<Ended> {
     let options = drawing::FrameOptions {
         size: args.size,
         colour: args.colour.into(),
-        views: args
-            .views
-            .iter()
-            .map(|word| word.parse())
-            .collect::<Result<_>>()?,
-        theme: if args.theme == "light" {
-            drawing::Theme::Light
-        } else {
-            drawing::Theme::Dark
-        },
+        views: args.views.iter().map(|word| word.parse()).collect::<Result<_>>()?,
+        theme: if args.theme == "light" { drawing::Theme::Light } else { drawing::Theme::Dark },
         camera: drawing::CameraOptions {
             azimuth_deg: args.azimuth,
             elevation_deg: args.elevation,
@@ -93,10 +73,7 @@ pub fn render(args: Args) -> Result<Ended> {
         },
     };
     let whole = replay::Selection::default();
-    let selection = replay::Selection {
-        every: args.every as usize,
-        strain: args.strain_range.unwrap_or(whole.strain),
-    };
+    let selection = replay::Selection { every: args.every as usize, strain: args.strain_range.unwrap_or(whole.strain) };
     let out = args.out.unwrap_or_else(|| args.run.join("render"));
     let folder = OutFolder::check(&out, args.overwrite)?;
     drawing::check()?;
@@ -105,9 +82,5 @@ pub fn render(args: Args) -> Result<Ended> {
     let stop = super::interrupt::install()?;
     let shown = replay::replay(&args.run, &selection, &mut writer, stop)?;
     println!("{shown} pictures are in {}", out.display());
-    Ok(if stop.load(Ordering::Relaxed) {
-        Ended::Interrupted
-    } else {
-        Ended::Well
-    })
+    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
 }

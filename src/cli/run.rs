@@ -4,9 +4,9 @@ use super::values::SceneArgs;
 use super::{Ended, interrupt};
 use crate::base::error::Result;
 use crate::observe::report::{one_line, report};
-use crate::pending::scene;
 use crate::run::folder::{FRAMES, RECORDING};
 use crate::run::{self, RunOptions, RunSummary, outputs};
+use crate::scene;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -44,9 +44,7 @@ pub fn run(args: Args) -> Result<Ended> {
     let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
     note_what_was_not_built(&args);
     let options = RunOptions {
-        out: args
-            .out
-            .unwrap_or_else(|| Path::new("out").join(&scene.spec.name)),
+        out: args.out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name)),
         overwrite: args.overwrite,
         threads: args.threads.map(usize::from),
         frames: outputs::HAS_RENDER && !args.no_frames,
@@ -57,11 +55,7 @@ pub fn run(args: Args) -> Result<Ended> {
     let stop = interrupt::install()?;
     let summary = run::run(&scene, &options, stop)?;
     print(&summary, &options);
-    Ok(if stop.load(Ordering::Relaxed) {
-        Ended::Interrupted
-    } else {
-        Ended::Well
-    })
+    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
 }
 
 /// Frames and recording are on unless refused; a program that cannot make them must say so.
@@ -70,9 +64,7 @@ fn note_what_was_not_built(args: &Args) {
         eprintln!("note: no frames, because this program was built without the feature `render`");
     }
     if !outputs::HAS_RECORD && !args.no_recording {
-        eprintln!(
-            "note: no recording, because this program was built without the feature `record`"
-        );
+        eprintln!("note: no recording, because this program was built without the feature `record`");
     }
 }
 
@@ -89,16 +81,10 @@ fn print(summary: &RunSummary, options: &RunOptions) {
         println!("Results are in {}:", options.out.display());
         println!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
         if options.frames {
-            println!(
-                "  {}: one picture per snapshot",
-                options.out.join(FRAMES).display()
-            );
+            println!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
         }
         if options.recording {
-            println!(
-                "Open the recording with: rerun {}",
-                options.out.join(RECORDING).display()
-            );
+            println!("Open the recording with: rerun {}", options.out.join(RECORDING).display());
         }
     }
 }

@@ -1,9 +1,9 @@
 //! `strandsnap scene list|show|check`.
 
 use super::values::SceneArgs;
-use crate::base::error::{Error, Result};
-use crate::pending::scene::{self, builtin};
+use crate::base::error::Result;
 use crate::run;
+use crate::scene::{self, builtin};
 
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
@@ -27,33 +27,16 @@ pub fn scene(command: &Command) -> Result<()> {
 }
 
 fn list() -> Result<()> {
-    let width = builtin::list()
-        .iter()
-        .map(|(name, _)| name.len())
-        .max()
-        .unwrap_or(0);
+    let width = builtin::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     for (name, _) in builtin::list() {
-        let about = scene::load(name, &[])?.spec.about;
-        println!(
-            "{name:width$}  {}",
-            about.lines().collect::<Vec<_>>().join(" ")
-        );
+        let about = builtin::about(name)?;
+        println!("{name:width$}  {}", about.lines().collect::<Vec<_>>().join(" "));
     }
     Ok(())
 }
 
 fn show(name: &str) -> Result<()> {
-    match builtin::list().iter().find(|(known, _)| *known == name) {
-        Some((_, text)) => print!("{text}"),
-        // Loading an unknown name gives the error that suggests the nearest one.
-        None => {
-            scene::load(name, &[])?;
-            return Err(Error::input(
-                format!("{name} is not a built-in scene"),
-                "see `strandsnap scene list`",
-            ));
-        }
-    }
+    print!("{}", builtin::find(name)?);
     Ok(())
 }
 

@@ -67,17 +67,10 @@ pub fn strain_range(text: &str) -> Result<[f64; 2], String> {
     let (from, to) = text.split_once("..").ok_or_else(wrong)?;
     let end = |side: &str, open: f64| match side.trim().trim_end_matches('%').trim() {
         "" => Ok(open),
-        number => number
-            .parse::<f64>()
-            .map(|percent| percent / 100.0)
-            .map_err(|_| wrong()),
+        number => number.parse::<f64>().map(|percent| percent / 100.0).map_err(|_| wrong()),
     };
     let range = [end(from, f64::NEG_INFINITY)?, end(to, f64::INFINITY)?];
-    if range[0] <= range[1] {
-        Ok(range)
-    } else {
-        Err(wrong())
-    }
+    if range[0] <= range[1] { Ok(range) } else { Err(wrong()) }
 }
 
 #[cfg(test)]

@@ -56,13 +56,8 @@ impl LiveTable {
     /// # Errors
     /// [`Error::Io`], for instance when the disk is full.
     pub fn row(&mut self, cells: &[String]) -> Result<()> {
-        let written = self
-            .writer
-            .write_record(cells)
-            .map_err(std::io::Error::from);
-        written
-            .and_then(|()| self.writer.flush())
-            .map_err(|e| Error::io("cannot write", partial::name(&self.path), e))
+        let written = self.writer.write_record(cells).map_err(std::io::Error::from);
+        written.and_then(|()| self.writer.flush()).map_err(|e| Error::io("cannot write", partial::name(&self.path), e))
     }
 
     /// Gives the table its name.
@@ -104,10 +99,7 @@ mod tests {
         let mut table = LiveTable::create(path.clone(), &["a".into(), "b".into()]).unwrap();
         table.row(&["1".into(), "x, y".into()]).unwrap();
         assert!(!path.exists());
-        assert_eq!(
-            std::fs::read_to_string(partial::name(&path)).unwrap(),
-            "a,b\n1,\"x, y\"\n"
-        );
+        assert_eq!(std::fs::read_to_string(partial::name(&path)).unwrap(), "a,b\n1,\"x, y\"\n");
         table.finish().unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "a,b\n1,\"x, y\"\n");
         assert!(!partial::name(&path).exists());
@@ -119,10 +111,7 @@ mod tests {
         // /dev/full accepts opening and refuses every byte, as a full disk does.
         let file = File::create("/dev/full").unwrap();
         let writer = csv::Writer::from_writer(BufWriter::new(file));
-        let mut table = LiveTable {
-            path: "curve.csv".into(),
-            writer,
-        };
+        let mut table = LiveTable { path: "curve.csv".into(), writer };
         let message = table.row(&["1".into()]).unwrap_err().to_string();
         assert!(message.contains("curve.csv"), "{message}");
     }

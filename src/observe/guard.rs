@@ -103,23 +103,16 @@ impl Guard {
 
     fn kinetic_ratio<'a>(&'a self, rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
         let most = self.rows.iter().map(|r| r.internal).fold(0.0, f64::max);
-        let telling =
-            rows.filter(|r| r.internal > 0.0 && r.internal >= LEAST_INTERNAL_SHARE * most);
+        let telling = rows.filter(|r| r.internal > 0.0 && r.internal >= LEAST_INTERNAL_SHARE * most);
         telling.map(|r| r.kinetic / r.internal).reduce(f64::max)
     }
 
     fn mismatch<'a>(&'a self, rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
-        let peak = self
-            .rows
-            .iter()
-            .flat_map(|r| r.force)
-            .map(f64::abs)
-            .fold(0.0, f64::max);
+        let peak = self.rows.iter().flat_map(|r| r.force).map(f64::abs).fold(0.0, f64::max);
         if peak == 0.0 {
             return None;
         }
-        rows.map(|r| percent((r.force[1] - r.force[0]).abs() / peak))
-            .reduce(f64::max)
+        rows.map(|r| percent((r.force[1] - r.force[0]).abs() / peak)).reduce(f64::max)
     }
 }
 
@@ -151,10 +144,7 @@ fn first_not_finite(sample: &Sample) -> Option<String> {
 
 impl Observer for Guard {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
-        *self = Self {
-            gripped: info.gauge.is_some(),
-            ..Self::default()
-        };
+        *self = Self { gripped: info.gauge.is_some(), ..Self::default() };
         Ok(())
     }
 

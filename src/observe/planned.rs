@@ -18,11 +18,7 @@ impl PlannedEnd {
     /// ([`crate::engine::view::RunInfo::strain_end`]), which wins over `stop.strain`: it also knows
     /// when the wires will have broken.
     pub fn new(stop: &StopSpec, strain_end: Option<f64>) -> Self {
-        Self {
-            strain: strain_end.or(stop.strain),
-            time: stop.time,
-            steps: stop.steps,
-        }
+        Self { strain: strain_end.or(stop.strain), time: stop.time, steps: stop.steps }
     }
 
     /// Whether any end is known.
@@ -38,9 +34,7 @@ impl PlannedEnd {
             Some(end) if end != 0.0 => (done / end).max(0.0),
             _ => 0.0,
         };
-        of(strain, self.strain)
-            .max(of(time, self.time))
-            .max(of(steps as f64, self.steps.map(|n| n as f64)))
+        of(strain, self.strain).max(of(time, self.time)).max(of(steps as f64, self.steps.map(|n| n as f64)))
     }
 }
 
@@ -50,21 +44,14 @@ mod tests {
 
     #[test]
     fn the_nearest_end_decides() {
-        let end = PlannedEnd {
-            strain: Some(0.2),
-            time: Some(10.0),
-            steps: None,
-        };
+        let end = PlannedEnd { strain: Some(0.2), time: Some(10.0), steps: None };
         assert_eq!(end.fraction(0.1, 1.0, 5), 0.5);
         assert_eq!(end.fraction(0.1, 9.0, 5), 0.9);
     }
 
     #[test]
     fn compression_counts_towards_a_negative_end() {
-        let end = PlannedEnd {
-            strain: Some(-0.2),
-            ..Default::default()
-        };
+        let end = PlannedEnd { strain: Some(-0.2), ..Default::default() };
         assert_eq!(end.fraction(-0.1, 0.0, 0), 0.5);
         assert_eq!(end.fraction(0.1, 0.0, 0), 0.0);
     }

@@ -41,11 +41,7 @@ impl Progress {
 
 fn message(sample: &Sample, gripped: bool, wires: usize, steps_per_second: f64) -> String {
     let state = if gripped {
-        format!(
-            "strain {:.2} %, {:.1} MPa, ",
-            percent(sample.strain),
-            mpa(sample.stress)
-        )
+        format!("strain {:.2} %, {:.1} MPa, ", percent(sample.strain), mpa(sample.stress))
     } else {
         format!("t = {:.3e} s, ", sample.time)
     };
@@ -59,9 +55,8 @@ fn message(sample: &Sample, gripped: bool, wires: usize, steps_per_second: f64) 
 impl Observer for Progress {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
         self.end = PlannedEnd::new(&self.stop, info.strain_end);
-        let style =
-            ProgressStyle::with_template("{prefix} [{bar:24}] {percent:>3} %  {msg}, {eta} left")
-                .expect("the template is constant and right");
+        let style = ProgressStyle::with_template("{prefix} [{bar:24}] {percent:>3} %  {msg}, {eta} left")
+            .expect("the template is constant and right");
         self.bar.set_style(style);
         self.bar.set_prefix(info.name.clone());
         self.bar.reset();
@@ -77,18 +72,10 @@ impl Observer for Progress {
         if steps > 0 && seconds > 0.0 {
             self.last = (Instant::now(), sample.step);
         }
-        let speed = if seconds > 0.0 {
-            steps as f64 / seconds
-        } else {
-            0.0
-        };
-        let done = self
-            .end
-            .fraction(sample.strain, sample.time, sample.step)
-            .min(1.0);
+        let speed = if seconds > 0.0 { steps as f64 / seconds } else { 0.0 };
+        let done = self.end.fraction(sample.strain, sample.time, sample.step).min(1.0);
         self.bar.set_position((done * TICKS as f64) as u64);
-        self.bar
-            .set_message(message(sample, self.gripped, self.wires, speed));
+        self.bar.set_message(message(sample, self.gripped, self.wires, speed));
         Ok(())
     }
 

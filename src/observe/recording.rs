@@ -46,7 +46,8 @@ use rerun::external::re_uri::ProxyUri;
 use rerun::log::ChunkBatcherConfig;
 use rerun::sink::{GrpcSink, LogSink, MultiSink};
 use rerun::{
-    AnnotationContext, DynamicArchetype, EntityPath, RecordingInfo, RecordingStreamBuilder, TextDocument, ViewCoordinates, components,
+    AnnotationContext, DynamicArchetype, EntityPath, RecordingInfo, RecordingStreamBuilder, TextDocument,
+    ViewCoordinates, components,
 };
 use sink::RecordingFile;
 use states::States;
@@ -92,6 +93,14 @@ struct Run {
     batch: usize,
 }
 
+/// Checks that a viewer listens at `address`, so that this is known before a simulation starts.
+///
+/// # Errors
+/// [`Error::Missing`] when nobody listens there, [`Error::Input`] when it is not the address of a viewer.
+pub fn check_viewer(address: &str) -> Result<()> {
+    sink::viewer(address).map(|_| ())
+}
+
 impl Recording {
     /// Opens `<file>.partial` for writing; it is renamed to `file` when the run is finished.
     ///
@@ -121,7 +130,11 @@ impl Recording {
     fn run(&mut self) -> Result<&mut Run> {
         let path = &self.path;
         self.run.as_mut().ok_or_else(|| {
-            Error::io("cannot record to", path, std::io::Error::other("the run has not been announced to the recording"))
+            Error::io(
+                "cannot record to",
+                path,
+                std::io::Error::other("the run has not been announced to the recording"),
+            )
         })
     }
 

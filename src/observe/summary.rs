@@ -153,8 +153,7 @@ impl Summariser {
             tensile_strength_mpa: measured(peak.map(|i| mpa(self.curve[i].1))),
             fracture_elongation_percent: measured(peak.map(|i| percent(self.curve[i].0))),
             elongation_at_20_percent_drop_percent: measured(
-                peak.and_then(|i| strain_after_drop(&self.curve, i))
-                    .map(percent),
+                peak.and_then(|i| strain_after_drop(&self.curve, i)).map(percent),
             ),
             first_rupture: self.ruptures.first().map(|r| self.for_people(r)),
             wires_broken_by_layer: self.broken_by_layer(&firsts),
@@ -164,8 +163,7 @@ impl Summariser {
             final_strain_percent: measured(Some(percent(self.last.strain))),
             residual_stress_mpa: measured(Some(mpa(self.last.stress))),
             energy,
-            energy_residual_percent: (energy.work != 0.0)
-                .then(|| percent(energy.residual() / energy.work)),
+            energy_residual_percent: (energy.work != 0.0).then(|| percent(energy.residual() / energy.work)),
             quasi_static: self.guard.quasi_static(),
             mass_scale: spec.time.mass_scale,
             inertia_scale: spec.time.inertia_scale,
@@ -178,10 +176,7 @@ impl Summariser {
     }
 
     fn for_people(&self, rupture: &Rupture) -> Break {
-        let layer = self
-            .info
-            .as_ref()
-            .map_or("", |info| layer_name(info, rupture.layer));
+        let layer = self.info.as_ref().map_or("", |info| layer_name(info, rupture.layer));
         Break {
             order: rupture.order,
             wire: rupture.wire + 1,
@@ -205,10 +200,7 @@ impl Summariser {
         let mut layers: BTreeMap<String, BrokenOf> = BTreeMap::new();
         if let Some(info) = &self.info {
             for wire in &info.wires {
-                layers
-                    .entry(layer_name(info, wire.layer).into())
-                    .or_default()
-                    .of += 1;
+                layers.entry(layer_name(info, wire.layer).into()).or_default().of += 1;
             }
         }
         for broken in firsts {
@@ -234,25 +226,15 @@ fn peak_of(curve: &[(f64, f64)]) -> Option<usize> {
 /// Strain [-] at which stress first falls to (1 − [`DROP`]) of its peak after it, linear between rows.
 fn strain_after_drop(curve: &[(f64, f64)], peak: usize) -> Option<f64> {
     let level = (1.0 - DROP) * curve[peak].1;
-    curve[peak..]
-        .windows(2)
-        .find(|pair| pair[1].1 <= level)
-        .map(|pair| {
-            let ((e0, s0), (e1, s1)) = (pair[0], pair[1]);
-            if s0 > s1 {
-                e0 + (e1 - e0) * (s0 - level) / (s0 - s1)
-            } else {
-                e1
-            }
-        })
+    curve[peak..].windows(2).find(|pair| pair[1].1 <= level).map(|pair| {
+        let ((e0, s0), (e1, s1)) = (pair[0], pair[1]);
+        if s0 > s1 { e0 + (e1 - e0) * (s0 - level) / (s0 - s1) } else { e1 }
+    })
 }
 
 impl Observer for Summariser {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
-        *self = Self {
-            info: Some(info.clone()),
-            ..Self::default()
-        };
+        *self = Self { info: Some(info.clone()), ..Self::default() };
         self.guard.start(info)
     }
 

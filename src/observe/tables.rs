@@ -38,17 +38,13 @@ struct WireRecord {
 impl Tables {
     /// Tables in `folder`, which must exist.
     pub fn new(folder: &Path) -> Self {
-        Self {
-            folder: folder.into(),
-            open: None,
-        }
+        Self { folder: folder.into(), open: None }
     }
 }
 
 impl Observer for Tables {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
-        let create =
-            |name: &str, header: Vec<String>| LiveTable::create(self.folder.join(name), &header);
+        let create = |name: &str, header: Vec<String>| LiveTable::create(self.folder.join(name), &header);
         self.open = Some(Open {
             info: info.clone(),
             curve: create(FILES[0], curve_header(info))?,
@@ -149,17 +145,8 @@ fn curve_header(info: &RunInfo) -> Vec<String> {
         "grip_force_upper_n",
         "torque_n_mm",
     ]);
-    header.extend(
-        info.layers
-            .iter()
-            .map(|name| format!("stress_{}_mpa", name.replace(' ', "_"))),
-    );
-    header.extend(owned([
-        "wires_broken",
-        "bonds_broken",
-        "contacts",
-        "time_step_s",
-    ]));
+    header.extend(info.layers.iter().map(|name| format!("stress_{}_mpa", name.replace(' ', "_"))));
+    header.extend(owned(["wires_broken", "bonds_broken", "contacts", "time_step_s"]));
     header.extend(energies(&Energy::default()).map(|(name, _)| name.to_string()));
     header
 }
@@ -244,11 +231,7 @@ fn wire_row(w: usize, record: &WireRecord, info: &RunInfo) -> Vec<String> {
         Some((stress, strain)) => (number(mpa(stress)), number(percent(strain))),
         None => (String::new(), String::new()),
     };
-    let broken = if record.first_rupture.is_some() {
-        "yes"
-    } else {
-        "no"
-    };
+    let broken = if record.first_rupture.is_some() { "yes" } else { "no" };
     let mut row = vec![
         (w + 1).to_string(),
         layer_name(info, wire.layer).to_string(),

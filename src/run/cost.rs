@@ -22,20 +22,10 @@ pub fn cpu_time() -> Option<f64> {
 /// kind.
 pub fn versions() -> BTreeMap<String, String> {
     let mut versions = BTreeMap::from([
-        (
-            "strandsnap".to_string(),
-            env!("CARGO_PKG_VERSION").to_string(),
-        ),
-        (
-            "platform".to_string(),
-            format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
-        ),
+        ("strandsnap".to_string(), env!("CARGO_PKG_VERSION").to_string()),
+        ("platform".to_string(), format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS)),
     ]);
-    let built = [
-        ("rerun", super::outputs::HAS_RECORD),
-        ("wgpu", super::outputs::HAS_RENDER),
-        ("rayon", true),
-    ];
+    let built = [("rerun", super::outputs::HAS_RECORD), ("wgpu", super::outputs::HAS_RENDER), ("rayon", true)];
     for (name, _) in built.into_iter().filter(|(_, is_in)| *is_in) {
         if let Some(version) = locked(name) {
             versions.insert(name.into(), version);
@@ -48,9 +38,7 @@ pub fn versions() -> BTreeMap<String, String> {
 fn locked(package: &str) -> Option<String> {
     let lock: toml::Table = LOCK.parse().ok()?;
     let packages = lock.get("package")?.as_array()?;
-    let entry = packages
-        .iter()
-        .find(|p| p.get("name").and_then(|n| n.as_str()) == Some(package))?;
+    let entry = packages.iter().find(|p| p.get("name").and_then(|n| n.as_str()) == Some(package))?;
     Some(entry.get("version")?.as_str()?.to_string())
 }
 
@@ -60,10 +48,7 @@ mod tests {
 
     #[test]
     fn versions_come_from_the_lock_file() {
-        assert_eq!(
-            locked("strandsnap").as_deref(),
-            Some(env!("CARGO_PKG_VERSION"))
-        );
+        assert_eq!(locked("strandsnap").as_deref(), Some(env!("CARGO_PKG_VERSION")));
         assert!(locked("rayon").is_some_and(|v| v.starts_with("1.")));
         assert_eq!(locked("no such package"), None);
     }

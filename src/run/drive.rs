@@ -72,11 +72,7 @@ pub(super) fn drive(
         end,
         schedule: Schedule::new(&spec.output),
         rule: StopRule::new(&spec.stop),
-        audience: Audience {
-            observers,
-            started: 0,
-            time: Duration::ZERO,
-        },
+        audience: Audience { observers, started: 0, time: Duration::ZERO },
         shown: None,
     };
     let begin = Instant::now();
@@ -117,10 +113,7 @@ impl Driver<'_, '_> {
                 break StopReason::Interrupted;
             }
             let engine = &self.engine;
-            if let Some(reason) = self
-                .rule
-                .reached(engine.strain(), engine.time(), engine.steps())
-            {
+            if let Some(reason) = self.rule.reached(engine.strain(), engine.time(), engine.steps()) {
                 break reason;
             }
             self.engine.step()?;
@@ -134,11 +127,7 @@ impl Driver<'_, '_> {
 
     /// Passes on what the step just done brought.
     fn look(&mut self) -> Result<()> {
-        let now = self.end.fraction(
-            self.engine.strain(),
-            self.engine.time(),
-            self.engine.steps(),
-        );
+        let now = self.end.fraction(self.engine.strain(), self.engine.time(), self.engine.steps());
         let ruptures = self.engine.take_ruptures();
         if !ruptures.is_empty() {
             self.rule.rupture();
@@ -205,10 +194,7 @@ impl Audience<'_, '_> {
 
     fn each(&mut self, mut tell: impl FnMut(&mut dyn Observer) -> Result<()>) -> Result<()> {
         let begin = Instant::now();
-        let told = self
-            .observers
-            .iter_mut()
-            .try_for_each(|observer| tell(*observer));
+        let told = self.observers.iter_mut().try_for_each(|observer| tell(*observer));
         self.time += begin.elapsed();
         told
     }

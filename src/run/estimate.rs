@@ -68,9 +68,7 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
 
 /// Simulated time to the expected end [s]: `stop.time`, or the expected strain at the pull's constant speed.
 fn duration(spec: &Spec, info: &RunInfo) -> Option<f64> {
-    let gauge = info
-        .gauge
-        .map(|[lower, upper]| f64::from(upper - lower) * 1e-3);
+    let gauge = info.gauge.map(|[lower, upper]| f64::from(upper - lower) * 1e-3);
     let strain = info.strain_end.or(spec.stop.strain);
     let pull = match (gauge, strain, &spec.grip) {
         (Some(gauge), Some(strain), Some(grip)) => match grip.drive {
@@ -79,24 +77,13 @@ fn duration(spec: &Spec, info: &RunInfo) -> Option<f64> {
         },
         _ => None,
     };
-    [pull, spec.stop.time]
-        .into_iter()
-        .flatten()
-        .reduce(f64::min)
+    [pull, spec.stop.time].into_iter().flatten().reduce(f64::min)
 }
 
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "size: {} wires, {} particles, {} bonds",
-            self.wires, self.particles, self.bonds
-        )?;
-        writeln!(
-            f,
-            "time step: {:.3e} s at first, limited by {}",
-            self.time_step, self.time_step_limit
-        )?;
+        writeln!(f, "size: {} wires, {} particles, {} bonds", self.wires, self.particles, self.bonds)?;
+        writeln!(f, "time step: {:.3e} s at first, limited by {}", self.time_step, self.time_step_limit)?;
         if let Some(duration) = self.duration {
             writeln!(f, "simulated time: {duration:.3e} s")?;
         }
@@ -109,16 +96,9 @@ impl fmt::Display for Estimate {
                     self.step_wall * 1e3,
                     self.measured
                 )?;
-                write!(
-                    f,
-                    "wall time: about {}, more as contacts form; output not included",
-                    span(wall)
-                )
+                write!(f, "wall time: about {}, more as contacts form; output not included", span(wall))
             }
-            None => write!(
-                f,
-                "steps: unknown, because the scene ends at no strain, time or number of steps"
-            ),
+            None => write!(f, "steps: unknown, because the scene ends at no strain, time or number of steps"),
         }
     }
 }

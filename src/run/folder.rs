@@ -30,17 +30,11 @@ impl OutFolder {
     /// it cannot be written.
     pub fn check(path: &Path, overwrite: bool) -> Result<Self> {
         if path.exists() && !path.is_dir() {
-            return Err(Error::input(
-                format!("{} is not a folder", path.display()),
-                "give another one with --out",
-            ));
+            return Err(Error::input(format!("{} is not a folder", path.display()), "give another one with --out"));
         }
         if path.is_dir() && !overwrite && !is_empty(path)? {
             return Err(Error::input(
-                format!(
-                    "the output folder {} exists and is not empty",
-                    path.display()
-                ),
+                format!("the output folder {} exists and is not empty", path.display()),
                 "give --overwrite to replace the results in it, or another folder with --out",
             ));
         }
@@ -53,8 +47,7 @@ impl OutFolder {
     /// # Errors
     /// [`Error::Io`].
     pub fn open(&self) -> Result<()> {
-        fs::create_dir_all(&self.path)
-            .map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
+        fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
         let tables = tables::FILES.into_iter();
         for name in tables.chain([SCENE, SUMMARY, RECORDING, TRAJECTORY]) {
             let file = self.path.join(name);
@@ -70,8 +63,7 @@ impl OutFolder {
     /// [`Error::Io`].
     pub fn open_for_pictures(&self) -> Result<()> {
         clear_pictures(&self.path)?;
-        fs::create_dir_all(&self.path)
-            .map_err(|e| Error::io("cannot create the folder", &self.path, e))
+        fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))
     }
 
     /// The path of a file in it.
@@ -81,8 +73,7 @@ impl OutFolder {
 }
 
 fn is_empty(folder: &Path) -> Result<bool> {
-    let mut entries =
-        fs::read_dir(folder).map_err(|e| Error::io("cannot read the folder", folder, e))?;
+    let mut entries = fs::read_dir(folder).map_err(|e| Error::io("cannot read the folder", folder, e))?;
     Ok(entries.next().is_none())
 }
 
@@ -90,10 +81,7 @@ fn is_empty(folder: &Path) -> Result<bool> {
 fn probe(path: &Path) -> Result<()> {
     let refuse = |e| Error::io("cannot write into the folder", path, e);
     let absolute = std::path::absolute(path).map_err(refuse)?;
-    let existing = absolute
-        .ancestors()
-        .find(|a| a.exists())
-        .unwrap_or(&absolute);
+    let existing = absolute.ancestors().find(|a| a.exists()).unwrap_or(&absolute);
     tempfile::tempfile_in(existing).map_err(refuse)?;
     if existing != absolute && !existing.is_dir() {
         return Err(refuse(std::io::ErrorKind::NotADirectory.into()));
@@ -103,9 +91,7 @@ fn probe(path: &Path) -> Result<()> {
 
 fn remove_if_there(file: &Path) -> Result<()> {
     match fs::remove_file(file) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-            Err(Error::io("cannot remove", file, e))
-        }
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io("cannot remove", file, e)),
         _ => Ok(()),
     }
 }
@@ -127,15 +113,8 @@ fn clear_pictures(folder: &Path) -> Result<()> {
 
 /// Whether a file is named as the frames are: a PNG (or the beginning of one) with a number in its name.
 fn is_picture(path: &Path) -> bool {
-    let name = path
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let stem = name
-        .strip_suffix(".partial")
-        .unwrap_or(&name)
-        .strip_suffix(".png");
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let stem = name.strip_suffix(".partial").unwrap_or(&name).strip_suffix(".png");
     stem.is_some_and(|stem| stem.contains(|c: char| c.is_ascii_digit()))
 }
 
@@ -149,12 +128,7 @@ mod tests {
         fs::write(folder.path().join("notes.txt"), "mine").unwrap();
         let error = OutFolder::check(folder.path(), false).unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        let Error::Input {
-            help: Some(help), ..
-        } = error
-        else {
-            panic!("{error:?}")
-        };
+        let Error::Input { help: Some(help), .. } = error else { panic!("{error:?}") };
         assert!(help.contains("--overwrite"), "{help}");
     }
 
@@ -163,19 +137,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         fs::create_dir(at(FRAMES)).unwrap();
-        for name in [
-            "notes.txt",
-            "curve.csv",
-            "summary.json",
-            "frames/0001.png",
-            "frames/mine.svg",
-        ] {
+        for name in ["notes.txt", "curve.csv", "summary.json", "frames/0001.png", "frames/mine.svg"] {
             fs::write(at(name), "x").unwrap();
         }
-        OutFolder::check(folder.path(), true)
-            .unwrap()
-            .open()
-            .unwrap();
+        OutFolder::check(folder.path(), true).unwrap().open().unwrap();
         let left = |name: &str| at(name).exists();
         assert!(left("notes.txt") && left("frames/mine.svg"));
         assert!(!left("curve.csv") && !left("summary.json") && !left("frames/0001.png"));
@@ -188,10 +153,7 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         fs::write(folder.path().join("curve.csv"), "old").unwrap();
         OutFolder::check(folder.path(), true).unwrap();
-        assert_eq!(
-            fs::read_to_string(folder.path().join("curve.csv")).unwrap(),
-            "old"
-        );
+        assert_eq!(fs::read_to_string(folder.path().join("curve.csv")).unwrap(), "old");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::folder::TRAJECTORY;
 use crate::base::error::{Error, Result};
 use crate::observe::Observer;
-use crate::pending::observe::trajectory::{Event, Trajectory};
+use crate::observe::trajectory::{Record, Trajectory};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,10 +19,7 @@ pub struct Selection {
 
 impl Default for Selection {
     fn default() -> Self {
-        Self {
-            every: 1,
-            strain: [f64::NEG_INFINITY, f64::INFINITY],
-        }
+        Self { every: 1, strain: [f64::NEG_INFINITY, f64::INFINITY] }
     }
 }
 
@@ -31,11 +28,7 @@ impl Default for Selection {
 /// # Errors
 /// [`Error::Input`] when there is none.
 pub fn trajectory_of(run: &Path) -> Result<PathBuf> {
-    let file = if run.is_dir() {
-        run.join(TRAJECTORY)
-    } else {
-        run.to_path_buf()
-    };
+    let file = if run.is_dir() { run.join(TRAJECTORY) } else { run.to_path_buf() };
     if !file.is_file() {
         return Err(Error::input(
             format!("there is no trajectory at {}", file.display()),
@@ -50,22 +43,14 @@ pub fn trajectory_of(run: &Path) -> Result<PathBuf> {
 /// # Errors
 /// [`Error::Input`] when nothing is selected; otherwise what the trajectory or the observer says. The observer is
 /// finished in either case.
-pub fn replay(
-    run: &Path,
-    selection: &Selection,
-    observer: &mut dyn Observer,
-    stop: &AtomicBool,
-) -> Result<usize> {
+pub fn replay(run: &Path, selection: &Selection, observer: &mut dyn Observer, stop: &AtomicBool) -> Result<usize> {
     let mut trajectory = Trajectory::open(&trajectory_of(run)?)?;
     observer.start(&trajectory.info().clone())?;
     let shown = show(&mut trajectory, selection, observer, stop);
     observer.finish()?;
     match shown? {
         0 => Err(Error::input(
-            format!(
-                "no snapshot of {} lies in that range of strain",
-                run.display()
-            ),
+            format!("no snapshot of {} lies in that range of strain", run.display()),
             "widen --strain-range",
         )),
         shown => Ok(shown),
@@ -79,11 +64,11 @@ fn show(
     stop: &AtomicBool,
 ) -> Result<usize> {
     let (mut inside, mut shown) = (0, 0);
-    while let Some(event) = trajectory.next_event()? {
-        match event {
-            Event::Sample(sample) => observer.sample(&sample)?,
-            Event::Rupture(rupture) => observer.rupture(&rupture)?,
-            Event::Snapshot(snapshot) => {
+    for record in trajectory {
+        match record? {
+            Record::Sample(sample) => observer.sample(&sample)?,
+            Record::Rupture(rupture) => observer.rupture(&rupture)?,
+            Record::Snapshot(snapshot) => {
                 let [from, to] = selection.strain;
                 if (from..=to).contains(&snapshot.sample.strain) {
                     if inside % selection.every.max(1) == 0 {

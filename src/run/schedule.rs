@@ -100,10 +100,7 @@ impl Schedule {
                 self.left -= 1;
             }
         }
-        Due {
-            row: self.rows.due(now) || snapshot,
-            snapshot,
-        }
+        Due { row: self.rows.due(now) || snapshot, snapshot }
     }
 }
 
@@ -113,23 +110,12 @@ mod tests {
     use crate::scene::spec::ColourBy;
 
     fn output(samples: usize, snapshots: usize, rupture_density: f64) -> OutputSpec {
-        OutputSpec {
-            samples,
-            snapshots,
-            rupture_density,
-            frame_size: [64, 64],
-            colour: ColourBy::Stress,
-        }
+        OutputSpec { samples, snapshots, rupture_density, frame_size: [64, 64], colour: ColourBy::Stress }
     }
 
     fn count(schedule: &mut Schedule, from: u32, to: u32) -> (usize, usize) {
-        let dues: Vec<Due> = (from..to)
-            .map(|i| schedule.due(f64::from(i) / 10_000.0))
-            .collect();
-        (
-            dues.iter().filter(|d| d.row).count(),
-            dues.iter().filter(|d| d.snapshot).count(),
-        )
+        let dues: Vec<Due> = (from..to).map(|i| schedule.due(f64::from(i) / 10_000.0)).collect();
+        (dues.iter().filter(|d| d.row).count(), dues.iter().filter(|d| d.snapshot).count())
     }
 
     #[test]
@@ -158,10 +144,7 @@ mod tests {
         assert!(schedule.due(0.15).snapshot);
         schedule.rupture(0.151);
         assert!(!schedule.due(0.151).snapshot);
-        assert!(
-            schedule.due(0.176).snapshot,
-            "the batch is shown when the spacing has passed"
-        );
+        assert!(schedule.due(0.176).snapshot, "the batch is shown when the spacing has passed");
     }
 
     #[test]

@@ -31,11 +31,9 @@ impl fmt::Display for StopReason {
             Self::Strain(strain) => {
                 write!(f, "strain reached {:.4} % (stop.strain)", strain * 100.0)
             }
-            Self::StressFraction(fraction) => write!(
-                f,
-                "stress fell to {} % of its peak after a rupture (stop.stress_fraction)",
-                fraction * 100.0
-            ),
+            Self::StressFraction(fraction) => {
+                write!(f, "stress fell to {} % of its peak after a rupture (stop.stress_fraction)", fraction * 100.0)
+            }
             Self::Time(time) => write!(f, "time reached {time:e} s (stop.time)"),
             Self::Steps(steps) => write!(f, "{steps} steps were done (stop.steps)"),
             Self::Interrupted => write!(f, "interrupted"),
@@ -57,13 +55,7 @@ pub struct StopRule {
 impl StopRule {
     /// The rule of a scene.
     pub fn new(stop: &StopSpec) -> Self {
-        Self {
-            stop: stop.clone(),
-            window: VecDeque::with_capacity(WINDOW),
-            peak: 0.0,
-            ruptured: false,
-            fallen: false,
-        }
+        Self { stop: stop.clone(), window: VecDeque::with_capacity(WINDOW), peak: 0.0, ruptured: false, fallen: false }
     }
 
     /// A bond broke.
@@ -115,12 +107,7 @@ mod tests {
     use super::*;
 
     fn at_half() -> StopRule {
-        StopRule::new(&StopSpec {
-            strain: None,
-            stress_fraction: Some(0.5),
-            time: None,
-            steps: None,
-        })
+        StopRule::new(&StopSpec { strain: None, stress_fraction: Some(0.5), time: None, steps: None })
     }
 
     fn rows(rule: &mut StopRule, stress: f64, count: usize) {
@@ -133,10 +120,7 @@ mod tests {
         rows(&mut rule, 100.0, 30);
         rule.rupture();
         rows(&mut rule, 20.0, 20);
-        assert_eq!(
-            rule.reached(0.0, 0.0, 0),
-            Some(StopReason::StressFraction(0.5))
-        );
+        assert_eq!(rule.reached(0.0, 0.0, 0), Some(StopReason::StressFraction(0.5)));
     }
 
     #[test]
@@ -159,25 +143,11 @@ mod tests {
 
     #[test]
     fn each_limit_ends_the_run() {
-        let stop = StopSpec {
-            strain: Some(0.3),
-            stress_fraction: None,
-            time: Some(2.0),
-            steps: Some(7),
-        };
+        let stop = StopSpec { strain: Some(0.3), stress_fraction: None, time: Some(2.0), steps: Some(7) };
         let rule = StopRule::new(&stop);
         assert_eq!(rule.reached(0.29, 1.9, 6), None);
-        assert!(matches!(
-            rule.reached(0.3, 1.9, 6),
-            Some(StopReason::Strain(_))
-        ));
-        assert!(matches!(
-            rule.reached(0.0, 2.0, 6),
-            Some(StopReason::Time(_))
-        ));
-        assert!(matches!(
-            rule.reached(0.0, 0.0, 7),
-            Some(StopReason::Steps(7))
-        ));
+        assert!(matches!(rule.reached(0.3, 1.9, 6), Some(StopReason::Strain(_))));
+        assert!(matches!(rule.reached(0.0, 2.0, 6), Some(StopReason::Time(_))));
+        assert!(matches!(rule.reached(0.0, 0.0, 7), Some(StopReason::Steps(7))));
     }
 }

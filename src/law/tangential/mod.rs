@@ -54,5 +54,9 @@ pub trait TangentialLaw: Copy + Send + Sync + 'static {
 pub fn turn(stored: DVec3, normal: DVec3) -> DVec3 {
     let flat = stored - normal * stored.dot(normal);
     let (before, after) = (stored.length_squared(), flat.length_squared());
-    if after > 0.0 { flat * (before / after).sqrt() } else { DVec3::ZERO }
+    if after > 0.0 {
+        flat * (before / after).sqrt()
+    } else {
+        DVec3::ZERO
+    }
 }
