@@ -93,11 +93,11 @@ impl Dimension {
         }
     }
 
-    /// Spellings tried by [`format`], the SI unit first; the factor is to SI.
+    /// Spellings tried by [`format`], the preferred one first; the factor is to SI.
     fn spellings(self) -> &'static [(&'static str, f64)] {
         match self {
             Dimension::Ratio => &[],
-            Dimension::Length => &[("m", 1.0), ("mm", 1e-3)],
+            Dimension::Length => &[("mm", 1e-3), ("m", 1.0)],
             Dimension::Time => &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)],
             Dimension::Frequency => &[("Hz", 1.0), ("kHz", 1e3)],
             Dimension::Velocity => &[("m/s", 1.0), ("mm/s", 1e-3)],

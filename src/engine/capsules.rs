@@ -250,62 +250,51 @@ fn reduced_mass<N, S>(state: &State, c: &Contact<N, S>) -> f64 {
     a * b / (a + b)
 }
 
-/// Lets the contact walk along the other wire until its nearest point lies on the segment (j, j + 1).
+/// Lets the contact walk along the other body until its nearest point lies on the segment (j, j + 1), and returns that
+/// point. Where two segments meet on the outside of a bend the particle between them is nearest; at the end of a piece
+/// its last particle is.
 #[inline(always)]
 fn walk<N, S>(state: &State, wire_of: &[u32], c: &mut Contact<N, S>) -> DVec3 {
     let p = state.x.get(c.i as usize);
     let wire = wire_of[c.j as usize];
-    let joined = |j: usize| wire != u32::MAX && state.whole[j];
-    // Three moves reach any segment that a step can; more would be a jump.
-    for _ in 0..3 {
+    let segment = |k: usize| {
+        let joined = wire != u32::MAX && wire_of[k] == wire && state.whole[k];
+        joined.then(|| closest_on_segment(p, state.x.get(k), state.x.get(k + 1)))
+    };
+    // A step moves a contact by far less than a segment; after a search it may be two away.
+    for _ in 0..4 {
         let j = c.j as usize;
-        if !joined(j) {
-            // Last particle of a piece: rest on the segment before it, if there is one.
-            if j > 0 && joined(j - 1) && wire_of[j - 1] == wire {
-                let (t, point) = closest_on_segment(p, state.x.get(j - 1), state.x.get(j));
-                if t < 1.0 {
-                    (c.j, c.t, c.segment) = (c.j - 1, t.max(0.0), true);
-                    if t < 0.0 {
-                        continue;
-                    }
-                    return point;
-                }
+        let before = || j.checked_sub(1).and_then(segment);
+        let at_particle = |c: &mut Contact<N, S>, j: usize| {
+            (c.j, c.t, c.segment) = (j as u32, 0.0, segment(j).is_some());
+            state.x.get(j)
+        };
+        match segment(j) {
+            Some(here) if here.raw > 1.0 => match segment(j + 1) {
+                Some(next) if next.raw > 0.0 => c.j += 1,
+                _ => return at_particle(c, j + 1),
+            },
+            Some(here) if here.raw >= 0.0 => {
+                (c.t, c.segment) = (here.raw, true);
+                return here.point;
             }
-            (c.t, c.segment) = (0.0, false);
-            return state.x.get(j);
-        }
-        let (t, point) = closest_on_segment(p, state.x.get(j), state.x.get(j + 1));
-        (c.t, c.segment) = (t.clamp(0.0, 1.0), true);
-        if t >= 1.0 {
-            c.j += 1;
-            c.t = 0.0;
-            if !joined(j + 1) {
-                c.segment = false;
-                return state.x.get(j + 1);
-            }
-            let (next, _) = closest_on_segment(p, state.x.get(j + 1), state.x.get(j + 2));
-            if next <= 0.0 {
-                // On the outside of a bend the shared particle is nearest.
-                return state.x.get(j + 1);
-            }
-        } else if t < 0.0 && j > 0 && joined(j - 1) && wire_of[j - 1] == wire {
-            let (last, _) = closest_on_segment(p, state.x.get(j - 1), state.x.get(j));
-            if last >= 1.0 {
-                return state.x.get(j);
-            }
-            c.j -= 1;
-        } else {
-            return point;
+            _ => match before() {
+                Some(last) if last.raw < 1.0 => c.j -= 1,
+                _ => return at_particle(c, j),
+            },
         }
     }
     let j = c.j as usize;
-    if !joined(j) {
-        (c.t, c.segment) = (0.0, false);
-        return state.x.get(j);
+    match segment(j) {
+        Some(here) => {
+            (c.t, c.segment) = (here.raw.clamp(0.0, 1.0), true);
+            here.point
+        }
+        None => {
+            (c.t, c.segment) = (0.0, false);
+            state.x.get(j)
+        }
     }
-    let (t, point) = closest_on_segment(p, state.x.get(j), state.x.get(j + 1));
-    (c.t, c.segment) = (t.clamp(0.0, 1.0), true);
-    point
 }
 
 /// Kinematics and response of one contact.

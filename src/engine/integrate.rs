@@ -60,7 +60,7 @@ fn mean_thinning(whole: &[bool], thinning: &[f64], p: usize) -> Option<f64> {
 pub fn kick(state: &mut State, dt: f64, turn: bool) {
     let (mass, inertia) = (&state.mass, &state.inertia);
     let (f, t) = (&state.force, &state.torque);
-    let mut accelerate = |v: &mut crate::base::vectors::Vectors, f: &crate::base::vectors::Vectors, m: &[f64]| {
+    let accelerate = |v: &mut crate::base::vectors::Vectors, f: &crate::base::vectors::Vectors, m: &[f64]| {
         (v.x.par_chunks_mut(CHUNK), v.y.par_chunks_mut(CHUNK), v.z.par_chunks_mut(CHUNK))
             .into_par_iter()
             .enumerate()

@@ -84,9 +84,16 @@ impl<'a> At<'a> {
         self.key(&index.to_string())
     }
 
-    /// The last part of the path: the key itself.
-    pub fn name(&self) -> &str {
-        self.path.last().map_or("the scene", String::as_str)
+    /// The key itself, with element numbers where there are any: `speed`, `from[2]`.
+    pub fn name(&self) -> String {
+        let is_key = |part: &String| part.parse::<usize>().is_err();
+        let Some(key) = self.path.iter().rposition(is_key) else {
+            return "the scene".into();
+        };
+        let elements = self.path[key + 1..]
+            .iter()
+            .map(|index| format!("[{index}]"));
+        self.path[key].clone() + &elements.collect::<String>()
     }
 
     /// An error here.
@@ -214,22 +221,7 @@ impl<'a> At<'a> {
     pub fn vector(&self, raw: &Triple, dimension: Dimension) -> Result<DVec3> {
         let mut value = DVec3::ZERO;
         for (axis, raw) in raw.iter().enumerate() {
-            let element = self.element(axis);
-            value[axis] = match raw {
-                // An element has no name worth showing, so the array's key stands for it.
-                Scalar::Number(number) => {
-                    let what = format!(
-                        "`{}` holds the bare number {number}, but a {} needs its unit",
-                        self.name(),
-                        dimension.name()
-                    );
-                    return Err(element.error(
-                        what,
-                        format!("write each of the three like {}", dimension.example()),
-                    ));
-                }
-                raw => element.quantity(raw, dimension, Range::Any)?,
-            };
+            value[axis] = self.element(axis).quantity(raw, dimension, Range::Any)?;
         }
         Ok(value)
     }

@@ -120,10 +120,8 @@ impl Reader<'_> {
             return Ok(());
         };
         let mut words = rest.split_whitespace();
-        if !words
-            .next()
-            .is_some_and(|number| number.parse::<usize>().is_ok())
-        {
+        let number = words.next().map(str::parse::<usize>);
+        if !matches!(number, Some(Ok(_))) {
             return Ok(());
         }
         if !self.points.is_empty() {

@@ -109,7 +109,7 @@ impl Override {
             (Item::Table(_), Value::InlineTable(table)) => Item::Table(table.into_table()),
             (Item::Table(_), other) => {
                 let what = format!(
-                    "`{}` is a table, but a {} was given",
+                    "`{}` is a table, but the value is of type {}",
                     self.path.join("."),
                     other.type_name()
                 );
@@ -142,7 +142,7 @@ impl Override {
             Item::Value(Value::Array(array)) => array.len(),
             other => {
                 let what = format!(
-                    "`{parent}` is a {}, so it has no key `{name}`",
+                    "`{parent}` is of type {}, so it has no key `{name}`",
                     other.type_name()
                 );
                 return Err(self.error(Part::Key, what, format!("set `{parent}` itself")));

@@ -3,6 +3,7 @@
 use super::overrides::Override;
 use crate::base::error::{Error, SceneError};
 use miette::{NamedSource, SourceSpan};
+use std::cmp::Ordering;
 use std::ops::Range;
 use toml_edit::{Document, Item};
 
@@ -66,10 +67,11 @@ impl SceneSource {
             });
         match chosen {
             Some(option) => {
-                let part = if option.path() == path {
-                    part
-                } else {
-                    Part::Value
+                // At what the error is about; at the value that holds it; at the key that made the table.
+                let part = match path.len().cmp(&option.path().len()) {
+                    Ordering::Equal => part,
+                    Ordering::Greater => Part::Value,
+                    Ordering::Less => Part::Key,
                 };
                 option.error(part, what, help)
             }

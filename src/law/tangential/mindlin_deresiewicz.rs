@@ -1,0 +1,400 @@
+//! Partial slip with loading, unloading and reloading (Mindlin & Deresiewicz 1953, J. Appl. Mech. 20, 327; in the
+//! incremental form of Thornton, Cummins & Cleary 2011, Powder Technol. 210, 189):
+//! ΔF = 8 G* a θ Δδ + (−1)^k μ (1 − θ) ΔF_n.
+//!
+//! # Slip under constant normal force
+//!
+//! Let m = μ F_n, k_t = 8 G* a and δ_c = 3m/(2k_t). The virgin curve is F = φ(δ) = m [1 − (1 − δ/δ_c)^(3/2)], whose
+//! slope is k_t θ with θ³ = 1 − F/m. Unloading from F* follows F = F* − 2φ(h/2), h the slip since the reversal, with
+//! θ³ = 1 − (F* − F)/(2m); reloading from F** follows F = F** + 2φ(h/2) with θ³ = 1 − (F − F**)/(2m) and joins the
+//! virgin curve where it reaches F* again (Masing's rule). These are the three θ of the incremental form. The curves
+//! are used themselves, not their tangents, so that a step may be of any length.
+//!
+//! # Two dimensions
+//!
+//! F, F* and F** are vectors in the tangent plane. The curves act along the vector from the point where the branch
+//! began (the origin, F* or F**) to the present pull: the equivalent displacement e along it gets the slip added as a
+//! vector and the force is φ(|e|) along the new e. Slip that lengthens e continues the branch, also when it turns it;
+//! slip that shortens it is a reversal. Along one line this is the law above.
+//!
+//! # Normal force
+//!
+//! - It has risen by ΔF_n: pull and memory stay, and the new annulus sticks until the pull has changed by μ ΔF_n in
+//!   this step. The published form has θ = 1 there; this one has θ from 1 to F_n,prev/F_n, the fresh curve
+//!   θ³ = 1 − |ΔF|/m (Jäger 2005), which is the same for small ΔF_n. Beyond it, the branch goes on: this sum is
+//!   8 G* a θ Δδ + μ (1 − θ) ΔF_n.
+//! - It has fallen, or the radius has: a virgin pull is taken at its displacement on the curve of the new load, which
+//!   is ΔF = μ (1 − θ) ΔF_n; on the other branches it shrinks with the radius, and F* and F** with the cap.
+//!
+//! Here the law departs from the published update (F* + μ ΔF_n, F** − μ ΔF_n, and the term −μ (1 − θ) ΔF_n on
+//! unloading): applied to a normal force that goes up and down without slip, that one drives the pull towards F* and
+//! so creates energy out of nothing.
+//!
+//! # Energy
+//!
+//! Partial slip is a set of springs with friction elements side by side (Iwan 1967), so the stored energy, locked-in
+//! parts included, has a closed form. With e(F) the inverse of φ and C(F) = ∫ e dF: U = C(|F|) on the virgin curve,
+//! U = C(|F*|) − (F* + F)·q̂ e(|q|) with q = (F* − F)/2 on unloading, and U = U(F*, F**) + (F** + F)·q̂ e(|q|) with
+//! q = (F − F**)/2 on reloading. Of all states with one pull the virgin one stores least, so a memory may be dropped
+//! at any time, and dropping it is friction.
+
+use glam::DVec3;
+
+use super::mindlin::held_to;
+use super::{TangentialInput, TangentialLaw, TangentialResponse, turn};
+
+/// Mindlin and Deresiewicz's law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MindlinDeresiewicz {
+    /// Effective shear modulus G* of the pair [Pa].
+    pub shear_modulus_star: f64,
+    /// Coefficient of friction μ [-].
+    pub friction: f64,
+}
+
+/// Branch on which the contact is, with the pulls at which it turned round (k = 0, 1, 2).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Branch {
+    /// First loading: no memory.
+    #[default]
+    Loading,
+    /// Unloading.
+    Unloading {
+        /// Pull F* at which loading ended [N].
+        peak: DVec3,
+    },
+    /// Reloading.
+    Reloading {
+        /// Pull F* at which loading ended [N].
+        peak: DVec3,
+        /// Pull F** at which unloading ended [N].
+        valley: DVec3,
+    },
+}
+
+/// History of one contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MindlinDeresiewiczState {
+    /// Pull at the last step [N].
+    pub pull: DVec3,
+    /// Branch and memory.
+    pub branch: Branch,
+    /// Cap μ F_n at the last step [N].
+    pub cap: f64,
+    /// Contact radius at the last step [m].
+    pub radius: f64,
+    /// Unit normal at the last step: pull and memory turn as one body, or their energy would change.
+    pub normal: DVec3,
+    /// Stored energy at the last step [J].
+    pub energy: f64,
+}
+
+/// The virgin curve φ for one normal load. All formulas are written in 1 − θ, which keeps small pulls exact.
+#[derive(Debug, Clone, Copy)]
+struct Curve {
+    /// m = μ F_n [N].
+    cap: f64,
+    /// δ_c = 3m/(2k_t) [m].
+    reach: f64,
+}
+
+impl Curve {
+    #[inline(always)]
+    fn new(cap: f64, stiffness: f64) -> Self {
+        Curve { cap, reach: 1.5 * cap / stiffness }
+    }
+
+    /// φ(δ) [N]: m (1 − θ³) with θ² = 1 − δ/δ_c; m beyond δ_c.
+    #[inline(always)]
+    fn force(&self, displacement: f64) -> f64 {
+        let part = (displacement / self.reach).min(1.0);
+        let theta = (1.0 - part).sqrt();
+        self.cap * part * (1.0 + theta + theta * theta) / (1.0 + theta)
+    }
+
+    /// θ and 1 − θ at a force up to m.
+    #[inline(always)]
+    fn theta(&self, force: f64) -> (f64, f64) {
+        let part = (force / self.cap).min(1.0);
+        let theta = (1.0 - part).cbrt();
+        (theta, part / (1.0 + theta + theta * theta))
+    }
+
+    /// e(F) [m]: δ_c (1 − θ²).
+    #[inline(always)]
+    fn displacement(&self, force: f64) -> f64 {
+        let (theta, rest) = self.theta(force);
+        self.reach * rest * (1.0 + theta)
+    }
+
+    /// C(F) = ∫ e dF [J]: m δ_c (2/5 − θ³ + 3θ⁵/5), expanded in 1 − θ.
+    #[inline(always)]
+    fn stored(&self, force: f64) -> f64 {
+        let (_, t) = self.theta(force);
+        self.cap * self.reach * t * t * (3.0 - 5.0 * t + 3.0 * t * t - 0.6 * t * t * t)
+    }
+
+    /// Displacement vector e(|F|) F̂ of a pull [m].
+    #[inline(always)]
+    fn displacement_of(&self, pull: DVec3) -> DVec3 {
+        let length = pull.length();
+        if length > 0.0 { pull * (self.displacement(length) / length) } else { DVec3::ZERO }
+    }
+
+    /// Pull φ(|e|) ê of a displacement vector [N].
+    #[inline(always)]
+    fn force_of(&self, displacement: DVec3) -> DVec3 {
+        let length = displacement.length();
+        if length > 0.0 { displacement * (self.force(length) / length) } else { DVec3::ZERO }
+    }
+
+    /// Work that takes the pull from `from` to `to` along a Masing branch that began at `from` and has its trapezoid:
+    /// (F_from + F_to)·q̂ e(|q|), q = (F_to − F_from)/2 [J].
+    #[inline(always)]
+    fn masing_work(&self, from: DVec3, to: DVec3) -> f64 {
+        (from + to).dot(self.displacement_of(0.5 * (to - from)))
+    }
+}
+
+/// `vector`, normal to the unit vector `from`, rotated as the shortest rotation takes `from` to `to`.
+#[inline(always)]
+fn rotated(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+    let scale = 1.0 + from.dot(to);
+    // A normal turned round (scale 0) leaves the tangent plane where it was.
+    if scale > 1e-12 { vector - (from + to) * (vector.dot(to) / scale) } else { vector }
+}
+
+impl MindlinDeresiewiczState {
+    /// Stored energy [J] on the curve of the present load.
+    fn stored(&self, curve: &Curve) -> f64 {
+        match self.branch {
+            Branch::Loading => curve.stored(self.pull.length()),
+            Branch::Unloading { peak } => curve.stored(peak.length()) + curve.masing_work(peak, self.pull),
+            Branch::Reloading { peak, valley } => {
+                let turned = curve.stored(peak.length()) + curve.masing_work(peak, valley);
+                turned + curve.masing_work(valley, self.pull)
+            }
+        }
+    }
+
+    /// Replaces pull and memory by what `change` makes of them.
+    #[inline(always)]
+    fn map(&mut self, change: impl Fn(DVec3) -> DVec3) {
+        self.pull = change(self.pull);
+        self.branch = match self.branch {
+            Branch::Loading => Branch::Loading,
+            Branch::Unloading { peak } => Branch::Unloading { peak: change(peak) },
+            Branch::Reloading { peak, valley } => Branch::Reloading { peak: change(peak), valley: change(valley) },
+        };
+    }
+
+    /// Drops a turning point that the pull has left behind: all memory when it has reached the peak, the valley when
+    /// it lies on the unloading side of it.
+    fn forget_passed_turns(&mut self) {
+        if let Branch::Reloading { peak, valley } = self.branch
+            && (self.pull - valley).dot(peak - valley) < 0.0
+        {
+            self.branch = Branch::Unloading { peak };
+        }
+        if let Branch::Unloading { peak } | Branch::Reloading { peak, .. } = self.branch
+            && self.pull.length_squared() >= peak.length_squared()
+        {
+            self.branch = Branch::Loading;
+        }
+    }
+
+    /// Slip on the branch where the contact is, at constant normal load.
+    fn slip(&mut self, curve: &Curve, slip: DVec3) {
+        match self.branch {
+            Branch::Loading => self.slip_loading(curve, slip),
+            Branch::Unloading { peak } => {
+                let displacement = 2.0 * curve.displacement_of(0.5 * (self.pull - peak));
+                if slip.dot(displacement) >= 0.0 {
+                    let pull = peak + 2.0 * curve.force_of(0.5 * (displacement + slip));
+                    self.continue_to(curve, slip, peak, pull, self.branch);
+                } else {
+                    let pull = self.pull + 2.0 * curve.force_of(0.5 * slip);
+                    let branch = Branch::Reloading { peak, valley: self.pull };
+                    self.continue_to(curve, slip, peak, pull, branch);
+                }
+            }
+            Branch::Reloading { peak, valley } => {
+                let displacement = 2.0 * curve.displacement_of(0.5 * (self.pull - valley));
+                if slip.dot(displacement) >= 0.0 {
+                    let pull = valley + 2.0 * curve.force_of(0.5 * (displacement + slip));
+                    self.continue_to(curve, slip, peak, pull, self.branch);
+                } else {
+                    // A reversal within the loop: the older memory is dropped, as in the published law.
+                    self.slip_loading(curve, slip);
+                }
+            }
+        }
+    }
+
+    /// Whether memory is worth its energy: no state may store less than the virgin one with its pull. That holds by
+    /// itself on unloading, and on reloading along one line; not where reloading leaves the line of the loop.
+    #[inline(always)]
+    fn can_hold_memory(&self, curve: &Curve) -> bool {
+        !matches!(self.branch, Branch::Reloading { .. }) || self.stored(curve) >= curve.stored(self.pull.length())
+    }
+
+    /// Takes the pull that a Masing branch reaches, or drops the memory before the step where the branch ends: at the
+    /// peak, or where it can no longer hold its memory.
+    fn continue_to(&mut self, curve: &Curve, slip: DVec3, peak: DVec3, pull: DVec3, branch: Branch) {
+        let onward = MindlinDeresiewiczState { pull, branch, ..*self };
+        if pull.length_squared() < peak.length_squared() && onward.can_hold_memory(curve) {
+            *self = onward;
+        } else {
+            self.slip_loading(curve, slip);
+        }
+    }
+
+    /// Slip from the virgin state at the present pull.
+    fn slip_loading(&mut self, curve: &Curve, slip: DVec3) {
+        let start = self.pull;
+        let displacement = curve.displacement_of(start);
+        let onward = displacement + slip;
+        self.branch = Branch::Loading;
+        if onward.length_squared() >= displacement.length_squared() {
+            self.pull = curve.force_of(onward);
+            return;
+        }
+        let pull = start + 2.0 * curve.force_of(0.5 * slip);
+        if pull.length_squared() < start.length_squared() {
+            (self.pull, self.branch) = (pull, Branch::Unloading { peak: start });
+        } else {
+            // A slip nearly square to the pull, slightly inward: it only turns the pull.
+            self.pull = held_to(pull, start.length());
+        }
+    }
+}
+
+impl MindlinDeresiewicz {
+    /// Brings the state to the present normal load at no slip, and answers how far the pull may change before the new
+    /// annulus slips [N].
+    #[inline(always)]
+    fn change_load(&self, state: &mut MindlinDeresiewiczState, curve: &Curve, radius: f64) -> f64 {
+        let grown = curve.cap - state.cap;
+        if state.cap > 0.0 && (grown < 0.0 || radius < state.radius) {
+            self.unload(state, curve, radius);
+        }
+        (state.cap, state.radius) = (curve.cap, radius);
+        if !state.can_hold_memory(curve) {
+            state.branch = Branch::Loading;
+        }
+        grown.max(0.0)
+    }
+
+    /// Normal unloading at no slip. The factor of the pull is the least of a/a_prev and (F_n/F_n,prev)^(1/3), which are
+    /// equal on a Hertzian curve: with it the stored energy cannot grow, whatever the normal law.
+    fn unload(&self, state: &mut MindlinDeresiewiczState, curve: &Curve, radius: f64) {
+        let reloading = matches!(state.branch, Branch::Reloading { .. });
+        let ratio = (curve.cap / state.cap).min(1.0);
+        let mut factor = ratio.cbrt().min(radius / state.radius);
+        if state.branch == Branch::Loading {
+            let length = state.pull.length();
+            if length > 0.0 {
+                let old = Curve::new(state.cap, 8.0 * self.shear_modulus_star * state.radius);
+                factor = factor.min(curve.force(old.displacement(length)) / length);
+            }
+        }
+        let pull = held_to(state.pull * factor, curve.cap);
+        state.map(|vector| vector * ratio);
+        state.pull = pull;
+        state.forget_passed_turns();
+        // Where a loop is not along one line, its locked-in energy need not shrink with the load.
+        if reloading && state.stored(curve) > state.energy {
+            state.branch = Branch::Loading;
+        }
+    }
+}
+
+impl TangentialLaw for MindlinDeresiewicz {
+    type State = MindlinDeresiewiczState;
+
+    const ACTIVE: bool = true;
+
+    fn response(&self, state: &mut MindlinDeresiewiczState, input: &TangentialInput) -> TangentialResponse {
+        let cap = self.friction * input.normal_force;
+        let stiffness = 8.0 * self.shear_modulus_star * input.radius;
+        if cap <= 0.0 || stiffness <= 0.0 {
+            let friction_work = state.energy;
+            *state = MindlinDeresiewiczState::default();
+            return TangentialResponse { friction_work, ..Default::default() };
+        }
+        let curve = Curve::new(cap, stiffness);
+        let energy = state.energy;
+        let last = std::mem::replace(&mut state.normal, input.normal);
+        state.map(|vector| turn(rotated(vector, last, input.normal), input.normal));
+        let fresh = self.change_load(state, &curve, input.radius);
+        let before = state.pull;
+        let slip = input.slip.length();
+        if slip > 0.0 {
+            let stuck = if state.branch == Branch::Loading { curve.displacement(fresh).min(slip) } else { 0.0 };
+            state.pull += input.slip * (curve.force(stuck) / slip);
+            if stuck < slip {
+                state.slip(&curve, input.slip * (1.0 - stuck / slip));
+            }
+        }
+        state.energy = state.stored(&curve);
+        let work = 0.5 * (before + state.pull).dot(input.slip);
+        TangentialResponse { pull: state.pull, stiffness, friction_work: work - (state.energy - energy) }
+    }
+
+    #[inline(always)]
+    fn elastic_energy(&self, state: &MindlinDeresiewiczState) -> f64 {
+        state.energy
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Walk, ball_on_ball, walk};
+    use super::*;
+    use proptest::prelude::*;
+
+    const LAW: MindlinDeresiewicz = MindlinDeresiewicz { shear_modulus_star: 13e9, friction: 0.2 };
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+        #[test]
+        fn no_walk_creates_energy_or_passes_the_cap(steps in walk()) {
+            Walk::run(&LAW, LAW.friction, LAW.shear_modulus_star, &steps)?;
+        }
+    }
+}
+
+#[cfg(test)]
+mod probe {
+    use super::super::testing::ball_on_ball;
+    use super::*;
+    use crate::base::random::uniform;
+    #[test]
+    fn probe() {
+        let law = MindlinDeresiewicz { shear_modulus_star: 13e9, friction: 0.2 };
+        let mut table: std::collections::BTreeMap<String, (u64, u64, f64)> = Default::default();
+        let name = |b: &Branch| match b { Branch::Loading => "L", Branch::Unloading { .. } => "U", Branch::Reloading { .. } => "R" };
+        for one_d in [true, false] {
+        for walk in 0..200000u64 {
+            let mut s = MindlinDeresiewiczState::default();
+            let mut f = 0.5;
+            for i in 0..60u64 {
+                let r = |k| uniform(walk, i, k);
+                let kind = (r(0) * 3.0) as u64;
+                if kind != 0 { let size = [0.01, 0.1, 1.0][(r(1) * 3.0) as usize]; f += (r(2) - f) * size; }
+                let mut slip = DVec3::ZERO;
+                let sl = 1.5 * 0.2 / (8.0 * 13e9 * ball_on_ball(1.0).radius);
+                if kind != 1 { let size = [0.02, 0.3, 1.5][(r(3) * 3.0) as usize]; slip = DVec3::new(2.0 * r(4) - 1.0, if one_d { 0.0 } else { 2.0 * r(5) - 1.0 }, 0.0) * size * sl; }
+                let b = s;
+                let w = law.response(&mut s, &TangentialInput { slip, ..ball_on_ball(f) });
+                let key = format!("{} {} {}->{}", if one_d {"1d"} else {"2d"}, ["slip", "load", "both"][kind as usize].to_string() + if kind > 0 { if s.cap > b.cap { "+" } else { "-" } } else { "" }, name(&b.branch), name(&s.branch));
+                let e = table.entry(key).or_default();
+                e.0 += 1;
+                let rel = w.friction_work / (0.2 * sl);
+                if rel < -1e-13 { e.1 += 1; }
+                if rel < e.2 { e.2 = rel; }
+            }
+        } }
+        for (k, v) in table { println!("{k:20} n {:9} bad {:9} worst {:e}", v.0, v.1, v.2); }
+    }
+}
