@@ -6,6 +6,12 @@
 //! | `mindlin` | ΔF = 8 G* a Δδ, capped at μ F_n | Mindlin 1949 |
 //! | `mindlin-deresiewicz` | ΔF = 8 G* a θ Δδ + (−1)^k μ (1 − θ) ΔF_n | Mindlin & Deresiewicz 1953 |
 
+pub mod mindlin;
+pub mod mindlin_deresiewicz;
+pub mod none;
+#[cfg(test)]
+mod testing;
+
 use glam::DVec3;
 
 /// What a tangential law is told about one contact at one step.
@@ -54,9 +60,30 @@ pub trait TangentialLaw: Copy + Send + Sync + 'static {
 pub fn turn(stored: DVec3, normal: DVec3) -> DVec3 {
     let flat = stored - normal * stored.dot(normal);
     let (before, after) = (stored.length_squared(), flat.length_squared());
-    if after > 0.0 {
-        flat * (before / after).sqrt()
-    } else {
-        DVec3::ZERO
+    if after > 0.0 { flat * (before / after).sqrt() } else { DVec3::ZERO }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = DVec3> {
+        [-1.0..1.0f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from_array)
+    }
+
+    proptest! {
+        #[test]
+        fn turning_keeps_the_length_and_lands_in_the_plane(stored in vector(), normal in vector()) {
+            prop_assume!(normal.length() > 1e-3 && stored.cross(normal.normalize()).length() > 1e-3);
+            let turned = turn(stored, normal.normalize());
+            prop_assert!((turned.length() - stored.length()).abs() < 1e-12);
+            prop_assert!(turned.dot(normal.normalize()).abs() < 1e-12 * (1.0 + stored.length() * 1e3));
+        }
+    }
+
+    #[test]
+    fn a_vector_along_the_normal_has_no_direction_left() {
+        assert_eq!(turn(DVec3::Z, DVec3::Z), DVec3::ZERO);
     }
 }
