@@ -1,1 +1,5 @@
-fn main() {}
+//! The program: everything is in [`strandsnap::cli`].
+
+fn main() -> std::process::ExitCode {
+    strandsnap::cli::main()
+}

@@ -1,5 +1,19 @@
 //! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
 
+pub mod files;
+pub mod guard;
+pub mod partial;
+pub mod planned;
+pub mod progress;
+#[cfg(feature = "record")]
+pub mod recording;
+pub mod report;
+pub mod summary;
+pub mod tables;
+pub mod trajectory;
+pub mod units;
+pub mod wording;
+
 use crate::base::error::Result;
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use std::sync::Arc;

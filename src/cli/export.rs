@@ -1,0 +1,31 @@
+//! `strandsnap export`.
+
+use super::values::SceneArgs;
+use crate::base::error::{Error, Result};
+use crate::observe::files::write_whole;
+use crate::run;
+use crate::scene;
+use crate::strand::centrelines;
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// The text file to write
+    file: PathBuf,
+    /// Replace the file if it exists
+    #[arg(long)]
+    overwrite: bool,
+}
+
+pub fn export(args: &Args) -> Result<()> {
+    let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
+    let assembly = run::assemble(&scene)?;
+    if args.file.exists() && !args.overwrite {
+        return Err(Error::input(format!("{} exists", args.file.display()), "give --overwrite to replace it"));
+    }
+    write_whole(&args.file, &centrelines::export(&assembly))?;
+    println!("{} wires written to {}", assembly.wires.len(), args.file.display());
+    Ok(())
+}

@@ -1,0 +1,25 @@
+//! Ctrl-C: the first ends the run cleanly, the second ends the program.
+
+use crate::base::error::{Error, Result};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What shells expect of a program ended by Ctrl-C: 128 + SIGINT.
+pub const EXIT_CODE: u8 = 130;
+
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Installs the handler and gives the flag that it sets.
+///
+/// # Errors
+/// [`Error::Missing`] when the system refuses the handler.
+pub fn install() -> Result<&'static AtomicBool> {
+    let handler = || {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(EXIT_CODE));
+        }
+        eprintln!("\nstopping; results so far are kept. Press Ctrl-C again to end at once, without them.");
+    };
+    ctrlc::set_handler(handler)
+        .map_err(|e| Error::Missing { what: format!("cannot listen for Ctrl-C: {e}"), help: None })?;
+    Ok(&STOP)
+}

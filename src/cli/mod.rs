@@ -1,0 +1,78 @@
+//! Floor 9: the command line. One file per subcommand; each turns arguments into a call below and prints the answer.
+
+mod export;
+mod interrupt;
+mod plan;
+mod render;
+mod run;
+mod scene;
+mod values;
+
+use crate::base::error::Result;
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Pull stranded wire until it snaps: a discrete-element engine, and the pictures that show how it fails.
+#[derive(Debug, Parser)]
+#[command(name = "strandsnap", version, about, propagate_version = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Simulate a scene and write its results to a folder
+    Run(run::Args),
+    /// Say what a scene would run, what is left out and why, and what it would cost
+    Plan(plan::Args),
+    /// List, show or check scenes
+    #[command(subcommand)]
+    Scene(scene::Command),
+    /// Write the wires' centre lines of a scene to a text file
+    Export(export::Args),
+    /// Draw the frames of a finished run again, without simulating
+    Render(render::Args),
+}
+
+/// How a command ended when nothing went wrong.
+enum Ended {
+    Well,
+    /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
+    Interrupted,
+}
+
+/// Runs the program on its arguments. Exit codes: 0 well; 1 the file system refused; 2 bad input;
+/// 3 the machine lacks something; 4 the simulation had to stop; 130 interrupted.
+pub fn main() -> ExitCode {
+    match dispatch(Cli::parse().command) {
+        Ok(Ended::Well) => ExitCode::SUCCESS,
+        Ok(Ended::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
+        Err(error) => {
+            let code = error.exit_code();
+            eprintln!("{:?}", miette::Report::new(error));
+            ExitCode::from(code)
+        }
+    }
+}
+
+fn dispatch(command: Command) -> Result<Ended> {
+    match command {
+        Command::Run(args) => run::run(args),
+        Command::Plan(args) => plan::plan(&args).map(|()| Ended::Well),
+        Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
+        Command::Export(args) => export::export(&args).map(|()| Ended::Well),
+        Command::Render(args) => render::render(args),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

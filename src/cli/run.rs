@@ -1,0 +1,90 @@
+//! `strandsnap run`.
+
+use super::values::SceneArgs;
+use super::{Ended, interrupt};
+use crate::base::error::Result;
+use crate::observe::report::{one_line, report};
+use crate::run::folder::{FRAMES, RECORDING};
+use crate::run::{self, RunOptions, RunSummary, outputs};
+use crate::scene;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+/// Where a Rerun viewer listens when nobody says otherwise.
+const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder of the results [default: out/NAME]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace earlier results in that folder
+    #[arg(long)]
+    overwrite: bool,
+    /// Threads [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Draw no frames (this needs no graphics adapter)
+    #[arg(long)]
+    no_frames: bool,
+    /// Write no Rerun recording
+    #[arg(long)]
+    no_recording: bool,
+    /// Stream to a Rerun viewer that is already open
+    #[arg(long, value_name = "URL", num_args = 0..=1, default_missing_value = DEFAULT_VIEWER)]
+    live: Option<String>,
+    /// Show no progress, and one line at the end
+    #[arg(long)]
+    quiet: bool,
+}
+
+pub fn run(args: Args) -> Result<Ended> {
+    let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
+    note_what_was_not_built(&args);
+    let options = RunOptions {
+        out: args.out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name)),
+        overwrite: args.overwrite,
+        threads: args.threads.map(usize::from),
+        frames: outputs::HAS_RENDER && !args.no_frames,
+        recording: outputs::HAS_RECORD && !args.no_recording,
+        live: args.live,
+        quiet: args.quiet,
+    };
+    let stop = interrupt::install()?;
+    let summary = run::run(&scene, &options, stop)?;
+    print(&summary, &options);
+    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
+}
+
+/// Frames and recording are on unless refused; a program that cannot make them must say so.
+fn note_what_was_not_built(args: &Args) {
+    if !outputs::HAS_RENDER && !args.no_frames {
+        eprintln!("note: no frames, because this program was built without the feature `render`");
+    }
+    if !outputs::HAS_RECORD && !args.no_recording {
+        eprintln!("note: no recording, because this program was built without the feature `record`");
+    }
+}
+
+fn print(summary: &RunSummary, options: &RunOptions) {
+    if options.quiet {
+        println!("{}", one_line(summary));
+    } else {
+        println!("{}\n{}", summary.scene, report(summary));
+    }
+    for warning in &summary.warnings {
+        eprintln!("WARNING: {warning}");
+    }
+    if !options.quiet {
+        println!("Results are in {}:", options.out.display());
+        println!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
+        if options.frames {
+            println!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
+        }
+        if options.recording {
+            println!("Open the recording with: rerun {}", options.out.join(RECORDING).display());
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! `strandsnap scene list|show|check`.
+
+use super::values::SceneArgs;
+use crate::base::error::Result;
+use crate::run;
+use crate::scene::{self, builtin};
+
+#[derive(Debug, clap::Subcommand)]
+pub enum Command {
+    /// List the built-in scenes
+    List,
+    /// Print a built-in scene, to start one's own from
+    Show {
+        /// Its name
+        name: String,
+    },
+    /// Check a scene and its geometry without running it
+    Check(SceneArgs),
+}
+
+pub fn scene(command: &Command) -> Result<()> {
+    match command {
+        Command::List => list(),
+        Command::Show { name } => show(name),
+        Command::Check(args) => check(args),
+    }
+}
+
+fn list() -> Result<()> {
+    let width = builtin::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    for (name, _) in builtin::list() {
+        let about = builtin::about(name)?;
+        println!("{name:width$}  {}", about.lines().collect::<Vec<_>>().join(" "));
+    }
+    Ok(())
+}
+
+fn show(name: &str) -> Result<()> {
+    print!("{}", builtin::find(name)?);
+    Ok(())
+}
+
+fn check(args: &SceneArgs) -> Result<()> {
+    let scene = scene::load(&args.scene, &args.overrides())?;
+    let assembly = run::assemble(&scene)?;
+    println!(
+        "{} is fine: {} wires, {} particles, {} bonds",
+        args.scene,
+        assembly.wires.len(),
+        assembly.len(),
+        assembly.bond_count()
+    );
+    Ok(())
+}

@@ -1,0 +1,97 @@
+//! How single arguments are written.
+
+use crate::scene::spec::ColourBy;
+use clap::{Args, ValueEnum};
+
+/// The scene and changes to it: what every command that loads a scene takes.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// Built-in scene by name (see `strandsnap scene list`), or the path of a TOML file
+    pub scene: String,
+    /// Change a key of the scene, such as --set contact.friction=0.3
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Seed of the scatter; the same as --set seed=N
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+}
+
+impl SceneArgs {
+    /// All changes, in the order in which they win.
+    pub fn overrides(&self) -> Vec<String> {
+        let seed = self.seed.map(|seed| format!("seed={seed}"));
+        self.set.iter().cloned().chain(seed).collect()
+    }
+}
+
+/// [`ColourBy`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Colour {
+    /// True axial stress
+    Stress,
+    /// Equivalent plastic strain
+    PlasticStrain,
+    /// Layer
+    Layer,
+    /// Wire
+    Wire,
+    /// Speed
+    Velocity,
+}
+
+impl From<Colour> for ColourBy {
+    fn from(colour: Colour) -> Self {
+        match colour {
+            Colour::Stress => ColourBy::Stress,
+            Colour::PlasticStrain => ColourBy::PlasticStrain,
+            Colour::Layer => ColourBy::Layer,
+            Colour::Wire => ColourBy::Wire,
+            Colour::Velocity => ColourBy::Velocity,
+        }
+    }
+}
+
+/// Pixels, written as `1280x720`.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X', '×']);
+    let parsed = sides.and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
+    match parsed {
+        Some([w, h]) if w > 0 && h > 0 => Ok([w, h]),
+        _ => Err("write width and height in pixels, such as 1280x720".into()),
+    }
+}
+
+/// A range of strain in per cent, written as `20..26`; either end may be left out. Gives fractions [-].
+pub fn strain_range(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || "write two strains in per cent, such as 20..26, 20.. or ..26".to_string();
+    let (from, to) = text.split_once("..").ok_or_else(wrong)?;
+    let end = |side: &str, open: f64| match side.trim().trim_end_matches('%').trim() {
+        "" => Ok(open),
+        number => number.parse::<f64>().map(|percent| percent / 100.0).map_err(|_| wrong()),
+    };
+    let range = [end(from, f64::NEG_INFINITY)?, end(to, f64::INFINITY)?];
+    if range[0] <= range[1] { Ok(range) } else { Err(wrong()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("1280x720"), Ok([1280, 720]));
+        for wrong in ["1280", "0x720", "ax2", "1280x", "-1x5"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn ranges_of_strain() {
+        assert_eq!(strain_range("20..26"), Ok([0.2, 0.26]));
+        assert_eq!(strain_range("20 % .. 26 %"), Ok([0.2, 0.26]));
+        assert_eq!(strain_range("..5"), Ok([f64::NEG_INFINITY, 0.05]));
+        for wrong in ["20", "26..20", "a..b"] {
+            assert!(strain_range(wrong).is_err(), "{wrong}");
+        }
+    }
+}

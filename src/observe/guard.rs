@@ -1,0 +1,179 @@
+//! Watches whether the run can be trusted: every value finite, and loading quasi-static.
+
+use super::Observer;
+use super::units::percent;
+use crate::base::error::{Error, Result};
+use crate::engine::view::{RunInfo, Rupture, Sample};
+use crate::scene::spec::TimeSpec;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// Rows whose internal energy is below this share of the run's greatest one say nothing about kinetic
+/// over internal energy [-]: a pull starts with kinetic energy and no strain, where the ratio is infinite.
+const LEAST_INTERNAL_SHARE: f64 = 0.01;
+
+/// Unbalanced share of the energy ledger above which a run warns [-].
+const ENERGY_LIMIT: f64 = 0.01;
+
+/// How far loading was from quasi-static. `None` for free bodies, which are not loaded by grips.
+///
+/// The quasi-static stage ends with the first rupture: a wire that snaps always throws energy about,
+/// so the whole run is given beside it and judged by nobody.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct QuasiStatic {
+    /// Greatest kinetic over internal energy before the first rupture [-], over rows with at least 1 % of the
+    /// run's greatest internal energy.
+    pub kinetic_over_internal_max: Option<f64>,
+    /// The same over the whole run [-].
+    pub kinetic_over_internal_overall: Option<f64>,
+    /// Greatest difference of the two grip forces before the first rupture, over the run's peak grip force [%].
+    pub grip_force_mismatch_percent: Option<f64>,
+    /// The same over the whole run [%].
+    pub grip_force_mismatch_overall_percent: Option<f64>,
+}
+
+struct Row {
+    kinetic: f64,
+    internal: f64,
+    force: [f64; 2],
+    before_rupture: bool,
+}
+
+/// The observer. It stops a run whose values stop being finite.
+#[derive(Default)]
+pub struct Guard {
+    rows: Vec<Row>,
+    gripped: bool,
+    ruptured: bool,
+    residual: Option<f64>,
+}
+
+impl Guard {
+    /// A guard that has seen nothing.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What it has seen so far.
+    pub fn quasi_static(&self) -> QuasiStatic {
+        if !self.gripped {
+            return QuasiStatic::default();
+        }
+        let staged = |row: &&Row| row.before_rupture;
+        QuasiStatic {
+            kinetic_over_internal_max: self.kinetic_ratio(self.rows.iter().filter(staged)),
+            kinetic_over_internal_overall: self.kinetic_ratio(self.rows.iter()),
+            grip_force_mismatch_percent: self.mismatch(self.rows.iter().filter(staged)),
+            grip_force_mismatch_overall_percent: self.mismatch(self.rows.iter()),
+        }
+    }
+
+    /// What the user must know about the run before believing it.
+    pub fn warnings(&self, limits: &TimeSpec) -> Vec<String> {
+        let seen = self.quasi_static();
+        let mut warnings = Vec::new();
+        if let Some(ratio) = seen.kinetic_over_internal_max
+            && ratio > limits.kinetic_limit
+        {
+            warnings.push(format!(
+                "loading was not quasi-static: kinetic energy reached {ratio:.3} of the internal energy before \
+                 the first rupture (limit time.kinetic_limit = {}); pull more slowly",
+                limits.kinetic_limit
+            ));
+        }
+        if let Some(mismatch) = seen.grip_force_mismatch_percent
+            && mismatch > percent(limits.mismatch_limit)
+        {
+            warnings.push(format!(
+                "loading was not quasi-static: the two grip forces differed by {mismatch:.2} % of the peak force \
+                 before the first rupture (limit time.mismatch_limit = {} %); pull more slowly",
+                percent(limits.mismatch_limit)
+            ));
+        }
+        if let Some(residual) = self.residual
+            && residual.abs() > ENERGY_LIMIT
+        {
+            warnings.push(format!(
+                "the energy ledger does not close: {:.2} % of the work done is unaccounted for",
+                percent(residual)
+            ));
+        }
+        warnings
+    }
+
+    fn kinetic_ratio<'a>(&'a self, rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
+        let most = self.rows.iter().map(|r| r.internal).fold(0.0, f64::max);
+        let telling = rows.filter(|r| r.internal > 0.0 && r.internal >= LEAST_INTERNAL_SHARE * most);
+        telling.map(|r| r.kinetic / r.internal).reduce(f64::max)
+    }
+
+    fn mismatch<'a>(&'a self, rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
+        let peak = self.rows.iter().flat_map(|r| r.force).map(f64::abs).fold(0.0, f64::max);
+        if peak == 0.0 {
+            return None;
+        }
+        rows.map(|r| percent((r.force[1] - r.force[0]).abs() / peak)).reduce(f64::max)
+    }
+}
+
+/// The first value of a row that is not finite, by name.
+fn first_not_finite(sample: &Sample) -> Option<String> {
+    let named = [
+        ("time", sample.time),
+        ("strain", sample.strain),
+        ("nominal stress", sample.stress),
+        ("lower grip force", sample.grip_force[0]),
+        ("upper grip force", sample.grip_force[1]),
+        ("torque", sample.torque),
+        ("work", sample.energy.work),
+        ("kinetic energy", sample.energy.kinetic),
+        ("internal energy", sample.energy.internal()),
+    ];
+    let wires = sample.wire_stress.iter().enumerate();
+    named
+        .into_iter()
+        .find(|(_, value)| !value.is_finite())
+        .map(|(name, value)| format!("the {name} is {value}"))
+        .or_else(|| {
+            wires
+                .filter(|(_, stress)| !stress.is_finite())
+                .map(|(w, stress)| format!("the stress of wire {} is {stress}", w + 1))
+                .next()
+        })
+}
+
+impl Observer for Guard {
+    fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
+        *self = Self { gripped: info.gauge.is_some(), ..Self::default() };
+        Ok(())
+    }
+
+    fn sample(&mut self, sample: &Sample) -> Result<()> {
+        if let Some(what) = first_not_finite(sample) {
+            return Err(Error::Trouble {
+                step: sample.step,
+                what,
+                help: Some("try a smaller time.safety, or stronger damping".into()),
+            });
+        }
+        self.rows.push(Row {
+            kinetic: sample.energy.kinetic,
+            internal: sample.energy.internal(),
+            force: sample.grip_force,
+            before_rupture: !self.ruptured && sample.bonds_broken == 0,
+        });
+        // The work of the two signs may cancel (a cyclic drive), so the scale is the greatest term seen.
+        let scale = sample.energy.work.abs().max(sample.energy.internal().abs());
+        self.residual = (scale > 0.0).then(|| sample.energy.residual() / scale);
+        Ok(())
+    }
+
+    fn rupture(&mut self, _rupture: &Rupture) -> Result<()> {
+        self.ruptured = true;
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,89 @@
+//! The curve and what goes with it: scalars over the timelines.
+
+use super::map::wires_of;
+use super::names;
+use super::paint::distinct;
+use super::stream::{Instant, Stream};
+use crate::base::error::Result;
+use crate::engine::view::{RunInfo, Sample};
+use crate::observe::wording::wire_number;
+use rerun::external::arrow::array::Float64Array;
+use rerun::{Color, EntityPath, Scalars, SerializedComponentBatch, SeriesLines};
+use std::sync::Arc;
+
+const ENERGY_NAMES: [&str; 10] = [
+    "work [J]",
+    "kinetic [J]",
+    "elastic, bonds [J]",
+    "elastic, contacts [J]",
+    "plastic, bonds [J]",
+    "plastic, contacts [J]",
+    "plastic, thinning [J]",
+    "friction [J]",
+    "damping [J]",
+    "released by rupture [J]",
+];
+
+/// Sends the names of all series.
+///
+/// # Errors
+/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+pub(super) fn send_names(stream: &Stream, info: &RunInfo) -> Result<()> {
+    let body = SeriesLines::new().with_names(["nominal stress [MPa]"]).with_colors([Color::from_rgb(255, 255, 255)]);
+    stream.fixed(names::BODY_STRESS, &body.with_widths([2.5]))?;
+    let layers = SeriesLines::new()
+        .with_names(info.layers.iter().map(|name| format!("{name} layer [MPa]")))
+        .with_colors((0..info.layers.len()).map(|i| Color::from_u32(distinct(i))))
+        .with_widths(vec![2.0; info.layers.len()]);
+    stream.fixed(names::LAYER_STRESS, &layers)?;
+    for layer in 0..info.layers.len() {
+        let wires = wires_of(info, layer).map(|(number, _)| format!("wire {} [MPa]", wire_number(number)));
+        stream.fixed(names::layer(names::WIRE_STRESS, info, layer), &SeriesLines::new().with_names(wires))?;
+    }
+    stream.fixed(names::BROKEN, &SeriesLines::new().with_names(["wires broken", "bonds broken"]))?;
+    stream.fixed(names::ENERGY, &SeriesLines::new().with_names(ENERGY_NAMES))
+}
+
+/// Sends rows of the curve.
+///
+/// # Errors
+/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+pub(super) fn send(stream: &Stream, info: &RunInfo, samples: &[Sample]) -> Result<()> {
+    let instants: Vec<_> = samples.iter().map(instant).collect();
+    let series = |path: EntityPath, values: &dyn Fn(&Sample) -> Vec<f64>| {
+        let rows: Vec<Vec<f64>> = samples.iter().map(values).collect();
+        let lengths = rows.iter().map(Vec::len).collect();
+        let array = Arc::new(Float64Array::from(rows.concat()));
+        stream.rows(path, &instants, [(SerializedComponentBatch::new(array, Scalars::descriptor_scalars()), lengths)])
+    };
+    series(names::BODY_STRESS.into(), &|s| vec![s.stress * 1e-6])?;
+    series(names::LAYER_STRESS.into(), &|s| s.layer_stress.iter().map(|v| v * 1e-6).collect())?;
+    for layer in 0..info.layers.len() {
+        let wires: Vec<_> = wires_of(info, layer).map(|(number, _)| number).collect();
+        let stress = |s: &Sample| wires.iter().map(|w| s.wire_stress[*w] * 1e-6).collect();
+        series(names::layer(names::WIRE_STRESS, info, layer), &stress)?;
+    }
+    series(names::BROKEN.into(), &|s| vec![s.wires_broken as f64, s.bonds_broken as f64])?;
+    series(names::ENERGY.into(), &energies)
+}
+
+/// Where on the timelines a sample is.
+pub(super) fn instant(sample: &Sample) -> Instant {
+    Instant { step: sample.step, time: sample.time, strain: sample.strain }
+}
+
+fn energies(sample: &Sample) -> Vec<f64> {
+    let e = &sample.energy;
+    vec![
+        e.work,
+        e.kinetic,
+        e.elastic_bonds,
+        e.elastic_contacts,
+        e.plastic_bonds,
+        e.plastic_contacts,
+        e.plastic_thinning,
+        e.friction,
+        e.damping,
+        e.released,
+    ]
+}

@@ -1,0 +1,94 @@
+//! The unrolled map: a row per wire, layers apart, initial axial position to the right. It shows at a glance where
+//! each wire is loaded and where it broke. Places are those before loading, so that only colours change.
+
+use super::names;
+use super::stream::Stream;
+use crate::base::error::Result;
+use crate::engine::view::{RunInfo, WireInfo};
+use crate::observe::wording::wire_number;
+use rerun::{Color, Points2D, Radius};
+
+/// Height of the map over its width [-]: wires are far thinner than they are long.
+const ASPECT: f32 = 0.45;
+/// Gap between layers, in rows.
+const LAYER_GAP: f32 = 1.5;
+
+/// Wires of a layer with their indices.
+pub(super) fn wires_of(info: &RunInfo, layer: usize) -> impl Iterator<Item = (usize, &WireInfo)> {
+    info.wires.iter().enumerate().filter(move |(_, wire)| wire.layer == layer)
+}
+
+/// Where things are on the map.
+pub(super) struct Map {
+    /// Extent along z before loading [mm].
+    pub z: [f32; 2],
+    /// Row height, in the map's own units (those of z).
+    pub row: f32,
+    /// y of each wire.
+    pub wire_y: Vec<f32>,
+    /// Total height.
+    pub height: f32,
+}
+
+impl Map {
+    /// Lays the map out.
+    pub fn new(info: &RunInfo) -> Self {
+        let z = extent(info);
+        let gaps = LAYER_GAP * info.layers.len().saturating_sub(1) as f32;
+        let height = ASPECT * (z[1] - z[0]);
+        let row = height / (info.wires.len() as f32 + gaps).max(1.0);
+        let mut wire_y = vec![0.0; info.wires.len()];
+        let mut y = 0.5 * row;
+        for layer in 0..info.layers.len() {
+            for (number, _) in wires_of(info, layer) {
+                wire_y[number] = y;
+                y += row;
+            }
+            y += LAYER_GAP * row;
+        }
+        Self { z, row, wire_y, height }
+    }
+
+    /// Sends what does not change: places of bonds, names of layers.
+    ///
+    /// # Errors
+    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+    pub fn send(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
+        for layer in 0..info.layers.len() {
+            let places = wires_of(info, layer).flat_map(|(number, wire)| {
+                let y = self.wire_y[number];
+                info.rest_position[wire.first..wire.first + wire.len].iter().map(move |p| [p[2], y])
+            });
+            let points = Points2D::new(places).with_radii([Radius::new_scene_units(0.4 * self.row)]);
+            stream.fixed(names::layer(names::MAP, info, layer), &points)?;
+        }
+        self.send_names(stream, info)
+    }
+
+    fn send_names(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
+        let first_and_last = (0..info.layers.len()).filter_map(|layer| {
+            let first = wires_of(info, layer).next()?.0;
+            let last = wires_of(info, layer).last()?.0;
+            Some((layer, first, last))
+        });
+        let (mut places, mut labels) = (Vec::new(), Vec::new());
+        for (layer, first, last) in first_and_last {
+            places.push([self.z[0] - 0.07 * (self.z[1] - self.z[0]), 0.5 * (self.wire_y[first] + self.wire_y[last])]);
+            labels.push(format!("{} {}–{}", info.layers[layer], wire_number(first), wire_number(last)));
+        }
+        let points = Points2D::new(places)
+            .with_labels(labels)
+            .with_show_labels(true)
+            .with_colors([Color::from_rgb(200, 205, 212)])
+            .with_radii([Radius::new_ui_points(0.5)]);
+        stream.fixed(format!("{}/names", names::MAP), &points)
+    }
+}
+
+/// Extent of the particles along z before loading [mm].
+pub(super) fn extent(info: &RunInfo) -> [f32; 2] {
+    let z = info.rest_position.iter().zip(&info.radius).map(|(p, r)| [p[2] - r, p[2] + r]);
+    let [low, high] =
+        z.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)]);
+    if low < high { [low, high] } else { [0.0, 1.0] }
+}

@@ -1,0 +1,85 @@
+//! Colours of particles: a perceptually uniform map over a range that is fixed for the whole run.
+
+use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
+use crate::scene::spec::ColourBy;
+use colorous::{CIVIDIS, Gradient, PLASMA, TABLEAU10, VIRIDIS};
+
+/// Particles at a broken bond (0xRRGGBBAA): none of the maps comes near this red.
+pub(super) const BROKEN: u32 = 0xFF2A4DFF;
+/// Grips and other things that carry no value.
+pub(super) const NEUTRAL: u32 = 0x9AA3AEFF;
+
+/// Colours particles by one quantity.
+pub(super) struct Palette {
+    by: ColourBy,
+    range: [f32; 2],
+    table: Vec<u32>,
+}
+
+impl Palette {
+    /// The palette of a run.
+    pub fn new(by: ColourBy, info: &RunInfo) -> Self {
+        let (gradient, range) = match by {
+            ColourBy::Stress => (VIRIDIS, info.stress_range),
+            ColourBy::PlasticStrain => (PLASMA, info.plastic_strain_range),
+            ColourBy::Velocity => (CIVIDIS, info.speed_range),
+            ColourBy::Layer | ColourBy::Wire => (VIRIDIS, [0.0, 1.0]),
+        };
+        Self { by, range, table: (0..256).map(|i| at(gradient, i)).collect() }
+    }
+
+    /// Quantity that colours.
+    pub fn by(&self) -> ColourBy {
+        self.by
+    }
+
+    /// Colour (0xRRGGBBAA) of a wire's particle `k`, counted along the wire.
+    pub fn particle(&self, snapshot: &Snapshot, wire: &WireInfo, number: usize, k: usize) -> u32 {
+        let slot = slot(wire, k);
+        if at_broken_bond(snapshot, wire, k) {
+            return BROKEN;
+        }
+        match self.by {
+            ColourBy::Stress => self.value(snapshot.bond_stress[slot]),
+            ColourBy::PlasticStrain => self.value(snapshot.plastic_strain[slot]),
+            ColourBy::Velocity => self.value(snapshot.speed[wire.first + k]),
+            ColourBy::Layer => distinct(wire.layer),
+            ColourBy::Wire => distinct(number),
+        }
+    }
+
+    /// Colour (0xRRGGBBAA) of free sphere `i`: it has neither bonds nor a layer, so only its speed can colour it.
+    pub fn sphere(&self, snapshot: &Snapshot, i: usize) -> u32 {
+        if self.by == ColourBy::Velocity { self.value(snapshot.speed[i]) } else { NEUTRAL }
+    }
+
+    fn value(&self, value: f32) -> u32 {
+        let [low, high] = self.range;
+        let t = if high > low { (value - low) / (high - low) } else { 0.0 };
+        self.table[(t.clamp(0.0, 1.0) * 255.0).round() as usize]
+    }
+}
+
+/// The bond slot whose values a wire's particle `k` shows: the bond after it, and before it at the wire's end.
+pub(super) fn slot(wire: &WireInfo, k: usize) -> usize {
+    wire.first + k.min(wire.len.saturating_sub(2))
+}
+
+fn at_broken_bond(snapshot: &Snapshot, wire: &WireInfo, k: usize) -> bool {
+    let broken = |slot: usize| snapshot.bond_state[slot] == BondState::Broken;
+    let i = wire.first + k;
+    (k > 0 && broken(i - 1)) || (k + 1 < wire.len && broken(i))
+}
+
+/// One of ten colours (0xRRGGBBAA) that are easily told apart.
+pub(super) fn distinct(i: usize) -> u32 {
+    rgba(TABLEAU10[i % TABLEAU10.len()])
+}
+
+fn at(gradient: Gradient, i: usize) -> u32 {
+    rgba(gradient.eval_rational(i, 256))
+}
+
+fn rgba(colour: colorous::Color) -> u32 {
+    u32::from_be_bytes([colour.r, colour.g, colour.b, 0xFF])
+}

@@ -1,0 +1,106 @@
+//! Reading a recording back: for tests, and to check a finished run against its tables.
+
+use super::{names, stream};
+use crate::base::error::{Error, Result};
+use rerun::external::re_log_encoding::DecoderApp;
+use rerun::log::{Chunk, LogMsg};
+use rerun::{Points3D, Scalars, StoreKind, TextLog};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// What one entity holds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Entity {
+    /// Rows that lie on timelines.
+    pub rows: usize,
+    /// Rows that hold at all times.
+    pub static_rows: usize,
+    /// Timelines of its rows.
+    pub timelines: BTreeSet<String>,
+    /// Components, such as `Points3D:positions`.
+    pub components: BTreeSet<String>,
+}
+
+/// What a recording holds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RecordingContents {
+    /// Id of the recording.
+    pub id: String,
+    /// Entities by path.
+    pub entities: BTreeMap<String, Entity>,
+    /// Lines of the rupture log with their strain [10⁻⁶], in the order of the file.
+    pub log: Vec<(i64, String)>,
+    /// Positions of points in space [mm] by entity: those of the last row.
+    pub last_positions: BTreeMap<String, Vec<[f32; 3]>>,
+    /// Strain [10⁻⁶] and nominal stress of the body [MPa], in the order of the file.
+    pub nominal_stress: Vec<(i64, f64)>,
+    /// Whether a layout is embedded.
+    pub layout: bool,
+    /// Messages, for an estimate of overhead.
+    pub messages: usize,
+}
+
+/// Reads a recording.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be read or is not a whole recording.
+pub fn contents(path: &Path) -> Result<RecordingContents> {
+    let broken = |e: &dyn std::fmt::Display| Error::io("cannot read", path, std::io::Error::other(e.to_string()));
+    let file = File::open(path).map_err(|e| Error::io("cannot read", path, e))?;
+    let mut all = RecordingContents::default();
+    for message in DecoderApp::decode_eager(BufReader::new(file)).map_err(|e| broken(&e))? {
+        let message = message.map_err(|e| broken(&e))?;
+        all.messages += 1;
+        if let LogMsg::BlueprintActivationCommand(_) = message {
+            all.layout = true;
+        }
+        if let LogMsg::ArrowMsg(store, arrow) = message
+            && store.kind() == StoreKind::Recording
+        {
+            all.id = store.recording_id().to_string();
+            all.add(&Chunk::from_arrow_msg(&arrow).map_err(|e| broken(&e))?);
+        }
+    }
+    Ok(all)
+}
+
+impl RecordingContents {
+    fn add(&mut self, chunk: &Chunk) {
+        let path = chunk.entity_path().to_string();
+        self.add_entity(&path, chunk);
+        self.add_log(&path, chunk);
+        self.add_stress(&path, chunk);
+        let positions = Points3D::descriptor_positions().component;
+        if let Some(last) = chunk.iter_slices::<[f32; 3]>(positions).last() {
+            self.last_positions.insert(path, last.to_vec());
+        }
+    }
+
+    fn add_entity(&mut self, path: &str, chunk: &Chunk) {
+        let entity = self.entities.entry(path.to_owned()).or_default();
+        *(if chunk.is_static() { &mut entity.static_rows } else { &mut entity.rows }) += chunk.num_rows();
+        entity.timelines.extend(chunk.timelines().keys().map(ToString::to_string));
+        entity.components.extend(chunk.components_identifiers().map(|c| c.to_string()));
+    }
+
+    fn add_log(&mut self, path: &str, chunk: &Chunk) {
+        if path == format!("/{}", names::LOG) {
+            let lines = chunk.iter_slices::<String>(TextLog::descriptor_text().component);
+            let lines = lines.flatten().map(|line| line.to_string());
+            self.log.extend(strains(chunk).zip(lines));
+        }
+    }
+
+    fn add_stress(&mut self, path: &str, chunk: &Chunk) {
+        if path == format!("/{}", names::BODY_STRESS) {
+            let values = chunk.iter_slices::<f64>(Scalars::descriptor_scalars().component);
+            self.nominal_stress.extend(strains(chunk).zip(values.flatten().copied()));
+        }
+    }
+}
+
+fn strains(chunk: &Chunk) -> impl Iterator<Item = i64> + '_ {
+    chunk.iter_indices(&stream::STRAIN.into()).map(|(time, _)| time.as_i64())
+}

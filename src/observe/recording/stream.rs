@@ -1,0 +1,135 @@
+//! A thin layer over Rerun's stream: everything goes out as columns, so that a run always gives the same chunks.
+
+use crate::base::error::{Error, Result};
+use rerun::external::arrow::array::{ArrayRef, FixedSizeListArray, Float32Array, UInt16Array, UInt32Array};
+use rerun::external::arrow::datatypes::{DataType, Field};
+use rerun::{
+    AsComponents, ComponentDescriptor, EntityPath, Loggable, RecordingStream, SerializationResult,
+    SerializedComponentBatch, SerializedComponentColumn, TimeColumn,
+};
+use std::sync::Arc;
+
+/// Timeline of steps.
+pub const STEP: &str = "step";
+/// Timeline of simulated time.
+pub const TIME: &str = "sim_time";
+/// Timeline of strain, in whole millionths, because Rerun has no timelines of real numbers: 234,000 is 23.4 %.
+pub const STRAIN: &str = "microstrain";
+
+/// Where on the timelines something is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Instant {
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Strain [-].
+    pub strain: f64,
+}
+
+impl Instant {
+    /// Strain in whole millionths.
+    pub fn microstrain(&self) -> i64 {
+        (self.strain * 1e6).round() as i64
+    }
+}
+
+/// The stream that the recording is sent through.
+pub(super) struct Stream {
+    pub rerun: RecordingStream,
+    file: std::path::PathBuf,
+}
+
+impl Stream {
+    /// Wraps a stream whose errors concern `file`.
+    pub fn new(rerun: RecordingStream, file: &std::path::Path) -> Self {
+        Self { rerun, file: file.to_owned() }
+    }
+
+    /// Logs what holds at all times.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when Rerun refuses the data.
+    pub fn fixed(&self, path: impl Into<EntityPath>, what: &dyn AsComponents) -> Result<()> {
+        let columns: SerializationResult<Vec<_>> = what
+            .as_serialized_batches()
+            .into_iter()
+            .map(|batch| {
+                let len = batch.array.len();
+                batch.partitioned([len])
+            })
+            .collect();
+        self.send(path.into(), Vec::new(), self.checked(columns)?)
+    }
+
+    /// Logs one row per instant; each batch is cut into rows of the given lengths.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when Rerun refuses the data.
+    pub fn rows(
+        &self,
+        path: impl Into<EntityPath>,
+        instants: &[Instant],
+        batches: impl IntoIterator<Item = (SerializedComponentBatch, Vec<usize>)>,
+    ) -> Result<()> {
+        let columns: SerializationResult<Vec<_>> =
+            batches.into_iter().map(|(batch, lengths)| batch.partitioned(lengths)).collect();
+        self.send(path.into(), time_columns(instants), self.checked(columns)?)
+    }
+
+    fn send(&self, path: EntityPath, times: Vec<TimeColumn>, columns: Vec<SerializedComponentColumn>) -> Result<()> {
+        self.checked(self.rerun.send_columns(path, times, columns))
+    }
+
+    /// Gives an error of Rerun the shape of this crate's.
+    pub fn checked<T>(&self, result: Result<T, impl std::fmt::Display>) -> Result<T> {
+        result.map_err(|e| Error::io("cannot record to", &self.file, std::io::Error::other(e.to_string())))
+    }
+}
+
+fn time_columns(instants: &[Instant]) -> Vec<TimeColumn> {
+    vec![
+        TimeColumn::new_sequence(STEP, instants.iter().map(|i| i.step as i64)),
+        TimeColumn::new_duration_secs(TIME, instants.iter().map(|i| i.time)),
+        TimeColumn::new_sequence(STRAIN, instants.iter().map(Instant::microstrain)),
+    ]
+}
+
+/// Vectors as Rerun stores them, built in one go: this is most of the recording.
+pub(super) fn vectors<const N: usize>(
+    descriptor: ComponentDescriptor,
+    values: impl Iterator<Item = [f32; N]>,
+) -> SerializedComponentBatch {
+    let flat: Vec<f32> = values.flatten().collect();
+    let field = Arc::new(Field::new("item", DataType::Float32, false));
+    let array = FixedSizeListArray::new(field, N as i32, Arc::new(Float32Array::from(flat)), None);
+    SerializedComponentBatch::new(Arc::new(array), descriptor)
+}
+
+/// Numbers as Rerun stores them.
+pub(super) fn numbers(descriptor: ComponentDescriptor, values: impl Iterator<Item = f32>) -> SerializedComponentBatch {
+    SerializedComponentBatch::new(Arc::new(Float32Array::from_iter_values(values)), descriptor)
+}
+
+/// Colours (0xRRGGBBAA) as Rerun stores them.
+pub(super) fn colours(descriptor: ComponentDescriptor, values: impl Iterator<Item = u32>) -> SerializedComponentBatch {
+    SerializedComponentBatch::new(Arc::new(UInt32Array::from_iter_values(values)), descriptor)
+}
+
+/// Class numbers as Rerun stores them; the viewer shows the names that the annotation context gives them.
+pub(super) fn classes(field: &'static str, values: impl Iterator<Item = u16>) -> SerializedComponentBatch {
+    debug_assert_eq!(rerun::components::ClassId::arrow_datatype(), DataType::UInt16);
+    let array: ArrayRef = Arc::new(UInt16Array::from_iter_values(values));
+    let descriptor =
+        bond_field(field).with_component_type(<rerun::components::ClassId as rerun::Component>::name());
+    SerializedComponentBatch::new(array, descriptor)
+}
+
+/// The descriptor of a field of our own, shown under `Bond` in the viewer.
+pub(super) fn bond_field(field: &'static str) -> ComponentDescriptor {
+    ComponentDescriptor {
+        archetype: Some("strandsnap.Bond".into()),
+        component: field.into(),
+        component_type: None,
+    }
+}

@@ -1,0 +1,82 @@
+//! The short report at the end of a run, in plain words.
+
+use super::summary::{Break, RunSummary};
+use std::fmt::Write;
+
+/// The report of a run: strength, elongation, breaks, energy, quasi-static measures, cost.
+pub fn report(summary: &RunSummary) -> String {
+    let mut text = String::new();
+    let mut line = |label: &str, value: String| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "  {label:<22}{value}");
+    };
+    if let (Some(strength), Some(elongation)) = (summary.tensile_strength_mpa, summary.fracture_elongation_percent) {
+        line("strength", format!("{strength:.2} MPa (peak nominal stress)"));
+        line("elongation at peak", format!("{elongation:.2} %"));
+    }
+    if let Some(drop) = summary.elongation_at_20_percent_drop_percent {
+        line("  at 20 % drop", format!("{drop:.2} %"));
+    }
+    if let (Some(stress), Some(strain)) = (summary.residual_stress_mpa, summary.final_strain_percent) {
+        line("at the end", format!("{stress:.2} MPa at {strain:.2} %"));
+    }
+    line("first rupture", first_rupture(summary.first_rupture.as_ref()));
+    let layers = summary.wires_broken_by_layer.iter();
+    let layers: Vec<String> = layers.map(|(name, n)| format!("{name} {} of {}", n.broken, n.of)).collect();
+    if !layers.is_empty() {
+        line("wires broken", layers.join(", "));
+    }
+    if let Some(residual) = summary.energy_residual_percent {
+        line("energy residual", format!("{residual:.4} % of the work done"));
+    }
+    if let Some(ratio) = summary.quasi_static.kinetic_over_internal_max {
+        let overall = summary.quasi_static.kinetic_over_internal_overall.unwrap_or(ratio);
+        line("kinetic / internal", format!("{ratio:.5} before the first rupture, {overall:.5} overall"));
+    }
+    if let Some(mismatch) = summary.quasi_static.grip_force_mismatch_percent {
+        let overall = summary.quasi_static.grip_force_mismatch_overall_percent.unwrap_or(mismatch);
+        line("grip force mismatch", format!("{mismatch:.3} % before the first rupture, {overall:.3} % overall"));
+    }
+    if summary.mass_scale != 1.0 || summary.inertia_scale != 1.0 {
+        line("scaled", format!("mass × {}, rotational inertia × {}", summary.mass_scale, summary.inertia_scale));
+    }
+    line("cost", cost(summary));
+    line("stopped because", summary.stopped_because.clone());
+    text
+}
+
+/// One line for logs and quiet runs.
+pub fn one_line(summary: &RunSummary) -> String {
+    let mut parts = vec![format!("{} steps in {:.1} s", summary.cost.steps, summary.cost.wall_s)];
+    if let (Some(strength), Some(elongation)) = (summary.tensile_strength_mpa, summary.fracture_elongation_percent) {
+        parts.push(format!("strength {strength:.2} MPa at {elongation:.2} %"));
+    }
+    let wires: usize = summary.wires_broken_by_layer.values().map(|n| n.of).sum();
+    if wires > 0 {
+        parts.push(format!("{} of {wires} wires broken", summary.wires_broken));
+    }
+    format!("{}: {}; {}", summary.scene, parts.join(", "), summary.stopped_because)
+}
+
+fn first_rupture(first: Option<&Break>) -> String {
+    match first {
+        None => "none".into(),
+        Some(b) => format!(
+            "wire {}, {} layer, at z = {:.1} mm, strain {:.2} %, {:.0} MPa ({})",
+            b.wire, b.layer, b.z_mm, b.strain_percent, b.stress_mpa, b.cause
+        ),
+    }
+}
+
+fn cost(summary: &RunSummary) -> String {
+    let cost = &summary.cost;
+    let mut text = format!("{} steps, {:.1} s", cost.steps, cost.wall_s);
+    if let Some(cpu) = cost.cpu_s {
+        let _ = write!(text, ", {cpu:.1} s of processor time");
+    }
+    if let Some(ms) = cost.ms_per_step {
+        let _ = write!(text, ", {ms:.3} ms per step");
+    }
+    let _ = write!(text, " on {} threads", cost.threads);
+    text
+}

@@ -1,0 +1,256 @@
+//! `RunSummary`: what a run found, as written to `summary.json`.
+
+use super::Observer;
+use super::guard::{Guard, QuasiStatic};
+use super::tables::{cause, layer_name};
+use super::units::{mm, mpa, percent};
+use crate::base::error::Result;
+use crate::engine::view::{Energy, RunInfo, Rupture, Sample};
+use crate::scene::spec::Spec;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Fall of the nominal stress below its peak at which the second elongation is read [-].
+const DROP: f64 = 0.2;
+
+/// The result of a run. Quantities that the scene does not have (strength of free bodies) are `None`, `null` in JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Scene name.
+    pub scene: String,
+    /// Why the run ended, in words.
+    pub stopped_because: String,
+    /// Peak nominal stress over the rows of the curve [MPa].
+    pub tensile_strength_mpa: Option<f64>,
+    /// Strain at the peak nominal stress [%].
+    pub fracture_elongation_percent: Option<f64>,
+    /// Strain at which the stress has fallen 20 % below its peak, linear between rows [%]; `None` when it never did.
+    pub elongation_at_20_percent_drop_percent: Option<f64>,
+    /// The first rupture; `None` when nothing broke.
+    pub first_rupture: Option<Break>,
+    /// Broken wires and wires in all, by layer.
+    pub wires_broken_by_layer: BTreeMap<String, BrokenOf>,
+    /// First rupture of each wire that broke, in order, by layer.
+    pub breaks_by_layer: BTreeMap<String, Vec<Break>>,
+    /// Wires broken in all.
+    pub wires_broken: usize,
+    /// Bonds broken in all.
+    pub bonds_broken: usize,
+    /// Strain of the body at the end [%].
+    pub final_strain_percent: Option<f64>,
+    /// Nominal stress at the end [MPa].
+    pub residual_stress_mpa: Option<f64>,
+    /// Energy ledger at the end [J].
+    pub energy: Energy,
+    /// What the ledger does not account for, over the work done [%]; `None` when no work was done.
+    pub energy_residual_percent: Option<f64>,
+    /// How far loading was from quasi-static.
+    #[serde(flatten)]
+    pub quasi_static: QuasiStatic,
+    /// Factor on particle mass [-].
+    pub mass_scale: f64,
+    /// Factor on rotational inertia [-].
+    pub inertia_scale: f64,
+    /// Seed of the scatter [-].
+    pub seed: u64,
+    /// Particles, free spheres included.
+    pub particles: usize,
+    /// Bonds.
+    pub bonds: usize,
+    /// What the run cost and with what it was made.
+    #[serde(flatten)]
+    pub cost: Cost,
+    /// What must be known before believing the run; empty when there is nothing.
+    pub warnings: Vec<String>,
+}
+
+/// Broken wires of a layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct BrokenOf {
+    /// Wires with at least one broken bond.
+    pub broken: usize,
+    /// Wires.
+    pub of: usize,
+}
+
+/// A rupture for people.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Break {
+    /// Order among all ruptures, from 1.
+    pub order: usize,
+    /// Wire, from 1.
+    pub wire: usize,
+    /// Layer.
+    pub layer: String,
+    /// Where it broke, stretched [mm].
+    pub z_mm: f64,
+    /// Where that was before loading [mm].
+    pub rest_z_mm: f64,
+    /// Strain of the body [%].
+    pub strain_percent: f64,
+    /// True axial stress of the bond just before [MPa].
+    pub stress_mpa: f64,
+    /// Cause.
+    pub cause: &'static str,
+}
+
+/// What a run cost and with what it was made.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Cost {
+    /// Steps.
+    pub steps: u64,
+    /// Simulated time [s].
+    pub simulated_s: f64,
+    /// From the start of the run to the writing of the summary, output included [s].
+    pub wall_s: f64,
+    /// Processor time of the whole program in that span, all threads [s]; `None` where the system does not tell.
+    pub cpu_s: Option<f64>,
+    /// Wall time in the engine over steps, output not included [ms].
+    pub ms_per_step: Option<f64>,
+    /// Threads that the engine had.
+    pub threads: usize,
+    /// Versions of this program and of what its output depends on.
+    pub versions: BTreeMap<String, String>,
+}
+
+/// Collects what the summary needs while the run goes.
+#[derive(Default)]
+pub struct Summariser {
+    info: Option<Arc<RunInfo>>,
+    guard: Guard,
+    /// (strain [-], nominal stress [Pa]) of every row.
+    curve: Vec<(f64, f64)>,
+    last: Sample,
+    ruptures: Vec<Rupture>,
+}
+
+impl Summariser {
+    /// A summariser that has seen nothing.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The summary of what was seen. `trouble` is the error that ended the run, if one did.
+    pub fn summary(
+        &self,
+        spec: &Spec,
+        bonds: usize,
+        stopped_because: String,
+        trouble: Option<String>,
+        cost: Cost,
+    ) -> RunSummary {
+        let gripped = self.info.as_ref().is_some_and(|info| info.gauge.is_some());
+        let measured = |value: Option<f64>| value.filter(|_| gripped);
+        let peak = peak_of(&self.curve);
+        let energy = self.last.energy;
+        let firsts = self.first_breaks();
+        let mut warnings: Vec<String> = trouble.into_iter().collect();
+        warnings.extend(self.guard.warnings(&spec.time));
+        RunSummary {
+            scene: spec.name.clone(),
+            stopped_because,
+            tensile_strength_mpa: measured(peak.map(|i| mpa(self.curve[i].1))),
+            fracture_elongation_percent: measured(peak.map(|i| percent(self.curve[i].0))),
+            elongation_at_20_percent_drop_percent: measured(
+                peak.and_then(|i| strain_after_drop(&self.curve, i)).map(percent),
+            ),
+            first_rupture: self.ruptures.first().map(|r| self.for_people(r)),
+            wires_broken_by_layer: self.broken_by_layer(&firsts),
+            wires_broken: firsts.len(),
+            breaks_by_layer: by_layer(firsts),
+            bonds_broken: self.ruptures.len(),
+            final_strain_percent: measured(Some(percent(self.last.strain))),
+            residual_stress_mpa: measured(Some(mpa(self.last.stress))),
+            energy,
+            energy_residual_percent: (energy.work != 0.0).then(|| percent(energy.residual() / energy.work)),
+            quasi_static: self.guard.quasi_static(),
+            mass_scale: spec.time.mass_scale,
+            inertia_scale: spec.time.inertia_scale,
+            seed: spec.seed,
+            particles: self.info.as_ref().map_or(0, |info| info.particles),
+            bonds,
+            cost,
+            warnings,
+        }
+    }
+
+    fn for_people(&self, rupture: &Rupture) -> Break {
+        let layer = self.info.as_ref().map_or("", |info| layer_name(info, rupture.layer));
+        Break {
+            order: rupture.order,
+            wire: rupture.wire + 1,
+            layer: layer.to_string(),
+            z_mm: mm(rupture.position[2]),
+            rest_z_mm: mm(rupture.rest_z),
+            strain_percent: percent(rupture.strain),
+            stress_mpa: mpa(rupture.stress),
+            cause: cause(rupture.cause),
+        }
+    }
+
+    /// First rupture of each wire, in order.
+    fn first_breaks(&self) -> Vec<Break> {
+        let mut seen = std::collections::BTreeSet::new();
+        let first = self.ruptures.iter().filter(|r| seen.insert(r.wire));
+        first.map(|r| self.for_people(r)).collect()
+    }
+
+    fn broken_by_layer(&self, firsts: &[Break]) -> BTreeMap<String, BrokenOf> {
+        let mut layers: BTreeMap<String, BrokenOf> = BTreeMap::new();
+        if let Some(info) = &self.info {
+            for wire in &info.wires {
+                layers.entry(layer_name(info, wire.layer).into()).or_default().of += 1;
+            }
+        }
+        for broken in firsts {
+            layers.entry(broken.layer.clone()).or_default().broken += 1;
+        }
+        layers
+    }
+}
+
+fn by_layer(breaks: Vec<Break>) -> BTreeMap<String, Vec<Break>> {
+    let mut layers: BTreeMap<String, Vec<Break>> = BTreeMap::new();
+    for one in breaks {
+        layers.entry(one.layer.clone()).or_default().push(one);
+    }
+    layers
+}
+
+/// Row of the greatest stress; the first one when several are equal.
+fn peak_of(curve: &[(f64, f64)]) -> Option<usize> {
+    (0..curve.len()).reduce(|best, i| if curve[i].1 > curve[best].1 { i } else { best })
+}
+
+/// Strain [-] at which stress first falls to (1 − [`DROP`]) of its peak after it, linear between rows.
+fn strain_after_drop(curve: &[(f64, f64)], peak: usize) -> Option<f64> {
+    let level = (1.0 - DROP) * curve[peak].1;
+    curve[peak..].windows(2).find(|pair| pair[1].1 <= level).map(|pair| {
+        let ((e0, s0), (e1, s1)) = (pair[0], pair[1]);
+        if s0 > s1 { e0 + (e1 - e0) * (s0 - level) / (s0 - s1) } else { e1 }
+    })
+}
+
+impl Observer for Summariser {
+    fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
+        *self = Self { info: Some(info.clone()), ..Self::default() };
+        self.guard.start(info)
+    }
+
+    fn sample(&mut self, sample: &Sample) -> Result<()> {
+        self.guard.sample(sample)?;
+        self.curve.push((sample.strain, sample.stress));
+        self.last = sample.clone();
+        Ok(())
+    }
+
+    fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
+        self.ruptures.push(rupture.clone());
+        self.guard.rupture(rupture)
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        self.guard.finish()
+    }
+}

@@ -1,0 +1,82 @@
+//! The graphics adapter, without a window.
+
+use crate::base::error::{Error, Result};
+
+/// A device ready to draw.
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Name of adapter and driver, for people.
+    pub name: String,
+    /// Whether fragment shaders may choose which samples of a pixel they cover. The GL backend of naga 30 cannot;
+    /// there silhouettes are cut by whole pixels.
+    pub sample_mask: bool,
+}
+
+/// Whether frames can be drawn on this machine. Cheap (well below a second), to be called before a simulation.
+///
+/// # Errors
+/// [`Error::Missing`] when there is no graphics adapter, with the package to install.
+pub fn check() -> Result<()> {
+    request_adapter().map(|_| ())
+}
+
+impl Gpu {
+    /// Opens the best adapter: a real one if there is one, else a software one.
+    ///
+    /// # Errors
+    /// [`Error::Missing`] when there is none or when it refuses a device.
+    pub fn open() -> Result<Self> {
+        let adapter = request_adapter()?;
+        let info = adapter.get_info();
+        let name = format!(
+            "{} ({} {}, {:?})",
+            info.name, info.driver, info.driver_info, info.backend
+        );
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("strandsnap"),
+            required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| failure(format!("the graphics adapter {name} refused to open: {e}")))?;
+        Ok(Self {
+            device,
+            queue,
+            name,
+            sample_mask: info.backend != wgpu::Backend::Gl,
+        })
+    }
+}
+
+/// An error of the graphics driver, with the way to do without pictures.
+pub fn failure(what: impl Into<String>) -> Error {
+    let help = "update the graphics driver, or leave pictures out with --no-frames";
+    Error::Missing {
+        what: what.into(),
+        help: Some(help.into()),
+    }
+}
+
+fn request_adapter() -> Result<wgpu::Adapter> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::PRIMARY | wgpu::Backends::GL;
+    let instance = wgpu::Instance::new(descriptor);
+    let options = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        force_fallback_adapter: false,
+        compatible_surface: None,
+        ..Default::default()
+    };
+    pollster::block_on(instance.request_adapter(&options)).map_err(|e| Error::Missing {
+        what: format!("no graphics adapter to draw frames with ({e})"),
+        help: Some(
+            "a software one will do: on Debian and Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1`, on Fedora \
+             `dnf install mesa-vulkan-drivers vulkan-loader`, on Arch `pacman -S vulkan-swrast vulkan-icd-loader`; \
+             or leave frames out with --no-frames"
+                .into(),
+        ),
+    })
+}

@@ -1,0 +1,90 @@
+//! Orthographic camera: lengths in the picture are true, so scale bars hold everywhere in a panel.
+
+use super::canvas::Rect;
+use glam::{Mat3, Vec3};
+
+/// A view of the scene through one panel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// World axes to view axes: x right, y up, z towards the eye.
+    pub rotation: Mat3,
+    /// The point in the middle of the panel [mm].
+    pub centre: Vec3,
+    /// The panel [px].
+    pub panel: Rect,
+    /// Magnification [px/mm].
+    pub scale: f32,
+    /// Half of the depth that is drawn [mm].
+    pub depth: f32,
+}
+
+impl Camera {
+    /// Rotation of an eye that sees the strand's axis z to the right and y up, turned by `azimuth_deg` about the
+    /// vertical and by `elevation_deg` about the horizontal [°].
+    pub fn orientation(azimuth_deg: f32, elevation_deg: f32) -> Mat3 {
+        // Rows are the view axes in world coordinates: right = z, up = y, towards the eye = right × up = −x.
+        let base = Mat3::from_cols(Vec3::new(0.0, 0.0, -1.0), Vec3::Y, Vec3::X);
+        Mat3::from_rotation_x(elevation_deg.to_radians())
+            * Mat3::from_rotation_y(azimuth_deg.to_radians())
+            * base
+    }
+
+    /// View coordinates of a point [mm], relative to the centre.
+    pub fn to_view(&self, p: Vec3) -> Vec3 {
+        self.rotation * (p - self.centre)
+    }
+
+    /// Pixel of a point.
+    pub fn project(&self, p: Vec3) -> [f32; 2] {
+        let v = self.to_view(p);
+        let middle = [
+            self.panel.x + 0.5 * self.panel.w,
+            self.panel.y + 0.5 * self.panel.h,
+        ];
+        [middle[0] + v.x * self.scale, middle[1] - v.y * self.scale]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(azimuth: f32, elevation: f32) -> Camera {
+        Camera {
+            rotation: Camera::orientation(azimuth, elevation),
+            centre: Vec3::new(1.0, 2.0, 3.0),
+            panel: Rect::new(100.0, 50.0, 400.0, 200.0),
+            scale: 10.0,
+            depth: 100.0,
+        }
+    }
+
+    #[test]
+    fn the_axis_runs_to_the_right_and_y_up() {
+        let c = camera(0.0, 0.0);
+        assert_eq!(c.project(c.centre), [300.0, 150.0]);
+        assert_eq!(c.project(c.centre + Vec3::Z), [310.0, 150.0]);
+        assert_eq!(c.project(c.centre + Vec3::Y), [300.0, 140.0]);
+        assert!(
+            c.to_view(c.centre - Vec3::X).z > 0.99,
+            "the eye is on the side of −x"
+        );
+    }
+
+    #[test]
+    fn half_a_turn_shows_the_back_with_the_axis_still_to_the_right() {
+        let c = camera(0.0, 180.0);
+        let [x, y] = c.project(c.centre + Vec3::Z + Vec3::Y);
+        assert!((x - 310.0).abs() < 1e-3 && (y - 160.0).abs() < 1e-3);
+        assert!(c.to_view(c.centre + Vec3::X).z > 0.99);
+    }
+
+    #[test]
+    fn orientations_are_rotations() {
+        for (a, e) in [(0.0, 0.0), (30.0, 20.0), (-70.0, 180.0)] {
+            let m = Camera::orientation(a, e);
+            assert!((m.determinant() - 1.0).abs() < 1e-5);
+            assert!((m * m.transpose()).abs_diff_eq(Mat3::IDENTITY, 1e-5));
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! From quantities to colours: perceptually uniform maps for numbers, a categorical palette for layers and wires.
+
+use super::style::{Rgb, SIGNAL};
+use crate::engine::view::{BondState, RunInfo, Snapshot};
+use crate::scene::spec::ColourBy;
+
+/// Categorical palette: Okabe & Ito (2008) without vermilion, which is too near the colour of ruptures, and with
+/// three more hues that stay apart for readers with colour-vision deficiency.
+const PALETTE: [Rgb; 9] = [
+    [230, 159, 0],
+    [86, 180, 233],
+    [0, 158, 115],
+    [240, 228, 66],
+    [0, 114, 178],
+    [190, 150, 220],
+    [170, 200, 90],
+    [140, 140, 150],
+    [120, 90, 180],
+];
+
+/// A quantity, its fixed range and its colours.
+pub struct ColourScale {
+    by: ColourBy,
+    range: [f32; 2],
+    map: Option<colorous::Gradient>,
+}
+
+impl ColourScale {
+    /// The scale of `by` over the range that [`RunInfo`] fixes for the whole sequence.
+    pub fn new(info: &RunInfo, by: ColourBy) -> Self {
+        let (range, map) = match by {
+            ColourBy::Stress => (info.stress_range, Some(colorous::VIRIDIS)),
+            ColourBy::PlasticStrain => (info.plastic_strain_range, Some(colorous::CIVIDIS)),
+            ColourBy::Velocity => (info.speed_range, Some(colorous::CIVIDIS)),
+            ColourBy::Layer | ColourBy::Wire => ([0.0, 1.0], None),
+        };
+        Self { by, range, map }
+    }
+
+    /// What the scale shows.
+    pub fn by(&self) -> ColourBy {
+        self.by
+    }
+
+    /// Title with unit, for the colour bar.
+    pub fn title(&self) -> &'static str {
+        match self.by {
+            ColourBy::Stress => "true axial stress (MPa)",
+            ColourBy::PlasticStrain => "equivalent plastic strain (%)",
+            ColourBy::Velocity => "speed (m/s)",
+            ColourBy::Layer => "layer",
+            ColourBy::Wire => "wire",
+        }
+    }
+
+    /// Ends of the range, in the unit of the title; `None` for categories.
+    pub fn shown_range(&self) -> Option<[f64; 2]> {
+        let factor = if self.by == ColourBy::PlasticStrain {
+            100.0
+        } else {
+            1.0
+        };
+        self.map.map(|_| self.range.map(|v| f64::from(v) * factor))
+    }
+
+    /// Colour at `fraction` of the range [-], clamped to 0–1; grey for categories.
+    pub fn at(&self, fraction: f64) -> Rgb {
+        let Some(map) = self.map else {
+            return [128; 3];
+        };
+        let c = map.eval_continuous(fraction.clamp(0.0, 1.0));
+        [c.r, c.g, c.b]
+    }
+
+    fn of_value(&self, value: f32) -> Rgb {
+        let [low, high] = self.range;
+        self.at(f64::from(
+            (value - low) / (high - low).max(f32::MIN_POSITIVE),
+        ))
+    }
+
+    /// Colour of layer or wire number `index`.
+    pub fn category(index: usize) -> Rgb {
+        PALETTE[index % PALETTE.len()]
+    }
+
+    /// One colour per particle; free spheres, which have no bonds, are coloured by speed or grey.
+    pub fn particles(&self, info: &RunInfo, snapshot: &Snapshot) -> Vec<Rgb> {
+        let mut colours = vec![[150, 156, 166]; snapshot.position.len()];
+        for (number, wire) in info.wires.iter().enumerate() {
+            for i in wire.first..wire.first + wire.len {
+                colours[i] = match self.by {
+                    ColourBy::Stress => {
+                        self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i))
+                    }
+                    ColourBy::PlasticStrain => {
+                        self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i))
+                    }
+                    ColourBy::Velocity => self.of_value(snapshot.speed[i]),
+                    ColourBy::Layer => Self::category(wire.layer),
+                    ColourBy::Wire => Self::category(number),
+                };
+            }
+        }
+        for i in info.wire_particles..snapshot.position.len() {
+            colours[i] = match self.by {
+                ColourBy::Velocity => self.of_value(snapshot.speed[i]),
+                ColourBy::Wire | ColourBy::Layer => {
+                    Self::category(info.wires.len() + i - info.wire_particles)
+                }
+                _ => colours[i],
+            };
+        }
+        colours
+    }
+}
+
+/// Mean over the bonds that hold particle `i` of a wire starting at `first`; 0 when none does.
+fn beside(snapshot: &Snapshot, values: &[f32], first: usize, i: usize) -> f32 {
+    let holds = |b: usize| {
+        matches!(
+            snapshot.bond_state[b],
+            BondState::Whole | BondState::Yielding
+        )
+    };
+    let before = (i > first && holds(i - 1)).then(|| values[i - 1]);
+    let after = holds(i).then(|| values[i]);
+    match (before, after) {
+        (Some(a), Some(b)) => 0.5 * (a + b),
+        (Some(v), None) | (None, Some(v)) => v,
+        (None, None) => 0.0,
+    }
+}
+
+/// Part of a wire held in a grip: most of the colour taken out.
+pub fn desaturated(colour: Rgb) -> Rgb {
+    let [r, g, b] = colour.map(f32::from);
+    let grey = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    // Compressed towards mid-grey, so that the held part reads as metal at any stress.
+    let metal = 70.0 + 0.35 * grey;
+    [r, g, b].map(|v| (metal + 0.12 * (v - grey)).round().clamp(0.0, 255.0) as u8)
+}
+
+/// sRGB byte to linear light (IEC 61966-2-1) [-].
+pub fn linear(byte: u8) -> f32 {
+    let v = f32::from(byte) / 255.0;
+    if v <= 0.040_45 {
+        v / 12.92
+    } else {
+        ((v + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// Linear RGB of a colour, with alpha 1.
+pub fn linear4(colour: Rgb) -> [f32; 4] {
+    [linear(colour[0]), linear(colour[1]), linear(colour[2]), 1.0]
+}
+
+/// Linear RGB of the rupture colour.
+pub fn signal4() -> [f32; 4] {
+    linear4(SIGNAL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn distance(a: Rgb, b: Rgb) -> f64 {
+        (0..3)
+            .map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    #[test]
+    fn no_map_comes_near_the_rupture_colour() {
+        for map in [colorous::VIRIDIS, colorous::CIVIDIS] {
+            for k in 0..=100 {
+                let c = map.eval_continuous(f64::from(k) / 100.0);
+                assert!(distance([c.r, c.g, c.b], SIGNAL) > 120.0, "{k}");
+            }
+        }
+        for c in PALETTE {
+            assert!(distance(c, SIGNAL) > 100.0, "{c:?}");
+        }
+    }
+
+    #[test]
+    fn linear_light_has_the_standard_mid_grey() {
+        assert_eq!(linear(0), 0.0);
+        assert!((linear(255) - 1.0).abs() < 1e-6);
+        assert!((linear(188) - 0.5029).abs() < 1e-3, "{}", linear(188));
+    }
+}

@@ -1,0 +1,439 @@
+//! One snapshot to one picture.
+
+use super::adapter::Gpu;
+use super::camera::Camera;
+use super::canvas::{Canvas, Fonts, Rect};
+use super::colour::ColourScale;
+use super::layout::{Layout, default_views, layout};
+use super::occlusion::occlusion;
+use super::solid::{Drawing, SolidPipeline};
+use super::style::{FrameOptions, Rgb, Style, View};
+use super::target::Target;
+use super::timings::Timings;
+use super::viewpoint::{self, Body};
+use super::wires::{self, Looks, Segment};
+use super::{curve, cut, exploded, header, marks, unrolled};
+use crate::base::error::{Error, Result};
+use crate::engine::view::{RunInfo, Rupture, Snapshot};
+use glam::Vec3;
+use image::{Rgb as Pixel, RgbImage};
+use std::time::Instant;
+
+/// What the panels of one frame draw from.
+pub struct Data<'a> {
+    /// The run.
+    pub info: &'a RunInfo,
+    /// Its body at rest.
+    pub body: &'a Body,
+    /// The instant.
+    pub snapshot: &'a Snapshot,
+    /// Strain [-] and nominal stress [Pa] so far.
+    pub curve: &'a [(f64, f64)],
+    /// Ruptures so far, in order.
+    pub ruptures: &'a [Rupture],
+    /// Colour scale.
+    pub scale: &'a ColourScale,
+    /// Colour of each particle.
+    pub colours: &'a [Rgb],
+    /// Theme.
+    pub style: &'a Style,
+}
+
+impl Data<'_> {
+    /// Each wire's first rupture with its number in the order in which wires broke, from 1.
+    pub fn first_breaks(&self) -> impl Iterator<Item = (usize, &Rupture)> {
+        self.ruptures
+            .iter()
+            .filter(|r| r.first_of_wire)
+            .enumerate()
+            .map(|(k, r)| (k + 1, r))
+    }
+
+    /// Where the broken bond is now, between its two particles [mm].
+    pub fn place(&self, rupture: &Rupture) -> Vec3 {
+        let at = |i: usize| Vec3::from(self.snapshot.position[i]);
+        0.5 * (at(rupture.bond) + at(rupture.bond + 1))
+    }
+
+    /// z of the two grip faces now [mm].
+    pub fn grip_faces(&self) -> Option<[f32; 2]> {
+        self.info
+            .gauge
+            .map(|faces| faces.map(|z| viewpoint::current_z(self.info, self.snapshot, z)))
+    }
+
+    /// z of the body's two ends now [mm].
+    pub fn ends(&self) -> [f32; 2] {
+        [self.body.low.z, self.body.high.z]
+            .map(|z| viewpoint::current_z(self.info, self.snapshot, z))
+    }
+}
+
+/// Draws frames of one run.
+pub struct Renderer {
+    info: RunInfo,
+    options: FrameOptions,
+    style: Style,
+    scale: ColourScale,
+    body: Body,
+    layout: Layout,
+    fonts: Fonts,
+    solid: Option<Solid>,
+    timings: Timings,
+}
+
+/// What the adapter needs, present when some panel is three-dimensional.
+struct Solid {
+    gpu: Gpu,
+    pipeline: SolidPipeline,
+    target: Target,
+    area: Rect,
+}
+
+impl Renderer {
+    /// Opens the adapter and lays the frame out.
+    ///
+    /// # Errors
+    /// When there is no adapter, when it cannot draw a picture of this size, when no panel would be larger than a
+    /// few pixels.
+    pub fn new(info: &RunInfo, options: &FrameOptions) -> Result<Self> {
+        let views = if options.views.is_empty() {
+            default_views(info.gauge.is_some())
+        } else {
+            options.views.clone()
+        };
+        let [w, h] = options.size;
+        if !(160..=16384).contains(&w) || !(120..=16384).contains(&h) {
+            let what = format!("frames of {w} × {h} pixels cannot be drawn");
+            return Err(Error::input(
+                what,
+                "sizes go from 160 × 120 to 16384 × 16384 pixels",
+            ));
+        }
+        let layout = layout(options.size, &views);
+        Ok(Self {
+            style: options.theme.style(),
+            scale: ColourScale::new(info, options.colour),
+            body: Body::of(info),
+            fonts: Fonts::embedded(),
+            solid: Solid::open(&layout)?,
+            timings: Timings::default(),
+            info: info.clone(),
+            options: options.clone(),
+            layout,
+        })
+    }
+
+    /// Name of the adapter; `None` when no panel needs one.
+    pub fn adapter(&self) -> Option<&str> {
+        self.solid.as_ref().map(|s| s.gpu.name.as_str())
+    }
+
+    /// Where the time went so far.
+    pub fn timings(&self) -> Timings {
+        self.timings
+    }
+
+    /// The panels of the frame and their places in pixels: x, y, width, height.
+    pub fn panels(&self) -> Vec<(View, [u32; 4])> {
+        self.layout
+            .panels
+            .iter()
+            .map(|(v, r)| (*v, [r.x, r.y, r.w, r.h].map(|c| c as u32)))
+            .collect()
+    }
+
+    /// Draws one frame. `curve` holds strain [-] and nominal stress [Pa] up to the snapshot, `ruptures` what broke
+    /// up to it, in order.
+    ///
+    /// # Errors
+    /// When the adapter is lost.
+    pub fn draw(
+        &mut self,
+        snapshot: &Snapshot,
+        curve: &[(f64, f64)],
+        ruptures: &[Rupture],
+    ) -> Result<RgbImage> {
+        let start = Instant::now();
+        let colours = self.scale.particles(&self.info, snapshot);
+        let data = Data {
+            info: &self.info,
+            body: &self.body,
+            snapshot,
+            curve,
+            ruptures,
+            scale: &self.scale,
+            colours: &colours,
+            style: &self.style,
+        };
+        let [w, h] = self.options.size;
+        let mut picture = RgbImage::from_pixel(w, h, Pixel(self.style.page));
+        let shots = shots(&data, &self.options, &self.layout);
+        if let Some(solid) = &self.solid {
+            solid.draw(&data, &shots)?;
+            self.timings.draw += start.elapsed();
+            let start = Instant::now();
+            solid.read_into(&mut picture)?;
+            self.timings.read_back += start.elapsed();
+        }
+        let start = Instant::now();
+        let mut canvas = Canvas {
+            image: picture,
+            fonts: &self.fonts,
+            unit: self.layout.unit,
+        };
+        overlay(&mut canvas, &data, &self.options, &self.layout, &shots);
+        self.timings.overlay += start.elapsed();
+        self.timings.frames += 1;
+        Ok(canvas.image)
+    }
+}
+
+/// A camera and what it is for.
+struct Shot {
+    view: View,
+    camera: Camera,
+    caption: &'static str,
+    /// Depth over which things darken [mm].
+    fade: f32,
+}
+
+fn is_solid(view: View) -> bool {
+    matches!(
+        view,
+        View::Overview | View::Midsection | View::Exploded | View::Scene
+    )
+}
+
+fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
+    let u = layout.unit;
+    let body = data.body;
+    let z = viewpoint::current_z(data.info, data.snapshot, focus(data, options));
+    let mut shots = Vec::new();
+    for (view, panel) in &layout.panels {
+        let mut shot = |camera, caption, fade| {
+            shots.push(Shot {
+                view: *view,
+                camera,
+                caption,
+                fade,
+            })
+        };
+        match view {
+            View::Overview => {
+                let camera = viewpoint::overview(data.info, body, &options.camera, *panel, u);
+                shot(camera, "whole strand", body.radius);
+            }
+            View::Midsection => {
+                let half = ((panel.w - 4.0 * u) * 0.5).floor();
+                let front = Rect::new(panel.x, panel.y, half, panel.h);
+                let back = Rect::new(panel.right() - half, panel.y, half, panel.h);
+                for (panel, caption, turn) in [(front, "front", 0.0), (back, "back", 180.0)] {
+                    let camera = viewpoint::section(body, &options.camera, panel, z, turn);
+                    let slant = options.camera.azimuth_deg.to_radians().sin().abs();
+                    shot(
+                        camera,
+                        caption,
+                        body.radius + slant * panel.w / camera.scale,
+                    );
+                }
+            }
+            View::Exploded => {
+                let (_, height) = exploded::lifts(data.info, body);
+                shot(
+                    exploded::camera(body, &options.camera, *panel, u, z, height),
+                    "layers apart",
+                    body.radius,
+                );
+            }
+            View::Scene => {
+                let camera = viewpoint::everything(body, data.snapshot, &options.camera, *panel);
+                shot(camera, "", 2.0 * (body.high - body.low).length());
+            }
+            View::CrossSection | View::Unrolled | View::Curve => {}
+        }
+    }
+    shots
+}
+
+/// z before loading [mm] of the section that close-ups follow.
+fn focus(data: &Data, options: &FrameOptions) -> f32 {
+    let [low, high] = data
+        .info
+        .gauge
+        .unwrap_or([data.body.low.z, data.body.high.z]);
+    let first = data.ruptures.first().map(|r| r.rest_z as f32 * 1e3);
+    options
+        .camera
+        .focus_z_mm
+        .or(first)
+        .unwrap_or(0.5 * (low + high))
+}
+
+/// The strand's segments as the snapshot has them or with the layers apart, appended to `all`.
+fn append_segments(
+    data: &Data,
+    position: Vec<[f32; 3]>,
+    all: &mut Vec<Segment>,
+) -> std::ops::Range<u32> {
+    let occlusion = occlusion(data.info, &position, &data.snapshot.radius);
+    let looks = Looks {
+        position,
+        colour: data.colours.to_vec(),
+        occlusion,
+    };
+    let start = all.len() as u32;
+    all.extend(wires::segments(data.info, data.snapshot, &looks));
+    start..all.len() as u32
+}
+
+impl Solid {
+    fn open(layout: &Layout) -> Result<Option<Self>> {
+        let panels: Vec<Rect> = layout
+            .panels
+            .iter()
+            .filter(|(v, _)| is_solid(*v))
+            .map(|(_, r)| *r)
+            .collect();
+        let Some(area) = panels.iter().copied().reduce(around) else {
+            return Ok(None);
+        };
+        let gpu = Gpu::open()?;
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if area.w as u32 > limit || area.h as u32 > limit {
+            let what = format!(
+                "the graphics adapter {} draws at most {limit} pixels across",
+                gpu.name
+            );
+            return Err(Error::input(what, "choose a smaller frame size"));
+        }
+        let pipeline = SolidPipeline::new(&gpu)?;
+        let target = Target::new(&gpu, area.w as u32, area.h as u32);
+        Ok(Some(Self {
+            gpu,
+            pipeline,
+            target,
+            area,
+        }))
+    }
+
+    fn draw(&self, data: &Data, shots: &[Shot]) -> Result<()> {
+        let mut segments = Vec::new();
+        let whole = append_segments(data, data.snapshot.position.clone(), &mut segments);
+        let mut drawings = Vec::new();
+        for shot in shots {
+            let mut instances = whole.clone();
+            if shot.view == View::Exploded {
+                let (lifts, _) = exploded::lifts(data.info, data.body);
+                let position = exploded::positions(data, &lifts, &shot.camera);
+                instances = append_segments(data, position, &mut segments);
+            }
+            drawings.push(Drawing {
+                camera: shot.camera,
+                instances,
+                fade: shot.fade,
+            });
+        }
+        let origin = [self.area.x, self.area.y];
+        self.pipeline.draw(
+            &self.gpu,
+            &self.target,
+            origin,
+            data.style,
+            &segments,
+            &drawings,
+        )
+    }
+
+    fn read_into(&self, picture: &mut RgbImage) -> Result<()> {
+        let (left, top) = (self.area.x as usize, self.area.y as usize);
+        let width = picture.width() as usize;
+        let bytes: &mut [u8] = picture;
+        self.target.read(&self.gpu, |y, row| {
+            let start = ((top + y as usize) * width + left) * 3;
+            let out = &mut bytes[start..start + row.len() / 4 * 3];
+            for (to, from) in out.chunks_exact_mut(3).zip(row.chunks_exact(4)) {
+                to.copy_from_slice(&from[..3]);
+            }
+        })
+    }
+}
+
+fn around(a: Rect, b: Rect) -> Rect {
+    let (x, y) = (a.x.min(b.x), a.y.min(b.y));
+    Rect::new(
+        x,
+        y,
+        a.right().max(b.right()) - x,
+        a.bottom().max(b.bottom()) - y,
+    )
+}
+
+fn overlay(
+    canvas: &mut Canvas,
+    data: &Data,
+    options: &FrameOptions,
+    layout: &Layout,
+    shots: &[Shot],
+) {
+    let focus = focus(data, options);
+    header::draw(canvas, layout.header, data);
+    let window = shots.iter().find(|s| s.view == View::Midsection).map(|s| {
+        let half = 0.5 * s.camera.panel.w / s.camera.scale;
+        [s.camera.centre.z - half, s.camera.centre.z + half]
+    });
+    for shot in shots {
+        let x = marks::title(canvas, shot.camera.panel, data, shot.caption);
+        marks::scale_bar(canvas, &shot.camera, data);
+        match shot.view {
+            View::Overview => marks::overview(canvas, &shot.camera, data, window),
+            View::Midsection => {
+                let text = format!("around z {focus:.1} mm");
+                marks::subtitle(canvas, x, shot.camera.panel, data, &text);
+                marks::break_numbers(canvas, &shot.camera, data);
+            }
+            View::Exploded => {
+                let (lifts, _) = exploded::lifts(data.info, data.body);
+                exploded::names(canvas, &shot.camera, data, &lifts);
+            }
+            _ => {}
+        }
+    }
+    for (view, panel) in &layout.panels {
+        match view {
+            View::Unrolled => unrolled::draw(canvas, *panel, data),
+            View::Curve => curve::draw(canvas, *panel, data),
+            View::CrossSection => cut::draw(canvas, *panel, data, focus),
+            _ => {}
+        }
+    }
+    gutters(canvas, data, layout, shots);
+}
+
+/// The adapter fills its whole area; what is not a panel of it becomes page again.
+fn gutters(canvas: &mut Canvas, data: &Data, layout: &Layout, shots: &[Shot]) {
+    let bottom = canvas.image.height() as f32;
+    for (_, panel) in &layout.panels {
+        let next = layout
+            .panels
+            .iter()
+            .map(|(_, p)| p.y)
+            .filter(|y| *y > panel.y)
+            .fold(bottom, f32::min);
+        canvas.fill(
+            Rect::new(panel.x, panel.bottom(), panel.w, next - panel.bottom()),
+            data.style.page,
+            1.0,
+        );
+    }
+    for pair in shots.windows(2) {
+        let (a, b) = (pair[0].camera.panel, pair[1].camera.panel);
+        if a.y == b.y {
+            canvas.fill(
+                Rect::new(a.right(), a.y, b.x - a.right(), a.h),
+                data.style.page,
+                1.0,
+            );
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Floor 6: off-screen pictures of a run. The only folder that names `wgpu`.
+//!
+//! Wires are drawn on the graphics adapter ([`adapter`], [`target`], [`wires`]); charts and text are drawn over them
+//! on the processor ([`canvas`]). [`frame::Renderer`] turns one snapshot into one picture, [`writer::FrameWriter`] is
+//! the observer that writes a numbered PNG sequence while the simulation runs.
+
+pub mod adapter;
+pub mod camera;
+pub mod canvas;
+pub mod colour;
+pub mod curve;
+pub mod cut;
+pub mod exploded;
+pub mod frame;
+pub mod header;
+pub mod layout;
+pub mod marks;
+pub mod occlusion;
+pub mod png;
+pub mod solid;
+pub mod style;
+pub mod target;
+pub mod ticks;
+pub mod timings;
+pub mod unrolled;
+pub mod viewpoint;
+pub mod wires;
+pub mod writer;
+
+pub use adapter::check;
+pub use frame::Renderer;
+pub use style::{CameraOptions, FrameOptions, Theme, View};
+pub use timings::Timings;
+pub use writer::FrameWriter;

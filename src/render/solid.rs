@@ -1,0 +1,214 @@
+//! Draws segments through cameras into the target: the only pipeline there is.
+
+use super::adapter::{Gpu, failure};
+use super::camera::Camera;
+use super::canvas::Rect;
+use super::style::Style;
+use super::target::{COLOUR, DEPTH, SAMPLES, Target};
+use super::wires::{self, Segment};
+use crate::base::error::Result;
+use std::ops::Range;
+use wgpu::util::DeviceExt;
+
+/// Source of the shader.
+pub const SHADER: &str = include_str!("wires.wgsl");
+
+/// What the shader knows of a view; the layout of `View` in `wires.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ViewUniform {
+    rotation: [[f32; 4]; 3],
+    centre: [f32; 4],
+    scale: [f32; 4],
+    rim: [f32; 4],
+    fade: [f32; 4],
+    signal: [f32; 4],
+}
+
+/// Segments `instances` of the list, seen through a camera into its panel.
+pub struct Drawing {
+    /// The camera; its panel is in pixels of the frame.
+    pub camera: Camera,
+    /// Which segments.
+    pub instances: Range<u32>,
+    /// Depth over which things darken [mm].
+    pub fade: f32,
+}
+
+/// The pipeline.
+pub struct SolidPipeline {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl SolidPipeline {
+    /// Compiles the shader for this adapter.
+    ///
+    /// # Errors
+    /// When the driver refuses it.
+    pub fn new(gpu: &Gpu) -> Result<Self> {
+        // Two scopes, because an unsupported sample mask is reported as an internal error, not a validation one.
+        let internal = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let validation = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let made = Self::compile(gpu);
+        let errors = [
+            pollster::block_on(validation.pop()),
+            pollster::block_on(internal.pop()),
+        ];
+        match errors.into_iter().flatten().next() {
+            Some(e) => Err(failure(format!(
+                "the graphics adapter {} refused a shader: {e}",
+                gpu.name
+            ))),
+            None => Ok(made),
+        }
+    }
+
+    fn compile(gpu: &Gpu) -> Self {
+        let device = &gpu.device;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("wires"),
+            source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+        });
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("view"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4,
+            4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4];
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("wires"),
+            layout: Some(
+                &device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: None,
+                    bind_group_layouts: &[Some(&layout)],
+                    immediate_size: 0,
+                }),
+            ),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vs"),
+                compilation_options: Default::default(),
+                buffers: &[Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<Segment>() as u64,
+                    step_mode: wgpu::VertexStepMode::Instance,
+                    attributes: &attributes,
+                })],
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Less),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: SAMPLES,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(if gpu.sample_mask {
+                    "fs_masked"
+                } else {
+                    "fs_whole"
+                }),
+                compilation_options: Default::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: COLOUR,
+                    blend: None,
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { pipeline, layout }
+    }
+
+    /// Draws into `target`, whose top left corner is the frame's pixel `origin`.
+    ///
+    /// # Errors
+    /// When the adapter is lost.
+    pub fn draw(
+        &self,
+        gpu: &Gpu,
+        target: &Target,
+        origin: [f32; 2],
+        style: &Style,
+        segments: &[Segment],
+        drawings: &[Drawing],
+    ) -> Result<()> {
+        let instances = gpu
+            .device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("segments"),
+                contents: bytemuck::cast_slice(segments),
+                usage: wgpu::BufferUsages::VERTEX,
+            });
+        let views: Vec<_> = drawings.iter().map(|d| self.bind(gpu, d, style)).collect();
+        target.draw(gpu, super::colour::linear4(style.panel), |pass| {
+            pass.set_pipeline(&self.pipeline);
+            for (drawing, view) in drawings.iter().zip(&views) {
+                if segments.is_empty() || drawing.instances.is_empty() {
+                    continue;
+                }
+                let Rect { x, y, w, h } = drawing.camera.panel;
+                let (x, y) = (x - origin[0], y - origin[1]);
+                pass.set_viewport(x, y, w, h, 0.0, 1.0);
+                pass.set_scissor_rect(x as u32, y as u32, w as u32, h as u32);
+                pass.set_bind_group(0, view, &[]);
+                pass.set_vertex_buffer(0, instances.slice(..));
+                pass.draw(0..4, drawing.instances.clone());
+            }
+        })
+    }
+
+    fn bind(&self, gpu: &Gpu, drawing: &Drawing, style: &Style) -> wgpu::BindGroup {
+        let camera = &drawing.camera;
+        let [rx, ry, rz] = camera.rotation.to_cols_array_2d();
+        let column = |c: [f32; 3]| [c[0], c[1], c[2], 0.0];
+        let [r, g, b] = style.rim;
+        let uniform = ViewUniform {
+            rotation: [column(rx), column(ry), column(rz)],
+            centre: camera.centre.extend(0.0).to_array(),
+            scale: [
+                2.0 * camera.scale / camera.panel.w,
+                2.0 * camera.scale / camera.panel.h,
+                camera.depth,
+                1.0 / camera.scale,
+            ],
+            rim: [r, g, b, style.edge],
+            fade: [0.0, drawing.fade, 0.0, 0.0],
+            signal: wires::signal(),
+        };
+        let buffer = gpu
+            .device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("view"),
+                contents: bytemuck::bytes_of(&uniform),
+                usage: wgpu::BufferUsages::UNIFORM,
+            });
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("view"),
+            layout: &self.layout,
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: buffer.as_entire_binding(),
+            }],
+        })
+    }
+}

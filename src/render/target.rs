@@ -1,0 +1,155 @@
+//! An off-screen picture on the adapter: four samples a pixel, read back into memory.
+
+use super::adapter::{Gpu, failure};
+use crate::base::error::Result;
+
+/// Format of what is drawn: shaders write linear light, the adapter stores sRGB.
+pub const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Format of depth.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Samples per pixel; 4 is what every adapter has.
+pub const SAMPLES: u32 = 4;
+
+/// The picture and what it takes to read it back.
+pub struct Target {
+    /// Width [px].
+    pub width: u32,
+    /// Height [px].
+    pub height: u32,
+    resolved: wgpu::Texture,
+    samples: wgpu::TextureView,
+    depth: wgpu::TextureView,
+    staging: wgpu::Buffer,
+    row_bytes: u32,
+}
+
+impl Target {
+    /// A target of at least one pixel.
+    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+        let size = wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        };
+        let texture = |format, sample_count, usage| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("frame"),
+                size,
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let resolved = texture(COLOUR, 1, attachment | wgpu::TextureUsages::COPY_SRC);
+        let samples = texture(COLOUR, SAMPLES, attachment).create_view(&Default::default());
+        let depth = texture(DEPTH, SAMPLES, attachment).create_view(&Default::default());
+        // Rows of a copied texture must start at multiples of 256 bytes.
+        let row_bytes = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read-back"),
+            size: u64::from(row_bytes) * u64::from(height),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self {
+            width,
+            height,
+            resolved,
+            samples,
+            depth,
+            staging,
+            row_bytes,
+        }
+    }
+
+    /// Clears to `background` (linear RGB), lets `draw` record, and waits until it is drawn.
+    ///
+    /// # Errors
+    /// When the adapter is lost.
+    pub fn draw(
+        &self,
+        gpu: &Gpu,
+        background: [f32; 4],
+        draw: impl FnOnce(&mut wgpu::RenderPass),
+    ) -> Result<()> {
+        let [r, g, b, a] = background.map(f64::from);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let resolved = self.resolved.create_view(&Default::default());
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("frame"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &self.samples,
+                    depth_slice: None,
+                    resolve_target: Some(&resolved),
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
+                        store: wgpu::StoreOp::Discard,
+                    },
+                })],
+                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                    view: &self.depth,
+                    depth_ops: Some(wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(1.0),
+                        store: wgpu::StoreOp::Discard,
+                    }),
+                    stencil_ops: None,
+                }),
+                ..Default::default()
+            });
+            draw(&mut pass);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        wait(gpu)
+    }
+
+    /// Copies the picture back and hands its rows, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
+    ///
+    /// # Errors
+    /// When the adapter is lost.
+    pub fn read(&self, gpu: &Gpu, mut row: impl FnMut(u32, &[u8])) -> Result<()> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            self.resolved.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &self.staging,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(self.row_bytes),
+                    rows_per_image: Some(self.height),
+                },
+            },
+            self.resolved.size(),
+        );
+        gpu.queue.submit([encoder.finish()]);
+        // A failed mapping shows as an error of `get_mapped_range` below.
+        self.staging
+            .slice(..)
+            .map_async(wgpu::MapMode::Read, |_| ());
+        wait(gpu)?;
+        {
+            let bytes = self.staging.slice(..).get_mapped_range().map_err(|e| {
+                failure(format!(
+                    "cannot read the picture back from {}: {e}",
+                    gpu.name
+                ))
+            })?;
+            for (y, padded) in bytes.chunks_exact(self.row_bytes as usize).enumerate() {
+                row(y as u32, &padded[..self.width as usize * 4]);
+            }
+        }
+        self.staging.unmap();
+        Ok(())
+    }
+}
+
+fn wait(gpu: &Gpu) -> Result<()> {
+    gpu.device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .map(|_| ())
+        .map_err(|e| failure(format!("the graphics adapter {} was lost: {e}", gpu.name)))
+}

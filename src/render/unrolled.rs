@@ -1,0 +1,270 @@
+//! The strand unrolled: one row per wire, outermost layer on top, along the axial position before loading. Shows at a
+//! glance where each wire broke and in which order.
+
+use super::canvas::{Align, Canvas, Rect, Type, Weight};
+use super::colour::desaturated;
+use super::frame::Data;
+use super::marks;
+use super::style::Rgb;
+use super::ticks::{label, ticks};
+use super::wires::{holds, in_grip};
+use crate::engine::view::{BondState, WireInfo};
+
+/// Rows of the map.
+struct Rows {
+    area: Rect,
+    range: [f32; 2],
+    /// Top of each wire's row [px].
+    top: Vec<f32>,
+    height: f32,
+}
+
+impl Rows {
+    fn x(&self, z: f32) -> f32 {
+        self.area.x + self.area.w * (z - self.range[0]) / (self.range[1] - self.range[0]).max(1e-6)
+    }
+}
+
+/// Draws the panel.
+pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data) {
+    let u = canvas.unit;
+    canvas.fill(panel, data.style.panel, 1.0);
+    let x = marks::title(canvas, panel, data, "wires unrolled");
+    marks::subtitle(canvas, x, panel, data, "numbers: order of break");
+    let rows = rows(panel.inset(76.0 * u, 42.0 * u, 18.0 * u, 38.0 * u), data, u);
+    for (wire, top) in data.info.wires.iter().zip(&rows.top) {
+        row(canvas, &rows, *top, wire, data);
+    }
+    layers(canvas, panel, &rows, data);
+    axis(canvas, panel, &rows, data);
+    breaks(canvas, &rows, data);
+    numbers(canvas, &rows, data);
+}
+
+fn rows(area: Rect, data: &Data, unit: f32) -> Rows {
+    let wires = &data.info.wires;
+    let gaps = data.info.layers.len().saturating_sub(1) as f32;
+    let height = (area.h / (wires.len() as f32 + 1.2 * gaps).max(1.0)).min(18.0 * unit);
+    let mut top = vec![area.y; wires.len()];
+    let mut y = area.y;
+    for layer in (0..data.info.layers.len()).rev() {
+        let members = (0..wires.len()).filter(|w| wires[*w].layer == layer);
+        for w in members {
+            top[w] = y;
+            y += height;
+        }
+        y += 1.2 * height;
+    }
+    Rows {
+        area,
+        range: [data.body.low.z, data.body.high.z],
+        top,
+        height,
+    }
+}
+
+fn row(canvas: &mut Canvas, rows: &Rows, top: f32, wire: &WireInfo, data: &Data) {
+    let shown = |i: usize| {
+        if in_grip(data.info, i) {
+            desaturated(data.colours[i])
+        } else {
+            data.colours[i]
+        }
+    };
+    let gap = if rows.height >= 4.0 * canvas.unit {
+        0.16 * rows.height
+    } else {
+        0.0
+    };
+    for i in wire.first..wire.first + wire.len.saturating_sub(1) {
+        if !holds(data.snapshot, i) {
+            continue;
+        }
+        let (z0, z1) = (
+            data.info.rest_position[i][2],
+            data.info.rest_position[i + 1][2],
+        );
+        let (x0, x1) = (rows.x(z0.min(z1)), rows.x(z0.max(z1)));
+        let colour = mixed(shown(i), shown(i + 1));
+        // Whole columns, each of exactly one bond: no seams between neighbours.
+        let (from, to) = (x0.round(), x1.round());
+        canvas.fill(
+            Rect::new(from, top, to - from, rows.height - gap),
+            colour,
+            1.0,
+        );
+    }
+}
+
+fn mixed(a: Rgb, b: Rgb) -> Rgb {
+    std::array::from_fn(|k| ((u16::from(a[k]) + u16::from(b[k])) / 2) as u8)
+}
+
+fn layers(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
+    let u = canvas.unit;
+    let name = Type {
+        size: 12.0 * u,
+        weight: Weight::Bold,
+        colour: data.style.text,
+        align: Align::Left,
+    };
+    let detail = Type {
+        size: 10.5 * u,
+        weight: Weight::Regular,
+        colour: data.style.muted,
+        align: Align::Left,
+    };
+    for (layer, text) in data.info.layers.iter().enumerate() {
+        let members: Vec<usize> = (0..rows.top.len())
+            .filter(|w| data.info.wires[*w].layer == layer)
+            .collect();
+        let (Some(first), Some(last)) = (members.first(), members.last()) else {
+            continue;
+        };
+        let middle = 0.5 * (rows.top[*first] + rows.top[*last] + rows.height);
+        let x = panel.x + 12.0 * u;
+        canvas.text(x, middle - u, name, text);
+        let span = if first == last {
+            format!("{}", first + 1)
+        } else {
+            format!("{}–{}", first + 1, last + 1)
+        };
+        canvas.text(x, middle + 12.0 * u, detail, &span);
+    }
+}
+
+fn axis(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
+    let u = canvas.unit;
+    let small = Type {
+        size: 11.0 * u,
+        weight: Weight::Regular,
+        colour: data.style.muted,
+        align: Align::Centre,
+    };
+    let marks = ticks(f64::from(rows.range[0]), f64::from(rows.range[1]), 8);
+    let bottom = rows.area.bottom();
+    for value in marks.values {
+        let x = rows.x(value as f32);
+        canvas.fill(
+            Rect::new((x - 0.5 * u).round(), bottom, u.max(1.0), 4.0 * u),
+            data.style.muted,
+            1.0,
+        );
+        canvas.text(x, bottom + 16.0 * u, small, &label(value, marks.decimals));
+    }
+    let kind = Type {
+        align: Align::Right,
+        colour: data.style.text,
+        ..small
+    };
+    canvas.text(
+        rows.area.right(),
+        panel.bottom() - 8.0 * u,
+        kind,
+        "axial position before loading (mm)",
+    );
+    if let Some(faces) = data.info.gauge {
+        for z in faces {
+            let x = rows.x(z);
+            canvas.fill(
+                Rect::new(x - 0.5 * u, rows.area.y - 4.0 * u, u, rows.area.h + 4.0 * u),
+                data.style.text,
+                0.5,
+            );
+        }
+        let middle = |a: f32, b: f32| 0.5 * (rows.x(a) + rows.x(b));
+        for x in [
+            middle(rows.range[0], faces[0]),
+            middle(faces[1], rows.range[1]),
+        ] {
+            canvas.text(
+                x,
+                rows.area.y - 5.0 * u,
+                Type {
+                    size: 10.0 * u,
+                    ..small
+                },
+                "grip",
+            );
+        }
+    }
+}
+
+fn breaks(canvas: &mut Canvas, rows: &Rows, data: &Data) {
+    let u = canvas.unit;
+    for (wire, top) in data.info.wires.iter().zip(&rows.top) {
+        for i in wire.first..wire.first + wire.len.saturating_sub(1) {
+            if data.snapshot.bond_state[i] == BondState::Broken {
+                let z = 0.5 * (data.info.rest_position[i][2] + data.info.rest_position[i + 1][2]);
+                let reach = 0.5 * rows.height.max(9.0 * u);
+                let middle = top + 0.45 * rows.height;
+                let mark = Rect::new(rows.x(z) - 2.5 * u, middle - reach, 5.0 * u, 2.0 * reach);
+                canvas.fill(mark.inset(-u, -u, -u, -u), data.style.panel, 1.0);
+                canvas.fill(mark, data.style.signal, 1.0);
+            }
+        }
+    }
+}
+
+/// Order numbers beside the first break of each wire, where they cover no other number and no break.
+fn numbers(canvas: &mut Canvas, rows: &Rows, data: &Data) {
+    let u = canvas.unit;
+    let size = 11.0 * u;
+    let mut taken: Vec<Rect> = data
+        .first_breaks()
+        .map(|(_, r)| {
+            Rect::new(
+                rows.x(r.rest_z as f32 * 1e3) - 4.0 * u,
+                rows.top[r.wire],
+                8.0 * u,
+                rows.height,
+            )
+        })
+        .collect();
+    for (number, rupture) in data.first_breaks() {
+        let text = number.to_string();
+        let w = canvas.fonts.width(&text, size, Weight::Bold) + 6.0 * u;
+        let h = 13.0 * u;
+        let x = rows.x(rupture.rest_z as f32 * 1e3);
+        let y = rows.top[rupture.wire] + 0.45 * rows.height;
+        let Some(r) = beside(&taken, x, y, w, h, u, rows.area) else {
+            continue;
+        };
+        taken.push(r);
+        let near = if r.x > x { r.x } else { r.right() };
+        canvas.line([x, y], [near, r.y + 0.5 * h], 1.0 * u, data.style.text, 0.8);
+        canvas.fill_rounded(r, 3.0 * u, data.style.page, 0.88);
+        let kind = Type {
+            size,
+            weight: Weight::Bold,
+            colour: data.style.text,
+            align: Align::Centre,
+        };
+        canvas.text(r.x + 0.5 * w, r.y + 0.5 * h + 0.36 * size, kind, &text);
+    }
+}
+
+/// A free place for a label to the right or left of (x, y), as near as possible.
+fn beside(taken: &[Rect], x: f32, y: f32, w: f32, h: f32, u: f32, area: Rect) -> Option<Rect> {
+    for out in 0..8 {
+        for shift in [0.0, -0.5, 0.5, -1.0, 1.0] {
+            for right in [true, false] {
+                let distance = 7.0 * u + 0.8 * out as f32 * w;
+                let left = if right {
+                    x + distance
+                } else {
+                    x - distance - w
+                };
+                let r = Rect::new(left, y - 0.5 * h + shift * h, w, h);
+                let inside = r.x > area.x
+                    && r.right() < area.right()
+                    && r.y > area.y - h
+                    && r.bottom() < area.bottom() + h;
+                if inside && !taken.iter().any(|t| t.meets(&r)) {
+                    return Some(r);
+                }
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,177 @@
+//! Floor 7: a run from scene to results: assembly → engine + observers → [`RunSummary`].
+//!
+//! [`run`] writes a folder; [`simulate`] shows a run to observers and writes nothing.
+
+pub mod cost;
+mod drive;
+pub mod estimate;
+pub mod folder;
+pub mod outputs;
+pub mod replay;
+mod schedule;
+mod stop;
+
+pub use crate::observe::summary::RunSummary;
+pub use drive::{Outcome, simulate};
+pub use schedule::{Due, Schedule};
+pub use stop::{StopReason, StopRule};
+
+use crate::base::error::{Error, Result};
+use crate::engine::Engine;
+use crate::observe::Observer;
+use crate::observe::files::write_whole;
+use crate::observe::progress::Progress;
+use crate::observe::summary::{Cost, Summariser};
+use crate::observe::tables::Tables;
+use crate::scene::{Scene, write};
+use crate::strand::assembly::Assembly;
+use crate::strand::discretise;
+use folder::OutFolder;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Where a run goes and what it writes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunOptions {
+    /// Folder of the results.
+    pub out: PathBuf,
+    /// Replace earlier results in that folder.
+    pub overwrite: bool,
+    /// Threads of the engine; `None`: as many as the machine has.
+    pub threads: Option<usize>,
+    /// Draw numbered pictures into `frames/`.
+    pub frames: bool,
+    /// Write `recording.rrd`.
+    pub recording: bool,
+    /// Address of a Rerun viewer to stream to while running.
+    pub live: Option<String>,
+    /// Show no progress bar.
+    pub quiet: bool,
+}
+
+/// Runs a scene and writes its results; `stop` ends it cleanly after the step in progress.
+///
+/// Everything that can be checked before simulating is checked before anything is written or removed. Files
+/// grow under a partial name and get their own when they are whole. Results up to an interruption or an error
+/// are kept.
+///
+/// # Errors
+/// Bad input (scene, geometry, output folder), something missing on the machine (adapter, viewer), trouble in the
+/// simulation, or a file that cannot be written.
+pub fn run(scene: &Scene, options: &RunOptions, stop: &AtomicBool) -> Result<RunSummary> {
+    let clock = Clock::start();
+    let folder = OutFolder::check(&options.out, options.overwrite)?;
+    outputs::check(options)?;
+    let assembly = assemble(scene)?;
+    in_pool(options.threads, || {
+        let bonds = assembly.bond_count();
+        let engine = Engine::new(&scene.spec, assembly)?;
+        folder.open()?;
+        write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
+        let written = outputs::open(options, &scene.spec, &folder)?;
+        drive_and_summarise(Job { scene, options, folder: &folder, clock, bonds }, engine, written, stop)
+    })?
+}
+
+/// The wires, particles and bonds of a scene.
+///
+/// # Errors
+/// Geometry that cannot be, at the line of the scene that asks for it.
+pub fn assemble(scene: &Scene) -> Result<Assembly> {
+    discretise::build(&scene.spec).map_err(|e| scene.source.error(&e.key, e.message, e.help))
+}
+
+/// Calls `work` with a given number of threads behind every parallel loop in it.
+///
+/// # Errors
+/// [`Error::Missing`] when the system refuses the threads.
+pub fn in_pool<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T> {
+    // Zero means one thread per core.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    let pool = pool.map_err(|e| Error::Missing {
+        what: format!("cannot start the threads: {e}"),
+        help: Some("ask for fewer with --threads".into()),
+    })?;
+    Ok(pool.install(work))
+}
+
+struct Clock {
+    wall: Instant,
+    cpu: Option<f64>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { wall: Instant::now(), cpu: cost::cpu_time() }
+    }
+
+    fn cost(&self, outcome: &Outcome) -> Cost {
+        let stepping_ms = outcome.stepping.as_secs_f64() * 1e3;
+        Cost {
+            steps: outcome.steps,
+            simulated_s: outcome.time,
+            wall_s: self.wall.elapsed().as_secs_f64(),
+            cpu_s: cost::cpu_time().zip(self.cpu).map(|(now, begin)| now - begin),
+            ms_per_step: (outcome.steps > 0).then(|| stepping_ms / outcome.steps as f64),
+            threads: rayon::current_num_threads(),
+            versions: cost::versions(),
+        }
+    }
+}
+
+/// What a run in progress needs to know about itself.
+struct Job<'a> {
+    scene: &'a Scene,
+    options: &'a RunOptions,
+    folder: &'a OutFolder,
+    clock: Clock,
+    bonds: usize,
+}
+
+fn drive_and_summarise(
+    job: Job,
+    engine: Engine,
+    mut written: Vec<Box<dyn Observer>>,
+    stop: &AtomicBool,
+) -> Result<RunSummary> {
+    let spec = &job.scene.spec;
+    let mut summariser = Summariser::new();
+    let mut tables = Tables::new(&job.options.out);
+    let mut progress = (!job.options.quiet).then(|| Progress::new(&spec.stop));
+    // The summariser comes first: a row that is not finite must not reach the files.
+    let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
+    observers.extend(written.iter_mut().map(|o| &mut **o as &mut dyn Observer));
+    observers.extend(progress.as_mut().map(|o| o as &mut dyn Observer));
+    let (outcome, trouble) = drive::drive(engine, spec, &mut observers, stop)?;
+    let summary = summariser.summary(
+        spec,
+        job.bonds,
+        outcome.reason.to_string(),
+        trouble.as_ref().map(Error::to_string),
+        job.clock.cost(&outcome),
+    );
+    let kept = write_summary(&job.folder.file(folder::SUMMARY), &summary);
+    match trouble {
+        Some(error) => Err(with_place(error, &job.options.out)),
+        None => kept.map(|()| summary),
+    }
+}
+
+fn write_summary(path: &Path, summary: &RunSummary) -> Result<()> {
+    let text =
+        serde_json::to_string_pretty(summary).map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
+    write_whole(path, &(text + "\n"))
+}
+
+/// Says where the results so far are.
+fn with_place(error: Error, out: &Path) -> Error {
+    match error {
+        Error::Trouble { step, what, help } => {
+            let kept = format!("the results up to there are in {}", out.display());
+            let help = Some(help.map_or(kept.clone(), |help| format!("{help}; {kept}")));
+            Error::Trouble { step, what, help }
+        }
+        other => other,
+    }
+}

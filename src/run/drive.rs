@@ -1,0 +1,210 @@
+//! The step loop: engine, schedule, stop rule and observers.
+
+use super::schedule::Schedule;
+use super::stop::{StopReason, StopRule};
+use crate::base::error::{Error, Result};
+use crate::engine::Engine;
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+use crate::observe::Observer;
+use crate::observe::planned::PlannedEnd;
+use crate::scene::spec::Spec;
+use crate::strand::assembly::Assembly;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How a run went, apart from what its observers saw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Why it ended.
+    pub reason: StopReason,
+    /// Steps done.
+    pub steps: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Strain of the body at the end [-].
+    pub strain: f64,
+    /// Wall time spent in the engine, observers not included.
+    pub stepping: Duration,
+    /// Wall time spent in observers.
+    pub observing: Duration,
+}
+
+/// Simulates an assembly and shows it to observers; writes nothing itself.
+///
+/// Rows and snapshots come as the scene's `output` says, in the order in which things happen; a rupture comes
+/// before the row that follows it. The first and the last state always come with a snapshot. Every observer
+/// that was started is finished, also after an error. Call it inside a rayon pool to choose the threads.
+///
+/// # Errors
+/// What [`Engine::new`] refuses; [`Error::Trouble`] when the simulation had to stop; the first error of an
+/// observer.
+pub fn simulate(
+    spec: &Spec,
+    assembly: Assembly,
+    observers: &mut [&mut dyn Observer],
+    stop: &AtomicBool,
+) -> Result<Outcome> {
+    let (outcome, trouble) = drive(Engine::new(spec, assembly)?, spec, observers, stop)?;
+    match trouble {
+        Some(error) => Err(error),
+        None => Ok(outcome),
+    }
+}
+
+/// [`simulate`] from an engine that is set up; the error that ended the run comes beside its outcome.
+pub(super) fn drive(
+    engine: Engine,
+    spec: &Spec,
+    observers: &mut [&mut dyn Observer],
+    stop: &AtomicBool,
+) -> Result<(Outcome, Option<Error>)> {
+    let info = Arc::new(engine.info());
+    let end = PlannedEnd::new(&spec.stop, info.strain_end);
+    if !end.is_known() {
+        return Err(Error::input(
+            "the scene does not say when to stop, so rows and snapshots cannot be spread over the run",
+            "give at least one of stop.strain, stop.time or stop.steps",
+        ));
+    }
+    let mut driver = Driver {
+        engine,
+        end,
+        schedule: Schedule::new(&spec.output),
+        rule: StopRule::new(&spec.stop),
+        audience: Audience { observers, started: 0, time: Duration::ZERO },
+        shown: None,
+    };
+    let begin = Instant::now();
+    let ended = driver.go(&info, stop);
+    let stepping = begin.elapsed().saturating_sub(driver.audience.time);
+    let finished = driver.audience.finish();
+    let (reason, trouble) = match (ended, finished) {
+        (Ok(reason), Ok(())) => (reason, None),
+        (Err(error), _) | (Ok(_), Err(error)) => (StopReason::Trouble, Some(error)),
+    };
+    let outcome = Outcome {
+        reason,
+        steps: driver.engine.steps(),
+        time: driver.engine.time(),
+        strain: driver.engine.strain(),
+        stepping,
+        observing: driver.audience.time,
+    };
+    Ok((outcome, trouble))
+}
+
+struct Driver<'a, 'b> {
+    engine: Engine,
+    end: PlannedEnd,
+    schedule: Schedule,
+    rule: StopRule,
+    audience: Audience<'a, 'b>,
+    /// Step of the last snapshot.
+    shown: Option<u64>,
+}
+
+impl Driver<'_, '_> {
+    fn go(&mut self, info: &Arc<RunInfo>, stop: &AtomicBool) -> Result<StopReason> {
+        self.audience.start(info)?;
+        self.show()?;
+        let reason = loop {
+            if stop.load(Ordering::Relaxed) {
+                break StopReason::Interrupted;
+            }
+            let engine = &self.engine;
+            if let Some(reason) = self.rule.reached(engine.strain(), engine.time(), engine.steps()) {
+                break reason;
+            }
+            self.engine.step()?;
+            self.look()?;
+        };
+        if self.shown != Some(self.engine.steps()) {
+            self.show()?;
+        }
+        Ok(reason)
+    }
+
+    /// Passes on what the step just done brought.
+    fn look(&mut self) -> Result<()> {
+        let now = self.end.fraction(self.engine.strain(), self.engine.time(), self.engine.steps());
+        let ruptures = self.engine.take_ruptures();
+        if !ruptures.is_empty() {
+            self.rule.rupture();
+            self.schedule.rupture(now);
+        }
+        for rupture in &ruptures {
+            self.audience.rupture(rupture)?;
+        }
+        let due = self.schedule.due(now);
+        if due.snapshot {
+            self.show()
+        } else if due.row {
+            let sample = self.engine.sample();
+            self.row(&sample)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// A snapshot and its row.
+    fn show(&mut self) -> Result<()> {
+        let snapshot = Arc::new(self.engine.snapshot());
+        self.row(&snapshot.sample)?;
+        self.shown = Some(snapshot.sample.step);
+        self.audience.snapshot(&snapshot)
+    }
+
+    fn row(&mut self, sample: &Sample) -> Result<()> {
+        self.rule.row(sample.stress);
+        self.audience.sample(sample)
+    }
+}
+
+/// All observers, and the time they take.
+struct Audience<'a, 'b> {
+    observers: &'a mut [&'b mut dyn Observer],
+    /// How many of them were started: only those may be finished.
+    started: usize,
+    time: Duration,
+}
+
+impl Audience<'_, '_> {
+    fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
+        let begin = Instant::now();
+        for observer in self.observers.iter_mut() {
+            observer.start(info)?;
+            self.started += 1;
+        }
+        self.time += begin.elapsed();
+        Ok(())
+    }
+
+    fn sample(&mut self, sample: &Sample) -> Result<()> {
+        self.each(|observer| observer.sample(sample))
+    }
+
+    fn snapshot(&mut self, snapshot: &Arc<Snapshot>) -> Result<()> {
+        self.each(|observer| observer.snapshot(snapshot))
+    }
+
+    fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
+        self.each(|observer| observer.rupture(rupture))
+    }
+
+    fn each(&mut self, mut tell: impl FnMut(&mut dyn Observer) -> Result<()>) -> Result<()> {
+        let begin = Instant::now();
+        let told = self.observers.iter_mut().try_for_each(|observer| tell(*observer));
+        self.time += begin.elapsed();
+        told
+    }
+
+    /// Finishes every observer that was started, whatever the others answer; the first error counts.
+    fn finish(&mut self) -> Result<()> {
+        let begin = Instant::now();
+        let started = self.observers.iter_mut().take(self.started);
+        let answers: Vec<Result<()>> = started.map(|observer| observer.finish()).collect();
+        self.time += begin.elapsed();
+        answers.into_iter().collect()
+    }
+}

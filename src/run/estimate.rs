@@ -1,0 +1,113 @@
+//! What a run would cost: the numbers behind `strandsnap plan`.
+
+use crate::base::error::Result;
+use crate::engine::Engine;
+use crate::engine::view::RunInfo;
+use crate::scene::spec::{DriveSpec, Spec};
+use crate::strand::assembly::Assembly;
+use std::fmt;
+use std::time::{Duration, Instant};
+
+/// Steps are tried until this much time has passed or this many are done.
+const TRIAL_TIME: Duration = Duration::from_millis(500);
+const TRIAL_STEPS: u64 = 200;
+
+/// The size of a run, and what it is expected to cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// Wires.
+    pub wires: usize,
+    /// Particles, free spheres included.
+    pub particles: usize,
+    /// Bonds.
+    pub bonds: usize,
+    /// First time step [s].
+    pub time_step: f64,
+    /// What limits it.
+    pub time_step_limit: String,
+    /// Simulated time to the expected end [s]; `None` when the scene does not tell.
+    pub duration: Option<f64>,
+    /// Steps to the expected end at the first time step.
+    pub steps: Option<f64>,
+    /// Wall time of a step, measured [s].
+    pub step_wall: f64,
+    /// Number of steps that it was measured over.
+    pub measured: u64,
+}
+
+/// Sets a run up, tries a few steps and extrapolates. Call it inside a rayon pool to choose the threads.
+///
+/// # Errors
+/// What [`Engine::new`] refuses, and trouble in the first steps.
+pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
+    let (wires, particles, bonds) = (assembly.wires.len(), assembly.len(), assembly.bond_count());
+    let mut engine = Engine::new(spec, assembly)?;
+    let time_step = engine.time_step();
+    let time_step_limit = engine.time_step_limit();
+    let duration = duration(spec, &engine.info());
+    let begin = Instant::now();
+    let mut measured = 0;
+    while measured == 0 || (measured < TRIAL_STEPS && begin.elapsed() < TRIAL_TIME) {
+        engine.step()?;
+        measured += 1;
+    }
+    let of_time = duration.map(|seconds| (seconds / time_step).ceil());
+    let of_steps = spec.stop.steps.map(|n| n as f64);
+    Ok(Estimate {
+        wires,
+        particles,
+        bonds,
+        time_step,
+        time_step_limit,
+        duration,
+        steps: [of_time, of_steps].into_iter().flatten().reduce(f64::min),
+        step_wall: begin.elapsed().as_secs_f64() / measured as f64,
+        measured,
+    })
+}
+
+/// Simulated time to the expected end [s]: `stop.time`, or the expected strain at the pull's constant speed.
+fn duration(spec: &Spec, info: &RunInfo) -> Option<f64> {
+    let gauge = info.gauge.map(|[lower, upper]| f64::from(upper - lower) * 1e-3);
+    let strain = info.strain_end.or(spec.stop.strain);
+    let pull = match (gauge, strain, &spec.grip) {
+        (Some(gauge), Some(strain), Some(grip)) => match grip.drive {
+            DriveSpec::Speed(speed) if speed != 0.0 => Some((strain * gauge / speed).abs()),
+            _ => None,
+        },
+        _ => None,
+    };
+    [pull, spec.stop.time].into_iter().flatten().reduce(f64::min)
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "size: {} wires, {} particles, {} bonds", self.wires, self.particles, self.bonds)?;
+        writeln!(f, "time step: {:.3e} s at first, limited by {}", self.time_step, self.time_step_limit)?;
+        if let Some(duration) = self.duration {
+            writeln!(f, "simulated time: {duration:.3e} s")?;
+        }
+        match self.steps {
+            Some(steps) => {
+                let wall = steps * self.step_wall;
+                writeln!(
+                    f,
+                    "steps: about {steps:.0}, {:.3} ms each over the first {}",
+                    self.step_wall * 1e3,
+                    self.measured
+                )?;
+                write!(f, "wall time: about {}, more as contacts form; output not included", span(wall))
+            }
+            None => write!(f, "steps: unknown, because the scene ends at no strain, time or number of steps"),
+        }
+    }
+}
+
+/// Seconds for people.
+fn span(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}

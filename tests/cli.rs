@@ -1,0 +1,293 @@
+//! The real program in temporary folders: exit codes, messages, and the files of a run.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A command in an empty folder.
+fn strandsnap(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_strandsnap"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the program starts")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn assert_code(output: &Output, code: i32) {
+    let (out, err) = (stdout(output), stderr(output));
+    assert_eq!(output.status.code(), Some(code), "stdout:\n{out}\nstderr:\n{err}");
+}
+
+/// Text of a message with the breaks and bars of the report removed, so that a phrase can be looked for.
+fn plain(text: &str) -> String {
+    text.split_whitespace().filter(|w| !["│", "|"].contains(w)).collect::<Vec<_>>().join(" ")
+}
+
+/// Arguments of the shortest run that writes everything but pictures and recording.
+const SHORT: [&str; 8] =
+    ["run", "single-wire", "--set", "stop.steps=400", "--set", "output.samples=40", "--set", "output.snapshots=4"];
+
+fn short_run(folder: &Path, more: &[&str]) -> Output {
+    let arguments = [&SHORT[..], more].concat();
+    strandsnap(folder, &arguments)
+}
+
+const LEAN: [&str; 2] = ["--no-frames", "--no-recording"];
+
+#[test]
+fn help_and_version_are_well() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_code(&strandsnap(folder.path(), &["--help"]), 0);
+    let version = strandsnap(folder.path(), &["--version"]);
+    assert_code(&version, 0);
+    assert!(stdout(&version).contains(env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn an_unknown_option_is_bad_input() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_code(&strandsnap(folder.path(), &["run", "ka4", "--colur"]), 2);
+    assert_code(&strandsnap(folder.path(), &["run", "ka4", "--threads", "0"]), 2);
+    assert_code(&strandsnap(folder.path(), &["render", ".", "--size", "12"]), 2);
+}
+
+#[test]
+fn an_unknown_scene_suggests_the_nearest() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [["run", "ka5"], ["plan", "ka5"]] {
+        let output = strandsnap(folder.path(), &arguments);
+        assert_code(&output, 2);
+        assert!(stderr(&output).contains("ka4"), "{}", stderr(&output));
+    }
+    let output = strandsnap(folder.path(), &["scene", "show", "sngle-wire"]);
+    assert_code(&output, 2);
+    assert!(stderr(&output).contains("single-wire"), "{}", stderr(&output));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing may be written");
+}
+
+#[test]
+fn a_scene_file_that_is_not_there_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = strandsnap(folder.path(), &["run", "mine.toml"]);
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{}", stderr(&output));
+    assert!(stderr(&output).contains("mine.toml"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_wrong_unit_points_at_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = stdout(&strandsnap(folder.path(), &["scene", "show", "ka4"]));
+    let line = scene.lines().position(|l| l.contains("GPa\"")).expect("ka4 gives a modulus in GPa");
+    fs::write(folder.path().join("wrong.toml"), scene.replace("GPa\"", "kg\"")).unwrap();
+    let output = strandsnap(folder.path(), &["scene", "check", "wrong.toml"]);
+    assert_code(&output, 2);
+    let message = stderr(&output);
+    assert!(message.contains(&format!("wrong.toml:{}:", line + 1)), "{message}");
+    assert!(message.contains("kg"), "{message}");
+}
+
+#[test]
+fn every_scene_is_listed_shown_and_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = strandsnap(folder.path(), &["scene", "list"]);
+    assert_code(&list, 0);
+    let names: Vec<String> = stdout(&list).lines().filter_map(|l| Some(l.split_whitespace().next()?.into())).collect();
+    for name in ["ka4", "single-wire", "strand-1x7", "two-spheres", "cantilever", "torsion", "jaw-grip"] {
+        assert!(names.iter().any(|n| n == name), "{name} is not in {names:?}");
+    }
+    for name in &names {
+        let check = strandsnap(folder.path(), &["scene", "check", name]);
+        assert_code(&check, 0);
+        let shown = strandsnap(folder.path(), &["scene", "show", name]);
+        assert_code(&shown, 0);
+        toml::from_str::<toml::Table>(&stdout(&shown)).expect("a scene is TOML");
+    }
+}
+
+#[test]
+fn an_output_folder_that_exists_is_refused_and_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("results");
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("curve.csv"), "precious").unwrap();
+    let output = short_run(folder.path(), &[&LEAN[..], &["--out", "results"]].concat());
+    assert_code(&output, 2);
+    assert!(stderr(&output).contains("--overwrite"), "{}", stderr(&output));
+    assert_eq!(fs::read_to_string(out.join("curve.csv")).unwrap(), "precious");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("plain"), "").unwrap();
+    let output = short_run(folder.path(), &[&LEAN[..], &["--out", "plain/below"]].concat());
+    assert_code(&output, 1);
+    assert!(stderr(&output).contains("below"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_run_that_does_not_exist_cannot_be_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = strandsnap(folder.path(), &["render", "nowhere"]);
+    let built = cfg!(feature = "render");
+    assert_code(&output, if built { 2 } else { 3 });
+    let word = if built { "nowhere" } else { "built without" };
+    assert!(plain(&stderr(&output)).contains(word), "{}", stderr(&output));
+}
+
+#[test]
+fn a_plan_names_size_step_and_cost() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = strandsnap(folder.path(), &["plan", "single-wire"]);
+    assert_code(&output, 0);
+    for word in ["particles", "bonds", "time step", "limited by", "steps", "contacts"] {
+        assert!(stdout(&output).contains(word), "no `{word}` in\n{}", stdout(&output));
+    }
+}
+
+#[test]
+fn centre_lines_are_exported_once() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_code(&strandsnap(folder.path(), &["export", "strand-1x7", "lines.txt"]), 0);
+    let text = fs::read_to_string(folder.path().join("lines.txt")).unwrap();
+    assert!(text.lines().count() > 7, "{text}");
+    assert_code(&strandsnap(folder.path(), &["export", "strand-1x7", "lines.txt"]), 2);
+    assert_code(&strandsnap(folder.path(), &["export", "strand-1x7", "lines.txt", "--overwrite"]), 0);
+}
+
+#[test]
+fn a_short_run_writes_files_that_parse() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = short_run(folder.path(), &LEAN);
+    assert_code(&output, 0);
+    let out = folder.path().join("out/single-wire");
+    let curve = rows(&out.join("curve.csv"));
+    assert!((40..=46).contains(&curve.len()), "{} rows", curve.len());
+    let strain: Vec<f64> = curve.iter().map(|row| row["strain_percent"].parse().unwrap()).collect();
+    assert!(strain.windows(2).all(|w| w[1] > w[0]), "strain grows from row to row: {strain:?}");
+    assert_eq!(curve.last().unwrap()["step"], "400");
+    assert_eq!(rows(&out.join("wires.csv")).len(), 1);
+    assert_eq!(rows(&out.join("ruptures.csv")).len(), 0);
+    let summary = summary(&out);
+    assert_eq!(summary["steps"], 400);
+    assert_eq!(summary["first_rupture"], serde_json::Value::Null);
+    for key in [
+        "tensile_strength_mpa",
+        "fracture_elongation_percent",
+        "energy_residual_percent",
+        "kinetic_over_internal_max",
+        "grip_force_mismatch_percent",
+        "wall_s",
+        "cpu_s",
+        "ms_per_step",
+    ] {
+        assert!(summary[key].is_f64(), "{key} is {}", summary[key]);
+    }
+    assert!(summary["wires_broken_by_layer"].is_object());
+    toml::from_str::<toml::Table>(&fs::read_to_string(out.join("scene.toml")).unwrap()).unwrap();
+    let left: Vec<_> = fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert!(left.iter().all(|n| !n.to_string_lossy().contains("partial")), "{left:?}");
+}
+
+#[test]
+fn the_resolved_scene_reproduces_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_code(&short_run(folder.path(), &LEAN), 0);
+    let again = ["run", "out/single-wire/scene.toml", "--out", "again", "--no-frames", "--no-recording"];
+    assert_code(&strandsnap(folder.path(), &again), 0);
+    let curve = |out: &str| fs::read_to_string(folder.path().join(out).join("curve.csv")).unwrap();
+    assert_eq!(curve("out/single-wire"), curve("again"));
+}
+
+#[test]
+fn overwriting_replaces_the_results_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_code(&short_run(folder.path(), &LEAN), 0);
+    let out = folder.path().join("out/single-wire");
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    fs::write(out.join("curve.csv"), "old").unwrap();
+    assert_code(&short_run(folder.path(), &[&LEAN[..], &["--overwrite"]].concat()), 0);
+    assert!(rows(&out.join("curve.csv")).len() > 10);
+    assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
+}
+
+#[test]
+fn a_quiet_run_says_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = short_run(folder.path(), &[&LEAN[..], &["--quiet"]].concat());
+    assert_code(&output, 0);
+    assert_eq!(stdout(&output).lines().count(), 1, "{}", stdout(&output));
+}
+
+#[test]
+fn nobody_listening_is_said_before_the_simulation() {
+    let folder = tempfile::tempdir().unwrap();
+    // Port 9 is `discard`; nothing of this kind listens there.
+    let live = ["--live", "rerun+http://127.0.0.1:9/proxy", "--no-frames"];
+    let output = short_run(folder.path(), &live);
+    assert_code(&output, 3);
+    assert!(!folder.path().join("out").exists(), "nothing may be written");
+}
+
+#[test]
+fn pulling_to_fracture_tells_where_it_broke() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = strandsnap(folder.path(), &["run", "single-wire", "--no-frames", "--no-recording"]);
+    assert_code(&output, 0);
+    let out = folder.path().join("out/single-wire");
+    let ruptures = rows(&out.join("ruptures.csv"));
+    assert!(!ruptures.is_empty(), "the wire must snap:\n{}", stdout(&output));
+    let summary = summary(&out);
+    let first = &summary["first_rupture"];
+    assert_eq!(first["wire"], 1);
+    let z: f64 = ruptures[0]["z_mm"].parse().unwrap();
+    assert!((first["z_mm"].as_f64().unwrap() - z).abs() < 1e-6 * z.abs());
+    assert_eq!(rows(&out.join("wires.csv"))[0]["broken"], "yes");
+    assert!(stdout(&output).contains("wire 1,"), "{}", stdout(&output));
+    let peak =
+        rows(&out.join("curve.csv")).iter().map(|row| row["stress_mpa"].parse::<f64>().unwrap()).fold(0.0, f64::max);
+    let strength = summary["tensile_strength_mpa"].as_f64().unwrap();
+    assert!((strength - peak).abs() < 1e-6 * peak, "{strength} {peak}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_results() {
+    use rustix::process::{Pid, Signal, kill_process};
+    use std::time::{Duration, Instant};
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_strandsnap"))
+        .args(["run", "ka4", "--quiet", "--no-frames", "--no-recording", "--out", "out"])
+        .current_dir(folder.path())
+        .spawn()
+        .unwrap();
+    let growing = folder.path().join("out/curve.csv.partial");
+    let begin = Instant::now();
+    let has_rows = || fs::read_to_string(&growing).is_ok_and(|text| text.lines().count() > 2);
+    while !has_rows() && begin.elapsed() < Duration::from_secs(120) {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let out = folder.path().join("out");
+    assert!(rows(&out.join("curve.csv")).len() >= 2);
+    assert_eq!(summary(&out)["stopped_because"], "interrupted");
+}
+
+/// Rows of a CSV file by column name.
+fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    reader.deserialize().map(|row| row.unwrap()).collect()
+}
+
+fn summary(out: &Path) -> serde_json::Value {
+    serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap()
+}

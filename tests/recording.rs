@@ -1,0 +1,174 @@
+//! The recording, read back.
+#![cfg(feature = "record")]
+
+mod synthetic;
+
+use std::path::Path;
+use std::time::Instant;
+use strandsnap::base::error::Error;
+use strandsnap::observe::Observer;
+use strandsnap::observe::recording::read::{RecordingContents, contents};
+use strandsnap::observe::recording::{PLASTIC_STRAIN, Recording, RecordingOptions, STATE, STRAIN, STRESS};
+use strandsnap::scene::spec::ColourBy;
+use synthetic::Run;
+
+fn options() -> RecordingOptions {
+    RecordingOptions { live: None, colour: ColourBy::Stress }
+}
+
+fn recorded(run: &Run, file: &Path) -> RecordingContents {
+    run.show(&mut Recording::new(file, options()).unwrap()).unwrap();
+    contents(file).unwrap()
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+#[test]
+fn every_wire_has_its_particles_in_every_snapshot() {
+    let (run, folder) = (Run::new(30), folder());
+    let read = recorded(&run, &folder.path().join("recording.rrd"));
+    for wire in ["/strand/inner/wire_01", "/strand/middle/wire_06", "/strand/outer/wire_17", "/strand/outer/wire_34"] {
+        let entity = &read.entities[wire];
+        assert_eq!(entity.rows, 30, "{wire}");
+        for component in ["Points3D:positions", "Points3D:colors", "Points3D:radii", STRESS, PLASTIC_STRAIN, STATE] {
+            assert!(entity.components.contains(component), "{wire} lacks {component}");
+        }
+        let timelines: Vec<_> = entity.timelines.iter().map(String::as_str).collect();
+        assert_eq!(timelines, [STRAIN, "sim_time", "step"], "{wire}");
+    }
+    let wires = read.entities.keys().filter(|path| path.starts_with("/strand/") && path.matches('/').count() == 3);
+    assert_eq!(wires.count(), 34);
+    assert!(read.layout);
+}
+
+#[test]
+fn last_positions_are_those_of_the_last_snapshot() {
+    let (run, folder) = (Run::new(20), folder());
+    let read = recorded(&run, &folder.path().join("recording.rrd"));
+    let last = *run.snapshots().last().unwrap();
+    for (number, wire) in run.info.wires.iter().enumerate() {
+        let path = format!("/strand/{}/wire_{:02}", run.info.layers[wire.layer], number + 1);
+        assert_eq!(read.last_positions[&path], last.position[wire.first..wire.first + wire.len], "{path}");
+    }
+}
+
+#[test]
+fn every_rupture_is_marked_and_logged() {
+    let (run, folder) = (Run::new(30), folder());
+    let read = recorded(&run, &folder.path().join("recording.rrd"));
+    let ruptures = run.ruptures();
+    assert_eq!(ruptures.len(), 6);
+    assert_eq!(read.log.len(), 6);
+    assert_eq!(read.log[0], (234_000, "wire 24, outer layer, snapped at z = 76.7 mm, strain 23.4 %, 380 MPa".to_owned()));
+    for rupture in ruptures {
+        let path = format!("/strand/{}/wire_{:02}/ruptures", run.info.layers[rupture.layer], rupture.wire + 1);
+        let place = rupture.position.map(|x| (x * 1e3) as f32);
+        assert_eq!(read.last_positions[&path], [place], "{path}");
+        let lane = &read.entities[&format!("/states/{}/wire_{:02}", run.info.layers[rupture.layer], rupture.wire + 1)];
+        assert_eq!(lane.rows, 2, "yielding from the first snapshot on, then broken");
+    }
+}
+
+#[test]
+fn the_curve_has_every_sample() {
+    let (run, folder) = (Run::new(20), folder());
+    let read = recorded(&run, &folder.path().join("recording.rrd"));
+    let expected: Vec<_> =
+        run.samples().iter().map(|s| ((s.strain * 1e6).round() as i64, s.stress * 1e-6)).collect();
+    assert_eq!(read.nominal_stress, expected);
+    for entity in ["/stress/layers", "/stress/wires/outer", "/broken", "/energy"] {
+        assert_eq!(read.entities[entity].rows, 200, "{entity}");
+    }
+}
+
+#[test]
+fn the_same_run_gives_the_same_contents() {
+    let (run, folder) = (Run::new(20), folder());
+    let first = recorded(&run, &folder.path().join("a.rrd"));
+    assert_eq!(first, recorded(&run, &folder.path().join("b.rrd")));
+    let other = Recording::new(&folder.path().join("c.rrd"), options()).unwrap();
+    run.show(&mut other.identified_by("seed 2")).unwrap();
+    assert_ne!(first.id, contents(&folder.path().join("c.rrd")).unwrap().id);
+}
+
+#[test]
+fn a_file_that_is_not_finished_does_not_look_whole() {
+    let (run, folder) = (Run::new(3), folder());
+    let file = folder.path().join("recording.rrd");
+    let mut recording = Recording::new(&file, options()).unwrap();
+    run.show_unfinished(&mut recording).unwrap();
+    assert!(!file.exists());
+    assert!(folder.path().join("recording.rrd.partial").exists());
+    recording.finish().unwrap();
+    assert!(file.exists());
+    assert!(!folder.path().join("recording.rrd.partial").exists());
+    assert_eq!(contents(&file).unwrap().entities["/strand/inner/wire_01"].rows, 3, "a part of a batch is kept too");
+}
+
+#[test]
+fn a_cut_file_is_refused() {
+    let (run, folder) = (Run::new(3), folder());
+    let file = folder.path().join("recording.rrd");
+    recorded(&run, &file);
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
+    assert!(matches!(contents(&file), Err(Error::Io { .. })), "{:?}", contents(&file));
+}
+
+#[test]
+fn an_unwritable_place_is_an_error() {
+    let error = Recording::new(Path::new("/nowhere/recording.rrd"), options()).err().unwrap();
+    assert_eq!(error.exit_code(), 1);
+    assert!(error.to_string().contains("/nowhere/recording.rrd.partial"), "{error}");
+}
+
+/// `/dev/full` answers every write with "no space left on device".
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    let (run, folder) = (Run::new(20), folder());
+    let file = folder.path().join("recording.rrd");
+    std::os::unix::fs::symlink("/dev/full", folder.path().join("recording.rrd.partial")).unwrap();
+    let result = Recording::new(&file, options()).and_then(|mut recording| run.show(&mut recording));
+    let Err(Error::Io { source, .. }) = result else { panic!("{result:?}") };
+    assert_eq!(source.kind(), std::io::ErrorKind::StorageFull);
+    assert!(!file.exists());
+}
+
+#[test]
+fn a_viewer_that_does_not_listen_is_said_before_the_run() {
+    // Bound, then closed again: nobody listens there.
+    let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let folder = folder();
+    let open = |live: String| {
+        Recording::new(&folder.path().join("r.rrd"), RecordingOptions { live: Some(live), ..options() }).err().unwrap()
+    };
+    assert_eq!(open(format!("rerun+http://127.0.0.1:{port}/proxy")).exit_code(), 3);
+    assert_eq!(open("localhost".into()).exit_code(), 2);
+}
+
+/// Set STRANDSNAP_KEEP to a path to keep the file for the viewer.
+#[test]
+fn size_stays_within_bounds() {
+    let (run, folder) = (Run::new(160), folder());
+    let file = std::env::var_os("STRANDSNAP_KEEP").map_or(folder.path().join("recording.rrd"), Into::into);
+    let start = Instant::now();
+    let mut recording = Recording::new(&file, options()).unwrap();
+    run.show_unfinished(&mut recording).unwrap();
+    let in_run = start.elapsed();
+    recording.finish().unwrap();
+    let snapshots = run.snapshots().len();
+    // Position, colour, stress, plastic strain, state of a particle; its colour on the map.
+    let raw = run.info.particles * snapshots * (12 + 4 + 4 + 4 + 2 + 4);
+    let size = std::fs::metadata(&file).unwrap().len() as usize;
+    println!(
+        "{} particles, {snapshots} snapshots: {size} bytes for {raw} raw ({:.2}), {:.2} ms a snapshot in the run, {:.2} with the end",
+        run.info.particles,
+        size as f64 / raw as f64,
+        in_run.as_secs_f64() * 1e3 / snapshots as f64,
+        start.elapsed().as_secs_f64() * 1e3 / snapshots as f64,
+    );
+    assert!(size < 2 * raw);
+}
