@@ -5,7 +5,8 @@
 //! | entity | contents |
 //! | --- | --- |
 //! | `/strand/<layer>/wire_<NN>` | particles: positions [mm], mean radius [mm], colours; fields `Bond`: true axial stress [MPa], equivalent plastic strain [-], state |
-//! | `/strand/<layer>/wire_<NN>/ruptures` | marked, labelled points at the places of rupture [mm], from their time on |
+//! | `/strand/<layer>/wire_<NN>/tube` | the same wire as straight pieces of tube, apart where it broke |
+//! | `/strand/<layer>/wire_<NN>/ruptures`, `…/ruptures/label` | marked, labelled points at the places of rupture [mm], from their time on |
 //! | `/spheres`, `/grips` | free spheres; boxes around what the grips hold [mm] |
 //! | `/map/<layer>`, `/map/<layer>/wire_<NN>/ruptures` | unrolled map: a row per wire, coloured like the particles |
 //! | `/states/<layer>/wire_<NN>` | lane of the wire's state: whole, yielding, broken |
@@ -30,6 +31,7 @@ pub mod read;
 mod sink;
 mod states;
 mod stream;
+mod tubes;
 
 pub use particles::{PLASTIC_STRAIN, SPEED, STATE, STRESS};
 pub use sink::{DEFAULT_VIEWER, RERUN_VERSION};
@@ -213,6 +215,9 @@ impl Run {
         self.stream.fixed("/", &ViewCoordinates::RIGHT_HAND_Z_UP())?;
         self.stream.fixed("/", &annotation())?;
         self.map.send(&self.stream, &self.info)?;
+        if let Some(scale) = self.palette.scale() {
+            self.map.send_colour_bar(&self.stream, &scale)?;
+        }
         curve::send_names(&self.stream, &self.info)?;
         States::send_style(&self.stream, &self.info)?;
         self.send_sphere_radii()
