@@ -211,6 +211,9 @@ impl Observer for Recording {
 impl Run {
     fn send_fixed(&self, id: &str) -> Result<()> {
         layout::send(&self.stream, APPLICATION, id, &self.info, &self.map)?;
+        // Rerun hands on data before messages; without this the layout would come last, and a viewer that is still
+        // loading would invent one.
+        self.stream.checked(self.stream.rerun.flush_blocking())?;
         self.send_properties()?;
         self.stream.fixed("/", &ViewCoordinates::RIGHT_HAND_Z_UP())?;
         self.stream.fixed("/", &annotation())?;
@@ -298,6 +301,8 @@ fn about(info: &RunInfo) -> String {
 fn recording_id(info: &RunInfo, identity: &str) -> Result<String, postcard::Error> {
     let mut hasher = DefaultHasher::new();
     postcard::to_stdvec(info)?.hash(&mut hasher);
+    // The viewer remembers layouts by id, so a program with another layout needs other ids.
+    env!("CARGO_PKG_VERSION").hash(&mut hasher);
     identity.hash(&mut hasher);
     Ok(format!("{}-{:016x}", info.name, hasher.finish()))
 }

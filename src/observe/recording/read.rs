@@ -36,7 +36,7 @@ pub struct RecordingContents {
     pub last_positions: BTreeMap<String, Vec<[f32; 3]>>,
     /// Strain [10⁻⁶] and nominal stress of the body [MPa], in the order of the file.
     pub nominal_stress: Vec<(i64, f64)>,
-    /// Whether a layout is embedded.
+    /// Whether a layout is embedded, ahead of all data, so that a viewer opens with it.
     pub layout: bool,
     /// Messages, for an estimate of overhead.
     pub messages: usize,
@@ -55,7 +55,7 @@ pub fn contents(path: &Path) -> Result<RecordingContents> {
         let message = message.map_err(|e| broken(&e))?;
         all.messages += 1;
         if let LogMsg::BlueprintActivationCommand(_) = message {
-            all.layout = true;
+            all.layout = all.entities.is_empty();
         }
         if let LogMsg::ArrowMsg(store, arrow) = message
             && store.kind() == StoreKind::Recording

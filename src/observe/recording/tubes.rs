@@ -12,8 +12,9 @@ use std::sync::Arc;
 
 /// Bonds that one piece spans.
 const SPAN: usize = 4;
-/// Radius of a tube over that of its particles [-]: particles must stay in reach of the mouse.
-const RADIUS: f32 = 0.94;
+/// Radius of a tube over that of its particles [-]: it fills the gaps of a stretched chain and leaves the particles,
+/// which are shaded and can be clicked, in front.
+const RADIUS: f32 = 0.8;
 
 /// Tubes of one wire in a batch of snapshots.
 pub(super) fn batches(
