@@ -153,7 +153,11 @@ impl Neighbours {
             return false;
         }
         if state.hold[i] != 0 && state.hold[i] == state.hold[j] {
-            return false;
+            // Points between particles move where one of the two is free, so particles at the edge of a hold count.
+            let edge = self.margin > 0.0 && (on_edge(state, i) || on_edge(state, j));
+            if !edge {
+                return false;
+            }
         }
         let wire = self.wire_of[i];
         if wire != u32::MAX && wire == self.wire_of[j] {
@@ -162,6 +166,12 @@ impl Neighbours {
         }
         true
     }
+}
+
+/// Whether a particle is bonded to one that is not in the same hold.
+fn on_edge(state: &State, p: usize) -> bool {
+    let leaves = |slot: usize| state.whole[slot] && state.hold[slot] != state.hold[slot + 1];
+    leaves(p) || p > 0 && leaves(p - 1)
 }
 
 /// Number of broken slots before each particle; two particles of a wire are in one piece when theirs agree.

@@ -45,12 +45,14 @@ speed = "10 m/s"
 strain = "20 %"
 "#;
 
-/// Runs a scene under both plans and asserts that they agree.
+/// Runs a scene under both plans and asserts that they agree. The step is fixed: modes that a special plan leaves out
+/// do not limit its step, so the two would choose different ones.
 fn special_is_general(set: &[&str], steps: u64) -> (Outcome, String) {
-    let mut special = engine(WIRE, set);
-    let general: Vec<&str> = set.iter().copied().chain(["plan=general"]).collect();
-    let mut general = engine(WIRE, &general);
-    assert_eq!(special.time_step(), general.time_step());
+    let set = [set, &["time.step=6e-8 s"]].concat();
+    let mut special = engine(WIRE, &set);
+    let mut general = engine(WIRE, &[&set[..], &["plan=general"]].concat());
+    assert!(general.plan().rotations && !special.plan().rotations);
+    assert!(special.time_step_bound() >= general.time_step_bound() && general.time_step_bound() > 6e-8);
     let plan = special.plan().to_string();
     for _ in 0..steps / 100 {
         run_steps(&mut special, 100);
@@ -76,22 +78,28 @@ fn an_elastic_bar_needs_no_rotations() {
     assert!(end.energy.elastic_bonds > 0.0);
 }
 
+/// The search finds every pair before it touches, whatever the skin: forces are the same to the bit. Hertz, because a
+/// pair that leaves the list forgets its dent, and how far it must part for that is the skin's business.
 #[test]
 fn a_skin_changes_nothing_but_the_number_of_searches() {
     for shape in ["sphere", "capsule"] {
         let run = |skin: &str| {
-            let skin = format!("contact.skin={skin}");
-            let shape = format!("contact.shape={shape}");
-            let mut engine = engine(STRAND, &[&skin, &shape]);
+            let (skin, shape) = (format!("contact.skin={skin}"), format!("contact.shape={shape}"));
+            let mut engine = engine(STRAND, &[&skin, &shape, "contact.normal=hertz", "contact.hardness_strain="]);
             run_steps(&mut engine, 2500);
             let searches = engine.contact_counts().0;
             (Outcome::of(&mut engine), searches)
         };
         let (thin, often) = run("0.002");
         let (thick, seldom) = run("0.4");
+        println!("{shape}: {often} and {seldom} searches, {} ruptures", thin.ruptures.len());
         assert!(often > 10 * seldom, "{often} searches are not many more than {seldom}");
         assert!(!thin.ruptures.is_empty() && thin.energy.friction > 0.0);
-        thin.assert_same(&thick, shape);
+        assert_eq!(thin.position, thick.position, "{shape}");
+        assert_eq!(thin.velocity, thick.velocity, "{shape}");
+        assert_eq!(thin.spin, thick.spin, "{shape}");
+        // Energies are summed over chunks of the list, whose borders differ.
+        assert!((thin.energy.friction / thick.energy.friction - 1.0).abs() < 1e-12);
     }
 }
 

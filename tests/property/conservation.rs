@@ -64,8 +64,10 @@ to = ["0 mm", "0 mm", "8 mm"]
 time = "1 ms"
 "#;
 
-fn shaken(edit: impl FnOnce(&mut Assembly)) -> Engine {
-    edited(WIRE, &["plan=general"], |a| {
+const ELASTIC: [&str; 2] = ["bond.law=elastic", "bond.hardening="];
+
+fn shaken(set: &[&str], edit: impl FnOnce(&mut Assembly)) -> Engine {
+    edited(WIRE, set, |a| {
         let c = centre(a);
         for p in 0..a.len() {
             let s = (a.position.get(p) - c).z / 4e-3;
@@ -95,55 +97,70 @@ fn relative(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).abs() / scale).fold(0.0, f64::max)
 }
 
-#[test]
-fn where_and_how_a_wire_lies_does_not_matter() {
-    let mut base = shaken(|_| {});
+type Edit = Box<dyn Fn(&mut Assembly)>;
+
+/// Greatest difference of internal energies between a shaken wire and the same one moved rigidly.
+fn frame_error(set: &[&str]) -> f64 {
+    let mut base = shaken(set, |_| {});
     run_steps(&mut base, 1500);
     let reference = internal(&base);
-    assert!(reference.iter().all(|e| *e > 0.0), "{reference:?}");
+    assert!(reference[0] > 0.0 && reference[2] > 0.0, "{reference:?}");
     let rotation = DQuat::from_axis_angle(DVec3::new(1.0, -2.0, 0.5).normalize(), 1.1);
-    type Edit = Box<dyn FnOnce(&mut Assembly)>;
     let moves: [(&str, Edit); 3] = [
         ("moved", Box::new(|a| (0..a.len()).for_each(|p| a.position.add(p, DVec3::new(0.01, -0.02, 0.005))))),
         ("turned", Box::new(move |a| turn(a, rotation))),
         ("flying", Box::new(|a| add_velocity(a, |_| DVec3::new(20.0, -5.0, 10.0)))),
     ];
+    let mut worst = 0.0f64;
     for (name, edit) in moves {
-        let mut other = shaken(edit);
+        let mut other = shaken(set, edit);
         run_steps(&mut other, 1500);
         let error = relative(reference, internal(&other));
         println!("{name}: {error:e}");
-        // Positions of 1e-2 m are rounded at 2e-18 m; strains over 0.39 mm by 5e-15 a step, of the 1e-3 that yields:
-        // 5e-12. Over 1500 steps at random this grows by 40 at most.
-        assert!(error < 2e-10, "{name}: {error:e}");
+        worst = worst.max(error);
     }
+    worst
+}
+
+/// Positions of up to 3e-2 m are rounded at 4e-18 m, strains over 0.39 mm at 1e-14. The elastic strains here are 1e-2,
+/// so one step is good for 1e-12 of the forces; errors of 1500 steps add up like a random walk, 40 times that.
+#[test]
+fn where_and_how_an_elastic_wire_lies_does_not_matter() {
+    let error = frame_error(&ELASTIC);
+    assert!(error < 4e-11, "{error:e}");
+}
+
+/// The return mapping is solved to 1e-11 of the yield value in each of 1500 steps, and may take one round more or less.
+#[test]
+fn where_and_how_a_plastic_wire_lies_does_not_matter() {
+    let error = frame_error(&[]);
+    assert!(error < 1.5e-8, "{error:e}");
 }
 
 /// A rigid rotation strains nothing but by centrifugal force. The increments of shear, bending and torsion are measured
 /// at mid-step, so that what is left is of third order in the angle per step.
 #[test]
 fn a_rigid_rotation_stores_nothing() {
-    let stored = |rate: f64, steps: f64| {
+    let stored = |rate: f64, steps: u64| {
         let mut engine = edited(
             WIRE,
-            &["plan=general", "bond.law=elastic", "bond.hardening=", "bond.damping=0", "time.step=2e-8 s"],
+            &["bond.law=elastic", "bond.hardening=", "bond.damping=0", "time.step=2e-8 s"],
             |a| {
                 let (c, spin) = (centre(a), DVec3::new(0.6, 0.0, 0.8) * rate);
-                // About a skew axis through the centre: the wire is symmetric, so this motion would go on as it is
-                // about x and about z; a slender body wobbles about both.
+                // About a skew axis through the centre, so that the wire tumbles.
                 for p in 0..a.len() {
                     a.velocity.set(p, spin.cross(a.position.get(p) - c));
                     a.spin.set(p, spin);
                 }
             },
         );
-        run_steps(&mut engine, steps as u64);
+        run_steps(&mut engine, steps);
         let e = engine.energy();
         (e.elastic_bonds, e.kinetic)
     };
-    let (slow, kinetic_slow) = stored(2e3, 2000.0);
-    let (fast, kinetic_fast) = stored(4e3, 2000.0);
-    println!("{slow:e} of {kinetic_slow:e}, {fast:e} of {kinetic_fast:e}");
+    let (slow, kinetic) = stored(2e3, 2000);
+    let (fast, _) = stored(4e3, 2000);
+    println!("{slow:e} of {kinetic:e}, {fast:e}");
     // Centrifugal stress goes with rate², its energy with rate⁴.
     let order = (fast / slow).log2();
     assert!((order - 4.0).abs() < 0.2, "order {order}");
