@@ -101,7 +101,14 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
         }
     }
 
-    /// One contact per particle and stretch of the other body: the nearest particle of each run of candidates.
+    /// Whether two particles belong to one wire and all bonds between them hold.
+    fn one_piece(&self, a: u32, b: u32, state: &State) -> bool {
+        let (first, last) = (a.min(b) as usize, a.max(b) as usize);
+        !self.free(a) && self.wire_of[first] == self.wire_of[last] && state.whole[first..last].iter().all(|w| *w)
+    }
+
+    /// One contact per particle and stretch of the other body: the nearest particle of each run of candidates. A run
+    /// ends where the other wire is broken, for its two ends touch by themselves.
     fn runs(&mut self, state: &State) -> Vec<(u32, u32)> {
         let mut out: Vec<(u32, u32)> = Vec::with_capacity(self.directed.len() / 3);
         let mut last: Option<(u32, u32, f64)> = None;
@@ -110,9 +117,8 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             match &mut last {
                 Some((li, lj, ld))
                     if *li == i
-                        && self.wire_of[*lj as usize] == self.wire_of[j as usize]
-                        && !self.free(j)
-                        && j - *lj <= 2 =>
+                        && j - *lj <= 2
+                        && self.one_piece(*lj, j, state) =>
                 {
                     // Same run: the last entry stands for the nearest so far.
                     if d < *ld {
@@ -167,8 +173,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
                 from += 1;
             }
             let same = |c: &Contact<N::State, T::State>| {
-                c.j == j
-                    || (self.wire_of[c.j as usize] == self.wire_of[j as usize] && !self.free(j) && c.j.abs_diff(j) <= 3)
+                c.j == j || (c.j.abs_diff(j) <= 3 && self.one_piece(c.j, j, state))
             };
             let kept = (from..self.old.len())
                 .take_while(|k| self.old[*k].i == i)
