@@ -64,23 +64,23 @@ struct Cells {
     shape: [usize; 3],
 }
 
+/// Per wire, the number of bonds below which its particles cannot touch: a bent chain cannot touch itself within a
+/// quarter turn of the tightest bend, a circle of the wire's diameter.
+pub fn apart(assembly: &Assembly) -> Vec<u32> {
+    let bonds = |diameter: f64, spacing: f64| {
+        if spacing > 0.0 { (1.6 * diameter / spacing).ceil().max(2.0) as u32 } else { 2 }
+    };
+    assembly.wires.iter().map(|w| bonds(w.diameter, assembly.rest_length[w.first])).collect()
+}
+
 impl Neighbours {
     /// For `assembly`; `skin` and `margin` in m.
     pub fn new(assembly: &Assembly, skin: f64, margin: f64) -> Self {
-        // A bent chain cannot touch itself within a quarter turn of the tightest bend, a circle of the wire's diameter.
-        let apart = assembly
-            .wires
-            .iter()
-            .map(|w| {
-                let spacing = assembly.rest_length[w.first];
-                if spacing > 0.0 { (1.6 * w.diameter / spacing).ceil().max(2.0) as u32 } else { 2 }
-            })
-            .collect();
         Self {
             skin,
             margin,
             largest: assembly.radius.iter().copied().fold(0.0, f64::max),
-            apart,
+            apart: apart(assembly),
             wire_of: assembly.wire_of.clone(),
             reference: Vectors::default(),
             stretch: Stretch::default(),
