@@ -93,6 +93,13 @@ fn viscosity<L: BondLaw>(law: &L, a: &Assembly, shape: &BondShape, i: usize, dam
     ]
 }
 
+/// Power that the motion does on a bond against its whole action [W].
+fn power(state: &State, slot: usize) -> f64 {
+    let action = &state.bond[slot];
+    let (wa, wb) = (state.w.get(slot), state.w.get(slot + 1));
+    action.pull.dot(state.v.get(slot + 1) - state.v.get(slot)) + action.moment.dot(wb - wa) - action.arm.dot(wa + wb)
+}
+
 /// What all bonds of a step share.
 struct Shared<'a, L> {
     law: &'a L,
@@ -154,6 +161,8 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
             broke(slot, criterion, self.stress(slot));
             let record = &mut self.records[slot];
             released += self.law.elastic_energy(&self.shape[slot], &record.force, &record.state);
+            // The law has booked this step up to now with the mean of old and new force; the new one never acts.
+            released -= 0.5 * state.dt * power(state, slot);
             record.force = BondForce::default();
             state.whole[slot] = false;
             state.bond[slot] = BondAction::default();

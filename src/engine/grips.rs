@@ -276,33 +276,10 @@ impl Holds {
         }
     }
 
-    /// Work up to the instant of the positions [J]: `work` lags by half a step.
+    /// Work up to the instant of the positions [J]: `work` lags by half a step. Loads on free components lag here as
+    /// they do in [`State::kinetic`].
     pub fn work_now(&self, state: &State) -> f64 {
-        let half = 0.5 * state.dt;
-        let mut sum = self.work;
-        for group in &self.groups {
-            let (force, moment) = match &group.kind {
-                Kind::Components(h) => {
-                    let share = if h.ramp > 0.0 { smooth(state.time / h.ramp) } else { 1.0 };
-                    (
-                        h.force * (share / group.particles.len() as f64),
-                        h.moment * (share / group.particles.len() as f64),
-                    )
-                }
-                _ => (DVec3::ZERO, DVec3::ZERO),
-            };
-            for p in &group.particles {
-                let p = *p as usize;
-                let hold = |k: usize, inner: f64, load: f64| {
-                    if state.fixed[p] >> k & 1 == 1 { -inner } else { load }
-                };
-                let (f, t) = (state.force.get(p), state.torque.get(p));
-                let push = DVec3::new(hold(0, f.x, force.x), hold(1, f.y, force.y), hold(2, f.z, force.z));
-                let twist = DVec3::new(hold(3, t.x, moment.x), hold(4, t.y, moment.y), hold(5, t.z, moment.z));
-                sum += half * (push.dot(state.v.get(p)) + twist.dot(state.w.get(p)));
-            }
-        }
-        sum
+        self.work - 0.5 * state.dt * state.held_power()
     }
 }
 
