@@ -52,6 +52,8 @@ pub struct History<N, T> {
     pub overlap: f64,
     reach: f64,
     normal_force: f64,
+    /// Force of the dashpot at the last step [N].
+    viscous: f64,
     /// Tangent stiffnesses at the last step [N/m]: greatest normal, tangential.
     pub stiffness: [f64; 2],
 }
@@ -68,6 +70,7 @@ impl<N: Default, T: Default> History<N, T> {
             overlap: 0.0,
             reach: 0.0,
             normal_force: 0.0,
+            viscous: 0.0,
             stiffness: [0.0; 2],
         }
     }
@@ -122,7 +125,8 @@ pub fn touch<N: NormalLaw, T: TangentialLaw>(
         let c = viscous_coefficient(laws.damping, meeting.mass, answer.stiffness);
         let viscous = (-c * approach).max(-answer.force);
         push += viscous;
-        partial.damping -= viscous * approach * meeting.dt;
+        partial.damping -= 0.5 * (history.viscous + viscous) * approach * meeting.dt;
+        history.viscous = viscous;
     }
     PairForce { force: friction - meeting.normal * push, friction }
 }
@@ -147,6 +151,7 @@ pub fn part<N: NormalLaw, T: TangentialLaw>(
     }
     history.touching = false;
     history.normal_force = 0.0;
+    history.viscous = 0.0;
     history.overlap = 0.0;
     history.stiffness = [0.0; 2];
 }
