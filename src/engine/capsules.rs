@@ -7,7 +7,7 @@
 
 use super::contacts::{ContactPoint, Contacts};
 use super::neighbours::{PairList, apart};
-use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, part, touch};
+use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, normal_energy, part, touch};
 use super::state::{CHUNK, Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
@@ -196,8 +196,10 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
             while from < self.old.len() && self.old[from].i < i {
                 from += 1;
             }
+            // Where the segment under a contact broke, the contact is gone, and the two ends touch afresh.
             let same = |c: &Contact<N::State, T::State>| {
-                c.j == j || (c.j.abs_diff(j) <= 3 && self.chains.one_piece(c.j, j, state))
+                let severed = c.segment && !state.whole[c.j as usize];
+                !severed && (c.j == j || c.j.abs_diff(j) <= 3 && self.chains.one_piece(c.j, j, state))
             };
             let kept = (from..self.old.len())
                 .take_while(|k| self.old[*k].i == i)
@@ -216,7 +218,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
             }
         }
         for c in self.old.iter_mut().filter(|c| c.share > 0.0) {
-            let mut gone = Partial::default();
+            let mut gone = Partial { released: normal_energy(&self.laws, &c.history), ..Default::default() };
             part::<N, T>(&self.laws, &mut c.history, 0.0, &mut gone);
             lost.add(&gone.scaled(c.share));
         }

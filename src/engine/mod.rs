@@ -199,6 +199,7 @@ impl Engine {
                 let list = c.neighbours.search(&self.state, self.holds.stretch);
                 let lost = c.stage.rebuild(list, &self.state);
                 self.energy.friction += lost.friction;
+                self.energy.released += lost.released;
                 c.stale = false;
             }
             let after_search = Instant::now();

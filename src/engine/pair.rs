@@ -156,11 +156,17 @@ pub fn part<N: NormalLaw, T: TangentialLaw>(
     history.stiffness = [0.0; 2];
 }
 
+/// Recoverable energy of the normal force [J].
+pub fn normal_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N::State, T::State>) -> f64 {
+    if history.touching {
+        laws.normal.elastic_energy(&history.normal, history.reduced_radius, history.overlap)
+    } else {
+        0.0
+    }
+}
+
 /// Recoverable energy of a contact [J].
 pub fn elastic_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N::State, T::State>) -> f64 {
-    if !history.touching {
-        return 0.0;
-    }
-    laws.normal.elastic_energy(&history.normal, history.reduced_radius, history.overlap)
-        + laws.tangential.elastic_energy(&history.tangential)
+    normal_energy(laws, history)
+        + if history.touching { laws.tangential.elastic_energy(&history.tangential) } else { 0.0 }
 }

@@ -140,6 +140,8 @@ pub struct Partial {
     pub friction: f64,
     /// Work of contact pressure on thinning wires [J].
     pub thinning: f64,
+    /// Elastic energy of contacts on wires that broke under them [J].
+    pub released: f64,
 }
 
 impl Partial {
@@ -149,6 +151,7 @@ impl Partial {
         self.damping += other.damping;
         self.friction += other.friction;
         self.thinning += other.thinning;
+        self.released += other.released;
     }
 
     /// All terms times `factor`.
@@ -158,6 +161,7 @@ impl Partial {
             damping: self.damping * factor,
             friction: self.friction * factor,
             thinning: self.thinning * factor,
+            released: self.released * factor,
         }
     }
 }
