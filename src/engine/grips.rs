@@ -2,6 +2,7 @@
 
 use super::neighbours::Stretch;
 use super::state::State;
+use crate::base::error::{Error, Result};
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
 use crate::strand::assembly::Assembly;
 use glam::{DMat2, DVec2, DVec3};
@@ -57,7 +58,10 @@ pub struct Holds {
 
 impl Holds {
     /// Finds the particles of each hold and marks them in `state`.
-    pub fn new(spec: &Spec, assembly: &Assembly, state: &mut State) -> Self {
+    ///
+    /// # Errors
+    /// When a jaw has no wire of the outermost layer in it.
+    pub fn new(spec: &Spec, assembly: &Assembly, state: &mut State) -> Result<Self> {
         let mut holds = Self {
             groups: Vec::new(),
             grip: spec.grip.clone(),
@@ -68,7 +72,7 @@ impl Holds {
             work: 0.0,
         };
         if let Some(grip) = &spec.grip {
-            holds.add_grips(grip, assembly);
+            holds.add_grips(grip, assembly)?;
         }
         let bodies = assembly.bodies();
         for hold in &spec.holds {
@@ -84,10 +88,10 @@ impl Holds {
         holds.mark(state);
         holds.start_velocities(state);
         holds.work = state.kinetic();
-        holds
+        Ok(holds)
     }
 
-    fn add_grips(&mut self, grip: &GripSpec, assembly: &Assembly) {
+    fn add_grips(&mut self, grip: &GripSpec, assembly: &Assembly) -> Result<()> {
         let z = &assembly.position.z[..assembly.wire_particles];
         let (low, high) = z.iter().fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(*z), b.max(*z)));
         let tiny = 1e-9 * (high - low);
@@ -107,6 +111,9 @@ impl Holds {
                 .map(|p| p as u32)
                 .filter(|p| inside(*p))
                 .collect();
+            if particles.is_empty() {
+                return Err(nothing_to_hold(&assembly.layers[outer].name, driven));
+            }
             let kind = match grip.kind {
                 GripKind::All => Kind::Rigid,
                 GripKind::Jaw { pressure } => {
@@ -116,6 +123,7 @@ impl Holds {
             };
             self.groups.push(Group { particles, kind, driven });
         }
+        Ok(())
     }
 
     /// Tells the state which components are prescribed, and which particles never move against each other.
@@ -281,6 +289,14 @@ impl Holds {
     pub fn work_now(&self, state: &State) -> f64 {
         self.work - 0.5 * state.dt * state.held_power()
     }
+}
+
+fn nothing_to_hold(layer: &str, upper: bool) -> Error {
+    let which = if upper { "upper" } else { "lower" };
+    Error::input(
+        format!("the {which} grip holds nothing: no wire of the outermost layer \"{layer}\" reaches into it"),
+        "a jaw drives the outermost layer only: make its wires as long as the body, or grip.length longer",
+    )
 }
 
 /// `free` with the fixed components replaced.

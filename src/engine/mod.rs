@@ -94,11 +94,11 @@ impl Engine {
     /// Sets the assembly up for its first step.
     ///
     /// # Errors
-    /// When there is no stable step because nothing is stiff and the scene fixes none.
+    /// When there is no stable step because nothing is stiff and the scene fixes none, or a grip holds nothing.
     pub fn new(spec: &Spec, assembly: Assembly) -> Result<Self> {
         let plan = Plan::new(spec);
         let mut state = State::new(&assembly);
-        let holds = Holds::new(spec, &assembly, &mut state);
+        let holds = Holds::new(spec, &assembly, &mut state)?;
         let bonds = plan.bonds.then(|| build_bonds(spec, &plan, &assembly));
         let measures = Measures::new(spec, &assembly, &holds);
         let least_radius = assembly.radius.iter().copied().fold(f64::MAX, f64::min);
