@@ -12,7 +12,7 @@ use super::state::{CHUNK, Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::reduced_radius;
-use crate::law::contact::geometry::closest_on_segment;
+use crate::law::contact::geometry::{ClosestOnSegment, closest_on_segment};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
@@ -307,8 +307,16 @@ fn walk<N, S>(state: &State, chains: &Chains, c: &mut Contact<N, S>) -> DVec3 {
                 _ => return at_particle(c, j + 1),
             },
             Some(here) if here.raw >= 0.0 => {
-                (c.t, c.segment) = (here.raw, true);
-                return here.point;
+                // On the inside of a bend two segments have a foot; the nearer one counts, or the overlap would jump.
+                let other = if here.raw > 0.5 { segment(j + 1) } else { before() };
+                let nearer =
+                    |o: &ClosestOnSegment| o.raw == o.t && p.distance_squared(o.point) < p.distance_squared(here.point);
+                let Some(other) = other.filter(nearer) else {
+                    (c.t, c.segment) = (here.raw, true);
+                    return here.point;
+                };
+                (c.j, c.t, c.segment) = (if here.raw > 0.5 { c.j + 1 } else { c.j - 1 }, other.raw, true);
+                return other.point;
             }
             _ => match before() {
                 Some(last) if last.raw < 1.0 => c.j -= 1,
