@@ -164,11 +164,7 @@ time = "1 ms"
         a.rest_length[slot] = 0.0;
         let whole = a.wires[0];
         a.wires[0].len = slot + 1;
-        a.wires.push(strandsnap::strand::assembly::Wire {
-            first: slot + 1,
-            len: whole.len - slot - 1,
-            ..whole
-        });
+        a.wires.push(strandsnap::strand::assembly::Wire { first: slot + 1, len: whole.len - slot - 1, ..whole });
         (slot + 1..a.len()).for_each(|p| a.wire_of[p] = 1);
     });
     assert!(!broken.state().whole[slot]);

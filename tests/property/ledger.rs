@@ -4,34 +4,168 @@ use crate::drive::*;
 use proptest::prelude::*;
 use strandsnap::engine::Engine;
 
-/// Residual over the work that was done, or the greatest energy that was there [-].
+/// Residual over the greatest of work, kinetic and internal energy [-].
 fn residual(engine: &Engine) -> f64 {
     let e = engine.energy();
-    let scale = e.work.abs().max(e.internal()).max(e.kinetic);
-    e.residual().abs() / scale
+    e.residual().abs() / e.work.abs().max(e.internal()).max(e.kinetic)
 }
 
-/// Runs and returns the greatest residual at 40 instants.
+/// Runs and returns the greatest residual at 40 instants after the first fortieth.
 fn greatest(engine: &mut Engine, steps: u64) -> f64 {
-    let mut greatest = 0.0f64;
-    for _ in 0..40 {
-        run_steps(engine, steps / 40);
-        greatest = greatest.max(residual(engine));
-    }
-    greatest
+    (0..40).map(|_| (run_steps(engine, steps / 40), residual(engine)).1).fold(0.0, f64::max)
 }
 
 #[test]
-fn the_ledger_of_a_strand_pulled_past_rupture_closes() {
+fn a_strand_pulled_past_rupture() {
     for shape in ["sphere", "capsule"] {
         for tangential in ["mindlin", "mindlin-deresiewicz"] {
-            let mut engine =
-                engine(STRAND, &[&format!("contact.shape={shape}"), &format!("contact.tangential={tangential}")]);
+            let (shape, tangential) = (format!("contact.shape={shape}"), format!("contact.tangential={tangential}"));
+            let mut engine = engine(STRAND, &[&shape, &tangential]);
             let worst = greatest(&mut engine, 4000);
             let e = engine.energy();
-            println!("{shape} {tangential}: {worst:e} {e:?} {}", engine.take_ruptures().len());
-            assert!(e.released > 0.0 && e.friction > 0.0 && e.plastic_contacts > 0.0 && e.plastic_thinning != 0.0);
+            println!("{shape} {tangential}: {worst:e}");
+            assert!(e.released > 0.0 && e.friction > 0.0 && e.plastic_contacts > 0.0 && e.plastic_thinning > 0.0);
             assert!(worst < 0.01, "{shape} {tangential}: {worst}");
         }
+    }
+}
+
+/// With a spacing below a diameter, neighbours overlap, and do so still when their bond has broken.
+#[test]
+fn rupture_between_overlapping_particles() {
+    for shape in ["sphere", "capsule"] {
+        let shape = format!("contact.shape={shape}");
+        let mut engine = engine(STRAND, &[&shape, "spacing=0.5"]);
+        let worst = greatest(&mut engine, 4000);
+        println!("{shape}: {worst:e}");
+        assert!(engine.energy().released > 0.0);
+        assert!(worst < 0.01, "{shape}: {worst}");
+    }
+}
+
+/// Bodies that overlap from the start: they store energy before anything does work.
+#[test]
+fn spheres_that_overlap_from_the_start() {
+    const PAIR: &str = r#"
+about = "Two spheres that push each other apart."
+[contact]
+normal = "hertz"
+[[sphere]]
+diameter = "2 mm"
+position = ["0 mm", "0 mm", "0 mm"]
+[[sphere]]
+diameter = "2 mm"
+position = ["0 mm", "0 mm", "1.99 mm"]
+[stop]
+time = "20 us"
+"#;
+    let mut engine = engine(PAIR, &[]);
+    assert!(engine.energy().elastic_contacts > 0.0);
+    assert_eq!(engine.energy().residual(), 0.0);
+    run_to(&mut engine, 2e-5);
+    let e = engine.energy();
+    assert_eq!(e.elastic_contacts, 0.0, "they must have parted");
+    assert!((e.kinetic / e.work - 1.0).abs() < 1e-4, "{e:?}");
+}
+
+#[derive(Debug, Clone)]
+struct Case {
+    wires: usize,
+    spacing: f64,
+    pitch: f64,
+    law: &'static str,
+    shape: &'static str,
+    normal: &'static str,
+    tangential: &'static str,
+    friction: f64,
+    damping: f64,
+    drive: &'static [&'static str],
+    kind: &'static [&'static str],
+    strain: f64,
+    modulus: f64,
+}
+
+/// Ways to drive the upper grip.
+const DRIVES: [&[&str]; 4] = [
+    &["grip.speed=10 m/s"],
+    &["grip.speed=", "grip.displacement_amplitude=0.15 mm", "grip.frequency=8 kHz"],
+    &["grip.speed=5 m/s", "grip.rotation_rate=2000 rad/s"],
+    &["grip.speed=10 m/s", "grip.free_rotation=true"],
+];
+const KINDS: [&[&str]; 2] = [&[], &["grip.kind=jaw", "grip.clamp_pressure=60 MPa"]];
+
+fn case() -> impl Strategy<Value = Case> {
+    let shape = (4..8usize, prop_oneof![Just(1.0), Just(0.7)], 8.0..30.0);
+    let laws = (
+        prop_oneof![Just("elasto-plastic"), Just("elastic")],
+        prop_oneof![Just("sphere"), Just("capsule")],
+        prop_oneof![Just("thornton"), Just("hertz")],
+        prop_oneof![Just("mindlin"), Just("mindlin-deresiewicz"), Just("none")],
+    );
+    let numbers = (0.05..0.5, 0.0..0.3, 0.015..0.05, prop_oneof![Just(f64::INFINITY), Just(12.0)]);
+    (shape, laws, numbers, 0..DRIVES.len(), 0..KINDS.len()).prop_map(|(s, l, n, drive, kind)| Case {
+        wires: s.0,
+        spacing: s.1,
+        pitch: s.2,
+        law: l.0,
+        shape: l.1,
+        normal: l.2,
+        tangential: l.3,
+        friction: n.0,
+        damping: n.1,
+        strain: n.2,
+        modulus: n.3,
+        drive: DRIVES[drive],
+        kind: KINDS[kind],
+    })
+}
+
+impl Case {
+    fn engine(&self) -> Engine {
+        let pairs = [
+            ("strand.layer.1.wires", self.wires.to_string()),
+            ("spacing", self.spacing.to_string()),
+            ("strand.layer.1.pitch", format!("{} mm", self.pitch)),
+            ("bond.law", self.law.into()),
+            ("contact.shape", self.shape.into()),
+            ("contact.normal", self.normal.into()),
+            ("contact.tangential", self.tangential.into()),
+            ("contact.friction", self.friction.to_string()),
+            ("contact.damping", self.damping.to_string()),
+            ("bond.rupture.weibull_modulus", self.modulus.to_string()),
+        ];
+        let mut set: Vec<String> = pairs.iter().map(|(key, value)| format!("{key}={value}")).collect();
+        let plastic = self.law == "elasto-plastic";
+        match (self.normal, plastic) {
+            ("hertz", _) => set.push("contact.hardness_strain=".into()),
+            (_, true) => {}
+            (_, false) => set.extend(["contact.hardness_strain=".into(), "contact.limiting_pressure=400 MPa".into()]),
+        }
+        if plastic {
+            set.push(format!("bond.rupture.strain={} %", 100.0 * self.strain));
+        } else {
+            let criterion = r#"{ criterion = "beam-stress", tensile = "900 MPa", shear = "500 MPa" }"#;
+            set.extend(["bond.hardening=".into(), format!("bond.rupture={criterion}")]);
+            set.retain(|option| !option.starts_with("bond.rupture.weibull"));
+        }
+        set.extend(self.drive.iter().chain(self.kind).map(|option| option.to_string()));
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        engine(STRAND, &set)
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    /// Ends with the second dozen of ruptures: a jaw that goes on pressing on loose pieces throws them at a tenth of
+    /// a radius a step, where the run itself gives up.
+    #[test]
+    fn any_strand_however_it_is_driven(case in case()) {
+        let mut engine = case.engine();
+        let mut worst = 0.0f64;
+        while engine.steps() < 3000 && engine.sample().bonds_broken < 24 {
+            run_steps(&mut engine, 20);
+            worst = worst.max(residual(&engine));
+        }
+        prop_assert!(worst < 0.01, "{worst} {:?}", engine.energy());
     }
 }
