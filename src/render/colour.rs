@@ -108,6 +108,7 @@ impl ColourScale {
                 ColourBy::Wire | ColourBy::Layer => {
                     Self::category(info.wires.len() + i - info.wire_particles)
                 }
+                _ if info.wires.is_empty() => Self::category(i),
                 _ => colours[i],
             };
         }

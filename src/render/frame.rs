@@ -225,9 +225,7 @@ fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
                 shot(camera, "whole strand", body.radius);
             }
             View::Midsection => {
-                let half = ((panel.w - GAP * u) * 0.5).floor();
-                let front = Rect::new(panel.x, panel.y, half, panel.h);
-                let back = Rect::new(panel.right() - half, panel.y, half, panel.h);
+                let (front, back) = halves(*panel, GAP * u);
                 for (panel, caption, turn) in [(front, "front", 0.0), (back, "back", 180.0)] {
                     let camera = viewpoint::section(body, &options.camera, panel, z, turn);
                     let slant = options.camera.azimuth_deg.to_radians().sin().abs();
@@ -256,6 +254,31 @@ fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
     shots
 }
 
+/// Two panels of the same size: side by side, or one above the other when that leaves more room along the strand.
+fn halves(panel: Rect, gap: f32) -> (Rect, Rect) {
+    if panel.w < 2.2 * panel.h {
+        let h = (0.5 * (panel.h - gap)).floor();
+        (
+            Rect { h, ..panel },
+            Rect {
+                h,
+                y: panel.bottom() - h,
+                ..panel
+            },
+        )
+    } else {
+        let w = (0.5 * (panel.w - gap)).floor();
+        (
+            Rect { w, ..panel },
+            Rect {
+                w,
+                x: panel.right() - w,
+                ..panel
+            },
+        )
+    }
+}
+
 /// z before loading [mm] of the section that close-ups follow.
 fn focus(data: &Data, options: &FrameOptions) -> f32 {
     let [low, high] = data
@@ -270,21 +293,16 @@ fn focus(data: &Data, options: &FrameOptions) -> f32 {
         .unwrap_or(0.5 * (low + high))
 }
 
-/// The strand's segments as the snapshot has them or with the layers apart, appended to `all`.
-fn append_segments(
-    data: &Data,
-    position: Vec<[f32; 3]>,
-    all: &mut Vec<Segment>,
-) -> std::ops::Range<u32> {
+/// The strand's segments with its particles at `position` [mm] and each wire in its shade [-].
+fn segments(data: &Data, position: Vec<[f32; 3]>, shade: Vec<f32>) -> Vec<Segment> {
     let occlusion = occlusion(data.info, &position, &data.snapshot.radius);
     let looks = Looks {
         position,
         colour: data.colours.to_vec(),
         occlusion,
+        shade,
     };
-    let start = all.len() as u32;
-    all.extend(wires::segments(data.info, data.snapshot, &looks));
-    start..all.len() as u32
+    wires::segments(data.info, data.snapshot, &looks)
 }
 
 impl Solid {
@@ -318,16 +336,22 @@ impl Solid {
     }
 
     fn draw(&self, data: &Data, shots: &[Shot]) -> Result<()> {
-        let mut segments = Vec::new();
-        let whole = append_segments(data, data.snapshot.position.clone(), &mut segments);
+        let shade = data.body.depth.iter().map(|d| 0.45 + 0.55 * d).collect();
+        let whole = segments(data, data.snapshot.position.clone(), shade);
+        let mut all: Vec<Segment> = Vec::new();
         let mut drawings = Vec::new();
         for shot in shots {
-            let mut instances = whole.clone();
+            let start = all.len() as u32;
+            let seen = |s: &&Segment| shot.camera.sees(s.a, s.b);
             if shot.view == View::Exploded {
                 let (lifts, _) = exploded::lifts(data.info, data.body);
                 let position = exploded::positions(data, &lifts, &shot.camera);
-                instances = append_segments(data, position, &mut segments);
+                let apart = segments(data, position, vec![1.0; data.info.wires.len()]);
+                all.extend(apart.iter().filter(seen));
+            } else {
+                all.extend(whole.iter().filter(seen));
             }
+            let instances = start..all.len() as u32;
             drawings.push(Drawing {
                 camera: shot.camera,
                 instances,
@@ -335,14 +359,8 @@ impl Solid {
             });
         }
         let origin = [self.area.x, self.area.y];
-        self.pipeline.draw(
-            &self.gpu,
-            &self.target,
-            origin,
-            data.style,
-            &segments,
-            &drawings,
-        )
+        self.pipeline
+            .draw(&self.gpu, &self.target, origin, data.style, &all, &drawings)
     }
 
     /// Copies the panels, and nothing between them, into the picture.
@@ -389,13 +407,12 @@ fn overlay(
         [s.camera.centre.z - half, s.camera.centre.z + half]
     });
     for shot in shots {
-        let x = marks::title(canvas, shot.camera.panel, data, shot.caption);
         marks::scale_bar(canvas, &shot.camera, data);
+        let mut remark = String::new();
         match shot.view {
             View::Overview => marks::overview(canvas, &shot.camera, data, window),
             View::Midsection => {
-                let text = format!("around z {focus:.1} mm");
-                marks::subtitle(canvas, x, shot.camera.panel, data, &text);
+                remark = format!("around z {focus:.1} mm");
                 marks::break_numbers(canvas, &shot.camera, data);
             }
             View::Exploded => {
@@ -404,6 +421,7 @@ fn overlay(
             }
             _ => {}
         }
+        marks::title_over(canvas, shot.camera.panel, data, shot.caption, &remark);
     }
     for (view, panel) in &layout.panels {
         match view {

@@ -18,6 +18,7 @@ pub fn draw(canvas: &mut Canvas, area: Rect, data: &Data) {
         x += width + 26.0 * u;
     }
     match data.scale.shown_range() {
+        Some(_) if data.info.wires.is_empty() && data.scale.by() != ColourBy::Velocity => (),
         Some(range) => colour_bar(canvas, bar, data, range),
         None => legend(canvas, bar, data),
     }
@@ -198,6 +199,9 @@ fn colour_bar(canvas: &mut Canvas, area: Rect, data: &Data, range: [f64; 2]) {
             small,
             &label(value, marks.decimals),
         );
+    }
+    if data.info.wires.is_empty() {
+        return;
     }
     let x = area.right();
     let kind = Type {

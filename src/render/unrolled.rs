@@ -36,7 +36,7 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data) {
         row(canvas, &rows, *top, wire, data);
     }
     layers(canvas, panel, &rows, data);
-    axis(canvas, panel, &rows, data);
+    axis(canvas, &rows, data);
     breaks(canvas, &rows, data);
     numbers(canvas, &rows, data);
 }
@@ -55,6 +55,11 @@ fn rows(area: Rect, data: &Data, unit: f32) -> Rows {
         }
         y += 1.2 * height;
     }
+    // Few wires do not fill the panel: the axis then follows the last row.
+    let area = Rect {
+        h: (y - 1.2 * height - area.y).min(area.h),
+        ..area
+    };
     Rows {
         area,
         range: [data.body.low.z, data.body.high.z],
@@ -133,7 +138,7 @@ fn layers(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
     }
 }
 
-fn axis(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
+fn axis(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     let u = canvas.unit;
     let small = Type {
         size: 11.0 * u,
@@ -159,7 +164,7 @@ fn axis(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
     };
     canvas.text(
         rows.area.right(),
-        panel.bottom() - 8.0 * u,
+        bottom + 31.0 * u,
         kind,
         "axial position before loading (mm)",
     );

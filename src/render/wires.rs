@@ -17,7 +17,7 @@ pub struct Segment {
     pub tangent_a: [f32; 4],
     /// The same at `b`.
     pub tangent_b: [f32; 4],
-    /// Linear colour at `a`.
+    /// Linear colour at `a`, and the shade of the wire, 0 to 1.
     pub colour_a: [f32; 4],
     /// Linear colour at `b`.
     pub colour_b: [f32; 4],
@@ -42,17 +42,20 @@ pub struct Looks {
     pub colour: Vec<Rgb>,
     /// Occlusion.
     pub occlusion: Vec<[f32; 4]>,
+    /// Shade per wire [-]: 1 outside, less further in, so that what lies below a gap reads as deeper.
+    pub shade: Vec<f32>,
 }
 
 /// The segments of every wire and sphere.
 pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks) -> Vec<Segment> {
     let mut all = Vec::with_capacity(snapshot.position.len());
-    for wire in &info.wires {
+    for (wire, shade) in info.wires.iter().zip(&looks.shade) {
         let chain = Chain {
             info,
             snapshot,
             looks,
             wire,
+            shade: *shade,
         };
         chain.segments(&mut all);
     }
@@ -81,6 +84,7 @@ struct Chain<'a> {
     snapshot: &'a Snapshot,
     looks: &'a Looks,
     wire: &'a WireInfo,
+    shade: f32,
 }
 
 impl Chain<'_> {
@@ -148,11 +152,13 @@ impl Chain<'_> {
 
     fn colour(&self, i: usize) -> [f32; 4] {
         let colour = self.looks.colour[i];
-        linear4(if in_grip(self.info, i) {
+        let shown = if in_grip(self.info, i) {
             desaturated(colour)
         } else {
             colour
-        })
+        };
+        let [r, g, b, _] = linear4(shown);
+        [r, g, b, self.shade]
     }
 }
 

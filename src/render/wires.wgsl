@@ -15,7 +15,7 @@ struct Segment {
   @location(1) b: vec4<f32>,   // second centre, radius [mm]
   @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 end, 2 broken end
   @location(3) tb: vec4<f32>,
-  @location(4) ca: vec4<f32>,  // linear colour at a
+  @location(4) ca: vec4<f32>,  // linear colour at a; w: shade of wires inside the strand
   @location(5) cb: vec4<f32>,
   @location(6) oa: vec4<f32>,  // occlusion at a: sum of w d, sum of w
   @location(7) ob: vec4<f32>,
@@ -152,17 +152,17 @@ fn shade(p: vec2<f32>, in: Varying) -> Lit {
   let base = mix(mix(in.ca.rgb, in.cb.rgb, s), view.signal.rgb, broken);
 
   let o = mix(in.oa, in.ob, s);
-  let open = clamp(1.0 - 0.8 * (0.25 * o.w + 0.5 * dot(o.xyz, n)), 0.12, 1.0);
+  let open = clamp(1.0 - 0.8 * (0.38 * o.w + 0.5 * dot(o.xyz, n)), 0.12, 1.0);
   // Deeper parts are a little darker, so that layers read in depth.
-  let deep = smoothstep(-1.0, 0.9, (hit.z - view.fade.x) / view.fade.y);
+  let deep = clamp(0.2 + 0.8 * (hit.z - view.fade.x) / view.fade.y, 0.0, 1.0);
   let light = normalize(vec3<f32>(-0.35, 0.62, 0.70));
   let diffuse = max(dot(n, light), 0.0);
   let sky = 0.30 + 0.16 * n.y + 0.14 * n.z;
   let glint = pow(max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0), 40.0);
   let slant = pow(1.0 - clamp(n.z, 0.0, 1.0), 2.5);
-  var colour = base * (sky * open + 0.78 * diffuse * mix(0.45, 1.0, open)) * mix(0.62, 1.0, deep);
+  var colour = base * (sky * open + 0.78 * diffuse * mix(0.45, 1.0, open)) * mix(0.6, 1.0, deep) * mix(in.ca.w, in.cb.w, s);
   colour += vec3<f32>(0.11) * glint * open;
-  colour = colour * (1.0 - view.rim.w * slant) + view.rim.rgb * slant * open;
+  colour = colour * (1.0 - view.rim.w * slant) + view.rim.rgb * slant * open * open;
   // A broken end keeps its colour also in the shade.
   colour = mix(colour, max(colour, base * 0.55), broken);
 
