@@ -9,6 +9,7 @@ use image::RgbImage;
 use std::sync::Arc;
 use strandsnap::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use strandsnap::observe::Observer;
+use strandsnap::render::colour::DARKEST;
 use strandsnap::render::{CameraOptions, FrameOptions, FrameWriter, Renderer, Theme, View};
 use strandsnap::scene::spec::ColourBy;
 
@@ -217,7 +218,7 @@ fn the_colour_bar_ends_in_the_colours_of_the_range() {
             ..Default::default()
         };
         let picture = draw(&info, &options, &stretched(&info, 0.1), &[]);
-        for (x, fraction) in [(989, 0.0), (1258, 1.0)] {
+        for (x, fraction) in [(989, DARKEST), (1258, 1.0)] {
             let c = map.eval_continuous(fraction);
             let seen = picture.get_pixel(x, 29).0;
             assert!(

@@ -44,7 +44,7 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data) {
 fn rows(area: Rect, data: &Data, unit: f32) -> Rows {
     let wires = &data.info.wires;
     let gaps = data.info.layers.len().saturating_sub(1) as f32;
-    let height = (area.h / (wires.len() as f32 + 1.2 * gaps).max(1.0)).min(18.0 * unit);
+    let height = (area.h / (wires.len() as f32 + 1.2 * gaps).max(1.0)).min(34.0 * unit);
     let mut top = vec![area.y; wires.len()];
     let mut y = area.y;
     for layer in (0..data.info.layers.len()).rev() {

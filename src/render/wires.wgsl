@@ -152,7 +152,12 @@ fn shade(p: vec2<f32>, in: Varying) -> Lit {
   let base = mix(mix(in.ca.rgb, in.cb.rgb, s), view.signal.rgb, broken);
 
   let o = mix(in.oa, in.ob, s);
-  let open = clamp(1.0 - 0.8 * (0.38 * o.w + 0.5 * dot(o.xyz, n)), 0.12, 1.0);
+  // Neighbours on both sides cancel in the sum of directions; what is left of the sum of weights lies to the sides.
+  let sides = max(o.w - length(o.xyz), 0.0);
+  let lateral = cross(tangent, o.xyz);
+  let towards_side = dot(n, lateral) * dot(n, lateral) / max(dot(lateral, lateral), 1e-9);
+  let hidden = 0.26 * o.w + 0.5 * dot(o.xyz, n) + 0.55 * sides * towards_side;
+  let open = clamp(1.0 - 0.8 * hidden, 0.08, 1.0);
   // Deeper parts are a little darker, so that layers read in depth.
   let deep = clamp(0.2 + 0.8 * (hit.z - view.fade.x) / view.fade.y, 0.0, 1.0);
   let light = normalize(vec3<f32>(-0.35, 0.62, 0.70));
@@ -161,8 +166,8 @@ fn shade(p: vec2<f32>, in: Varying) -> Lit {
   let glint = pow(max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0), 40.0);
   let slant = pow(1.0 - clamp(n.z, 0.0, 1.0), 2.5);
   var colour = base * (sky * open + 0.78 * diffuse * mix(0.45, 1.0, open)) * mix(0.6, 1.0, deep) * mix(in.ca.w, in.cb.w, s);
-  colour += vec3<f32>(0.11) * glint * open;
-  colour = colour * (1.0 - view.rim.w * slant) + view.rim.rgb * slant * open * open;
+  colour += (0.025 + 0.14 * base) * glint * open;
+  colour = colour * (1.0 - view.rim.w * slant) + view.rim.rgb * (0.35 + 3.0 * base) * slant * open * open;
   // A broken end keeps its colour also in the shade.
   colour = mix(colour, max(colour, base * 0.55), broken);
 
