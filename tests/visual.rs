@@ -450,4 +450,9 @@ fn gallery() {
             &[],
         ),
     );
+    let (bent, snapshot) = common::bent_wire();
+    keep(
+        "bent",
+        &draw(&bent, &FrameOptions::default(), &snapshot, &[]),
+    );
 }

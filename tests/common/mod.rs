@@ -239,3 +239,24 @@ pub fn two_spheres() -> (RunInfo, Snapshot) {
     };
     (info, snapshot)
 }
+
+/// A wire along z without grips, bent into a quarter circle.
+pub fn bent_wire() -> (RunInfo, Snapshot) {
+    let mut info = single_wire();
+    info.name = "cantilever-like".into();
+    info.gauge = None;
+    let mut snapshot = stretched(
+        &RunInfo {
+            gauge: Some([0.0, LENGTH]),
+            ..info.clone()
+        },
+        0.0,
+    );
+    let bend = LENGTH * 2.0 / std::f32::consts::PI;
+    for (k, p) in snapshot.position.iter_mut().enumerate() {
+        let angle = p[2] / bend;
+        *p = [0.0, bend * (1.0 - angle.cos()), bend * angle.sin()];
+        snapshot.bond_stress[k] = 300.0 * angle.cos();
+    }
+    (info, snapshot)
+}
