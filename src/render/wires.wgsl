@@ -71,11 +71,18 @@ fn reach(kind: f32, r: f32, tangent: vec3<f32>, along: vec3<f32>) -> f32 {
   return o;
 }
 
-// Inside (negative) or outside of the segment's outline in the picture [mm].
-fn outline(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>) -> f32 {
-  let d = b.xy - a.xy;
-  let s = clamp(dot(p - a.xy, d) / max(dot(d, d), 1e-12), 0.0, 1.0);
-  return length(p - a.xy - d * s) - mix(a.w, b.w, s);
+// Whether p lies inside the segment's outline in the picture. `along` is the axis over its squared length.
+fn covers(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>, along: vec2<f32>) -> bool {
+  let w = p - a.xy;
+  let s = clamp(dot(w, along), 0.0, 1.0);
+  let off = w - (b.xy - a.xy) * s;
+  let r = mix(a.w, b.w, s);
+  return dot(off, off) <= r * r;
+}
+
+fn outline_axis(in: Varying) -> vec2<f32> {
+  let d = in.b.xy - in.a.xy;
+  return d / max(dot(d, d), 1e-12);
 }
 
 struct Hit {
@@ -124,6 +131,8 @@ fn intersect(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>) -> Hit {
   return hit;
 }
 
+fn square(x: f32) -> f32 { return x * x; }
+
 struct Lit { colour: vec4<f32>, depth: f32, };
 
 fn shade(p: vec2<f32>, in: Varying) -> Lit {
@@ -163,8 +172,11 @@ fn shade(p: vec2<f32>, in: Varying) -> Lit {
   let light = normalize(vec3<f32>(-0.35, 0.62, 0.70));
   let diffuse = max(dot(n, light), 0.0);
   let sky = 0.30 + 0.16 * n.y + 0.14 * n.z;
-  let glint = pow(max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0), 40.0);
-  let slant = pow(1.0 - clamp(n.z, 0.0, 1.0), 2.5);
+  // Powers by squaring: 32 for the highlight, 3 along silhouettes.
+  let half2 = square(max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0));
+  let glint = square(square(square(square(half2))));
+  let rim = 1.0 - clamp(n.z, 0.0, 1.0);
+  let slant = rim * rim * rim;
   var colour = base * (sky * open + 0.78 * diffuse * mix(0.45, 1.0, open)) * mix(0.6, 1.0, deep) * mix(in.ca.w, in.cb.w, s);
   colour += (0.025 + 0.14 * base) * glint * open;
   colour = colour * (1.0 - view.rim.w * slant) + view.rim.rgb * (0.35 + 3.0 * base) * slant * open * open;
@@ -193,9 +205,10 @@ struct Masked {
   var mask = 0u;
   var sum = vec2<f32>(0.0);
   var count = 0.0;
+  let along = outline_axis(in);
   for (var i = 0u; i < 4u; i++) {
     let q = in.p + dx * offsets[i].x + dy * offsets[i].y;
-    if (outline(q, in.a, in.b) <= 0.0) {
+    if (covers(q, in.a, in.b, along)) {
       mask |= 1u << i;
       sum += q;
       count += 1.0;
@@ -213,7 +226,7 @@ struct Whole {
 
 // For adapters without a sample mask: whole pixels.
 @fragment fn fs_whole(in: Varying) -> Whole {
-  if (outline(in.p, in.a, in.b) > 0.0) { discard; }
+  if (!covers(in.p, in.a, in.b, outline_axis(in))) { discard; }
   let lit = shade(in.p, in);
   return Whole(lit.colour, lit.depth);
 }
