@@ -293,16 +293,21 @@ fn focus(data: &Data, options: &FrameOptions) -> f32 {
         .unwrap_or(0.5 * (low + high))
 }
 
-/// The strand's segments with its particles at `position` [mm] and each wire in its shade [-].
-fn segments(data: &Data, position: Vec<[f32; 3]>, shade: Vec<f32>) -> Vec<Segment> {
+/// How wires look with their particles at `position` [mm] and each wire in its shade [-].
+fn looks(data: &Data, position: Vec<[f32; 3]>, shade: Vec<f32>) -> Looks {
     let occlusion = occlusion(data.info, &position, &data.snapshot.radius);
-    let looks = Looks {
+    Looks {
         position,
         colour: data.colours.to_vec(),
         occlusion,
         shade,
-    };
-    wires::segments(data.info, data.snapshot, &looks)
+    }
+}
+
+/// Bonds that make up about eight pixels.
+fn stride(data: &Data, camera: &Camera) -> usize {
+    let spacing = 2.0 * data.info.radius.first().copied().unwrap_or(1.0);
+    (8.0 / (spacing * camera.scale)).clamp(1.0, 8.0) as usize
 }
 
 impl Solid {
@@ -337,20 +342,21 @@ impl Solid {
 
     fn draw(&self, data: &Data, shots: &[Shot]) -> Result<()> {
         let shade = data.body.depth.iter().map(|d| 0.45 + 0.55 * d).collect();
-        let whole = segments(data, data.snapshot.position.clone(), shade);
+        let whole = looks(data, data.snapshot.position.clone(), shade);
         let mut all: Vec<Segment> = Vec::new();
         let mut drawings = Vec::new();
         for shot in shots {
             let start = all.len() as u32;
-            let seen = |s: &&Segment| shot.camera.sees(s.a, s.b);
-            if shot.view == View::Exploded {
+            let stride = stride(data, &shot.camera);
+            let segments = if shot.view == View::Exploded {
                 let (lifts, _) = exploded::lifts(data.info, data.body);
                 let position = exploded::positions(data, &lifts, &shot.camera);
-                let apart = segments(data, position, vec![1.0; data.info.wires.len()]);
-                all.extend(apart.iter().filter(seen));
+                let apart = looks(data, position, vec![1.0; data.info.wires.len()]);
+                wires::segments(data.info, data.snapshot, &apart, stride)
             } else {
-                all.extend(whole.iter().filter(seen));
-            }
+                wires::segments(data.info, data.snapshot, &whole, stride)
+            };
+            all.extend(segments.into_iter().filter(|s| shot.camera.sees(s.a, s.b)));
             let instances = start..all.len() as u32;
             drawings.push(Drawing {
                 camera: shot.camera,

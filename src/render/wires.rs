@@ -46,8 +46,9 @@ pub struct Looks {
     pub shade: Vec<f32>,
 }
 
-/// The segments of every wire and sphere.
-pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks) -> Vec<Segment> {
+/// The segments of every wire and sphere. Where a wire is straight, up to `stride` bonds share a segment: small
+/// pictures need no more.
+pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks, stride: usize) -> Vec<Segment> {
     let mut all = Vec::with_capacity(snapshot.position.len());
     for (wire, shade) in info.wires.iter().zip(&looks.shade) {
         let chain = Chain {
@@ -57,7 +58,7 @@ pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks) -> Vec<Segme
             wire,
             shade: *shade,
         };
-        chain.segments(&mut all);
+        chain.segments(stride, &mut all);
     }
     for i in info.wire_particles..snapshot.position.len() {
         all.push(sphere(snapshot, looks, i));
@@ -88,18 +89,33 @@ struct Chain<'a> {
 }
 
 impl Chain<'_> {
-    fn segments(&self, all: &mut Vec<Segment>) {
+    fn segments(&self, stride: usize, all: &mut Vec<Segment>) {
         let last = self.wire.first + self.wire.len.saturating_sub(1);
-        for i in self.wire.first..last {
+        let mut i = self.wire.first;
+        while i < last {
+            let mut j = i + 1;
             if holds(self.snapshot, i) {
-                all.push(self.between(i, i + 1));
+                while j < last
+                    && j - i < stride
+                    && holds(self.snapshot, j)
+                    && self.straight(i, j + 1)
+                {
+                    j += 1;
+                }
+                all.push(self.between(i, j));
             }
+            i = j;
         }
         for i in self.wire.first..self.wire.first + self.wire.len {
             if !self.holds_before(i) && !self.holds_after(i) {
                 all.push(self.between(i, i));
             }
         }
+    }
+
+    /// Whether the wire turns by less than 2.5° between two particles.
+    fn straight(&self, i: usize, j: usize) -> bool {
+        self.tangent(i).dot(self.tangent(j)) > 0.999
     }
 
     fn holds_before(&self, i: usize) -> bool {
