@@ -61,7 +61,7 @@ pub fn failure(what: impl Into<String>) -> Error {
 }
 
 fn request_adapter() -> Result<wgpu::Adapter> {
-    // GL only when there is nothing else: merely looking for it prints warnings on a machine without a display.
+    // GL only when there is nothing else: there silhouettes cannot be smoothed (see `Gpu::sample_mask`).
     let found = request_from(wgpu::Backends::PRIMARY).or_else(|_| request_from(wgpu::Backends::GL));
     found.map_err(|e| Error::Missing {
         what: format!("no graphics adapter to draw frames with ({e})"),
