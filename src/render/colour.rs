@@ -18,6 +18,9 @@ const PALETTE: [Rgb; 9] = [
     [120, 90, 180],
 ];
 
+/// Where in its map a range starts [-]. The very darkest colours would vanish before a dark ground.
+pub const DARKEST: f64 = 0.1;
+
 /// A quantity, its fixed range and its colours.
 pub struct ColourScale {
     by: ColourBy,
@@ -55,7 +58,11 @@ impl ColourScale {
 
     /// Ends of the range, in the unit of the title; `None` for categories.
     pub fn shown_range(&self) -> Option<[f64; 2]> {
-        let factor = if self.by == ColourBy::PlasticStrain { 100.0 } else { 1.0 };
+        let factor = if self.by == ColourBy::PlasticStrain {
+            100.0
+        } else {
+            1.0
+        };
         self.map.map(|_| self.range.map(|v| f64::from(v) * factor))
     }
 
@@ -64,13 +71,15 @@ impl ColourScale {
         let Some(map) = self.map else {
             return [128; 3];
         };
-        let c = map.eval_continuous(fraction.clamp(0.0, 1.0));
+        let c = map.eval_continuous(DARKEST + (1.0 - DARKEST) * fraction.clamp(0.0, 1.0));
         [c.r, c.g, c.b]
     }
 
     fn of_value(&self, value: f32) -> Rgb {
         let [low, high] = self.range;
-        self.at(f64::from((value - low) / (high - low).max(f32::MIN_POSITIVE)))
+        self.at(f64::from(
+            (value - low) / (high - low).max(f32::MIN_POSITIVE),
+        ))
     }
 
     /// Colour of layer or wire number `index`.
@@ -78,26 +87,40 @@ impl ColourScale {
         PALETTE[index % PALETTE.len()]
     }
 
-    /// One colour per particle; free spheres, which have no bonds, are coloured by speed or grey.
+    /// One colour per particle.
     pub fn particles(&self, info: &RunInfo, snapshot: &Snapshot) -> Vec<Rgb> {
         let mut colours = vec![[150, 156, 166]; snapshot.position.len()];
         for (number, wire) in info.wires.iter().enumerate() {
-            for i in wire.first..wire.first + wire.len {
-                colours[i] = match self.by {
-                    ColourBy::Stress => self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i)),
-                    ColourBy::PlasticStrain => self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i)),
+            for (k, colour) in colours[wire.first..wire.first + wire.len]
+                .iter_mut()
+                .enumerate()
+            {
+                let i = wire.first + k;
+                *colour = match self.by {
+                    ColourBy::Stress => {
+                        self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i))
+                    }
+                    ColourBy::PlasticStrain => {
+                        self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i))
+                    }
                     ColourBy::Velocity => self.of_value(snapshot.speed[i]),
                     ColourBy::Layer => Self::category(wire.layer),
                     ColourBy::Wire => Self::category(number),
                 };
             }
         }
-        for i in info.wire_particles..snapshot.position.len() {
-            colours[i] = match self.by {
-                ColourBy::Velocity => self.of_value(snapshot.speed[i]),
-                ColourBy::Wire | ColourBy::Layer => Self::category(info.wires.len() + i - info.wire_particles),
-                _ => colours[i],
-            };
+        for (k, colour) in colours.iter_mut().skip(info.wire_particles).enumerate() {
+            match self.by {
+                ColourBy::Velocity => {
+                    *colour = self.of_value(snapshot.speed[info.wire_particles + k])
+                }
+                ColourBy::Wire | ColourBy::Layer => *colour = Self::category(info.wires.len() + k),
+                // Spheres carry no axial stress: told apart when there is nothing else, grey beside wires.
+                ColourBy::Stress | ColourBy::PlasticStrain if info.wires.is_empty() => {
+                    *colour = Self::category(k)
+                }
+                ColourBy::Stress | ColourBy::PlasticStrain => (),
+            }
         }
         colours
     }
@@ -105,7 +128,12 @@ impl ColourScale {
 
 /// Mean over the bonds that hold particle `i` of a wire starting at `first`; 0 when none does.
 fn beside(snapshot: &Snapshot, values: &[f32], first: usize, i: usize) -> f32 {
-    let holds = |b: usize| matches!(snapshot.bond_state[b], BondState::Whole | BondState::Yielding);
+    let holds = |b: usize| {
+        matches!(
+            snapshot.bond_state[b],
+            BondState::Whole | BondState::Yielding
+        )
+    };
     let before = (i > first && holds(i - 1)).then(|| values[i - 1]);
     let after = holds(i).then(|| values[i]);
     match (before, after) {
@@ -127,7 +155,11 @@ pub fn desaturated(colour: Rgb) -> Rgb {
 /// sRGB byte to linear light (IEC 61966-2-1) [-].
 pub fn linear(byte: u8) -> f32 {
     let v = f32::from(byte) / 255.0;
-    if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    if v <= 0.040_45 {
+        v / 12.92
+    } else {
+        ((v + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 /// Linear RGB of a colour, with alpha 1.
@@ -145,7 +177,10 @@ mod tests {
     use super::*;
 
     fn distance(a: Rgb, b: Rgb) -> f64 {
-        (0..3).map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2)).sum::<f64>().sqrt()
+        (0..3)
+            .map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2))
+            .sum::<f64>()
+            .sqrt()
     }
 
     #[test]
