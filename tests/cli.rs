@@ -272,9 +272,10 @@ fn ctrl_c_keeps_the_results() {
     let growing = folder.path().join("out/curve.csv.partial");
     let begin = Instant::now();
     let has_rows = || fs::read_to_string(&growing).is_ok_and(|text| text.lines().count() > 2);
-    while !has_rows() && begin.elapsed() < Duration::from_secs(120) {
+    while !has_rows() && child.try_wait().unwrap().is_none() && begin.elapsed() < Duration::from_secs(120) {
         std::thread::sleep(Duration::from_millis(50));
     }
+    assert!(has_rows(), "the run must get as far as a few rows");
     kill_process(Pid::from_child(&child), Signal::INT).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let out = folder.path().join("out");
