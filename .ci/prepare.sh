@@ -59,5 +59,7 @@ get_rerun() {
         say "Installing Rerun's tool $version into .venv"
         python3 -m venv .venv && .venv/bin/pip install -q "rerun-sdk==$version" || return 1
     fi
+    # No usage statistics from tests.
+    .venv/bin/rerun analytics disable >/dev/null 2>&1 || true
     export RERUN_CLI="$PWD/.venv/bin/rerun"
 }
