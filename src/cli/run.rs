@@ -83,6 +83,9 @@ fn print(summary: &RunSummary, options: &RunOptions) {
         if options.frames {
             println!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
         }
+        if outputs::HAS_RENDER {
+            println!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());
+        }
         if options.recording {
             println!("Open the recording with: rerun {}", options.out.join(RECORDING).display());
         }

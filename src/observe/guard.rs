@@ -95,7 +95,7 @@ impl Guard {
             && residual.abs() > ENERGY_LIMIT
         {
             warnings.push(format!(
-                "the energy ledger does not close: {:.2} % of the work done is unaccounted for",
+                "the energy ledger does not close: {:.2} % of the energy in it is unaccounted for",
                 percent(residual)
             ));
         }
