@@ -10,9 +10,7 @@ use strandsnap::scene::{self, Scene, builtin, write};
 const MARKER: &str = "# <-- here";
 
 fn corpus(kind: &str) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/scenes")
-        .join(kind);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(kind);
     let entries = std::fs::read_dir(&folder).expect("the corpus is there");
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
     files.sort();
@@ -26,12 +24,8 @@ fn load(name: &str, options: &[&str]) -> Result<Scene, Error> {
 }
 
 fn good(name: &str) -> Spec {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/scenes/good")
-        .join(name);
-    load(file.to_str().unwrap(), &[])
-        .unwrap_or_else(|error| panic!("{name}: {error}"))
-        .spec
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/good").join(name);
+    load(file.to_str().unwrap(), &[]).unwrap_or_else(|error| panic!("{name}: {error}")).spec
 }
 
 fn scene_error(result: Result<Scene, Error>, case: &str) -> Box<SceneError> {
@@ -48,14 +42,8 @@ fn pointed(error: &SceneError) -> (String, String, String) {
     let text = error.source_code.inner();
     let range = span.offset()..span.offset() + span.len();
     let line_start = text[..range.start].rfind('\n').map_or(0, |at| at + 1);
-    let line_end = text[range.start..]
-        .find('\n')
-        .map_or(text.len(), |at| range.start + at);
-    (
-        text[range].to_owned(),
-        text[line_start..line_end].to_owned(),
-        error.source_code.name().to_owned(),
-    )
+    let line_end = text[range.start..].find('\n').map_or(text.len(), |at| range.start + at);
+    (text[range].to_owned(), text[line_start..line_end].to_owned(), error.source_code.name().to_owned())
 }
 
 /// Equal but for the rounding of a unit's factor.
@@ -74,16 +62,9 @@ fn bad_scenes_get_the_message_they_carry_at_the_line_they_mark() {
     let mut wrong = Vec::new();
     for file in corpus("bad") {
         let text = std::fs::read_to_string(&file).unwrap();
-        let expected = text
-            .lines()
-            .next()
-            .and_then(|line| line.strip_prefix("# expect: "));
-        let expected =
-            expected.unwrap_or_else(|| panic!("{} does not say what to expect", file.display()));
-        let error = scene_error(
-            load(file.to_str().unwrap(), &[]),
-            &file.display().to_string(),
-        );
+        let expected = text.lines().next().and_then(|line| line.strip_prefix("# expect: "));
+        let expected = expected.unwrap_or_else(|| panic!("{} does not say what to expect", file.display()));
+        let error = scene_error(load(file.to_str().unwrap(), &[]), &file.display().to_string());
         let (_, line, source) = pointed(&error);
         assert_eq!(source, file.to_str().unwrap());
         let at_marker = match text.contains(MARKER) {
@@ -91,11 +72,7 @@ fn bad_scenes_get_the_message_they_carry_at_the_line_they_mark() {
             false => error.span.unwrap().offset() == 0,
         };
         if !error.what.contains(expected) || !at_marker {
-            wrong.push(format!(
-                "{}: {}\n    at: {line}",
-                file.display(),
-                error.what
-            ));
+            wrong.push(format!("{}: {}\n    at: {line}", file.display(), error.what));
         }
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
@@ -104,9 +81,7 @@ fn bad_scenes_get_the_message_they_carry_at_the_line_they_mark() {
 #[test]
 fn good_scenes_are_read_and_written_back_equal() {
     for file in corpus("good") {
-        let spec = load(file.to_str().unwrap(), &[])
-            .unwrap_or_else(|error| panic!("{error}"))
-            .spec;
+        let spec = load(file.to_str().unwrap(), &[]).unwrap_or_else(|error| panic!("{error}")).spec;
         assert_round_trip(&spec);
     }
 }
@@ -114,25 +89,12 @@ fn good_scenes_are_read_and_written_back_equal() {
 #[test]
 fn shipped_scenes_are_read_and_written_back_equal() {
     let names: Vec<&str> = builtin::list().iter().map(|(name, _)| *name).collect();
-    for name in [
-        "ka4",
-        "single-wire",
-        "strand-1x7",
-        "two-spheres",
-        "cantilever",
-        "torsion",
-        "jaw-grip",
-    ] {
+    for name in ["ka4", "single-wire", "strand-1x7", "two-spheres", "cantilever", "torsion", "jaw-grip"] {
         assert!(names.contains(&name), "{name} is not shipped");
     }
     for (name, text) in builtin::list() {
-        assert!(
-            text.starts_with("# "),
-            "{name} does not begin with a comment that says what it shows"
-        );
-        let spec = load(name, &[])
-            .unwrap_or_else(|error| panic!("{name}: {error}"))
-            .spec;
+        assert!(text.starts_with("# "), "{name} does not begin with a comment that says what it shows");
+        let spec = load(name, &[]).unwrap_or_else(|error| panic!("{name}: {error}")).spec;
         assert_eq!(spec.name, *name);
         assert_eq!(builtin::about(name).unwrap(), spec.about);
         assert_round_trip(&spec);
@@ -149,55 +111,28 @@ fn assert_round_trip(spec: &Spec) {
 #[test]
 fn every_key_arrives_in_si() {
     let spec = good("everything.toml");
-    assert_eq!(
-        (spec.name.as_str(), spec.seed, spec.plan),
-        ("all-of-it", 7, PlanMode::General)
-    );
+    assert_eq!((spec.name.as_str(), spec.seed, spec.plan), ("all-of-it", 7, PlanMode::General));
     assert_eq!(spec.about, "Two lines\nand a \"quote\".");
     assert_close(spec.material.density, 8940.0);
     assert_eq!(spec.bond.damping, [0.01, 0.02, 0.03, 0.0]);
     let contact = spec.contact.as_ref().unwrap();
-    let NormalSpec::Thornton { limiting_pressure } = contact.normal else {
-        panic!("not Thornton")
-    };
+    let NormalSpec::Thornton { limiting_pressure } = contact.normal else { panic!("not Thornton") };
     // 3 × Swift's stress at 8 % plastic strain.
     assert_close(limiting_pressure, 3.0 * 400e6 * 0.09f64.powf(0.3));
-    assert_eq!(
-        (contact.tangential, contact.shape),
-        (Some(TangentialSpec::MindlinDeresiewicz), Shape::Capsule)
-    );
+    assert_eq!((contact.tangential, contact.shape), (Some(TangentialSpec::MindlinDeresiewicz), Shape::Capsule));
     let layers = &spec.strand.as_ref().unwrap().layers;
-    assert_eq!(
-        (layers[0].name.as_str(), layers[0].lay_radius, layers[0].lay),
-        ("layer 1", Some(0.0), -1.0)
-    );
+    assert_eq!((layers[0].name.as_str(), layers[0].lay_radius, layers[0].lay), ("layer 1", Some(0.0), -1.0));
     assert_close(layers[0].wire_diameter, 0.39e-3);
     assert_close(layers[1].phase, 10f64.to_radians());
     assert_eq!((layers[1].pitch, layers[1].lay), (f64::INFINITY, 1.0));
-    let wires: Vec<(&str, f64)> = spec
-        .wires
-        .iter()
-        .map(|wire| (wire.layer.as_str(), wire.diameter))
-        .collect();
-    assert_eq!(
-        wires,
-        [("outer", 0.2e-3), ("inner", 0.2e-3), ("extra", 0.39e-3)]
-    );
+    let wires: Vec<(&str, f64)> = spec.wires.iter().map(|wire| (wire.layer.as_str(), wire.diameter)).collect();
+    assert_eq!(wires, [("outer", 0.2e-3), ("inner", 0.2e-3), ("extra", 0.39e-3)]);
     assert_close(spec.wires[2].velocity.y, -0.05 / 60.0);
     assert_close(spec.wires[2].spin.y, std::f64::consts::TAU / 6.0);
     let grip = spec.grip.as_ref().unwrap();
-    assert_eq!(
-        grip.drive,
-        DriveSpec::Cyclic {
-            amplitude: 0.3e-3,
-            frequency: 2000.0
-        }
-    );
+    assert_eq!(grip.drive, DriveSpec::Cyclic { amplitude: 0.3e-3, frequency: 2000.0 });
     assert_eq!(grip.kind, GripKind::Jaw { pressure: 50e6 });
-    assert_eq!(
-        spec.holds[0].fixed,
-        [true, false, false, false, false, true]
-    );
+    assert_eq!(spec.holds[0].fixed, [true, false, false, false, false, true]);
     assert_close(spec.holds[0].moment.x, 3e-3);
     assert_close(spec.holds[0].ramp, 50e-6);
     assert_eq!(spec.stop.steps, Some(1000));
@@ -207,9 +142,7 @@ fn every_key_arrives_in_si() {
 #[test]
 fn an_engineering_curve_becomes_true_stress_over_true_plastic_strain() {
     let spec = good("engineering-curve.toml");
-    let BondLawSpec::ElastoPlastic(HardeningSpec::Table(points)) = &spec.bond.law else {
-        panic!("not a table")
-    };
+    let BondLawSpec::ElastoPlastic(HardeningSpec::Table(points)) = &spec.bond.law else { panic!("not a table") };
     assert_eq!(points.len(), 3);
     // The second point lies on the elastic line and gives the yield stress.
     assert_eq!(points[0][0], 0.0);
@@ -226,9 +159,7 @@ fn without_an_elastic_point_the_curve_is_drawn_back_to_zero_plastic_strain() {
     let points = "[['0 %', '0 MPa'], ['0.2 %', '90 MPa'], ['10 %', '200 MPa']]";
     let option = format!("bond.hardening={{ form = 'engineering-curve', points = {points} }}");
     let spec = load("torsion", &[&option]).unwrap().spec;
-    let BondLawSpec::ElastoPlastic(HardeningSpec::Table(table)) = &spec.bond.law else {
-        panic!("not a table")
-    };
+    let BondLawSpec::ElastoPlastic(HardeningSpec::Table(table)) = &spec.bond.law else { panic!("not a table") };
     let slope = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
     assert_eq!(table.len(), 3);
     assert!((slope(table[0], table[1]) / slope(table[1], table[2]) - 1.0).abs() < 1e-9);
@@ -263,67 +194,29 @@ fn options_change_every_kind_of_key() {
     .spec;
     assert_eq!(spec.seed, 42);
     let strand = spec.strand.unwrap();
-    assert_eq!(
-        strand.layers.iter().map(|l| l.pitch).collect::<Vec<_>>(),
-        [0.044, 0.039, 0.039]
-    );
-    assert_eq!(
-        strand.layers.iter().map(|l| l.lay).collect::<Vec<_>>(),
-        [1.0, 1.0, -1.0]
-    );
+    assert_eq!(strand.layers.iter().map(|l| l.pitch).collect::<Vec<_>>(), [0.044, 0.039, 0.039]);
+    assert_eq!(strand.layers.iter().map(|l| l.lay).collect::<Vec<_>>(), [1.0, 1.0, -1.0]);
     assert!(strand.layers.iter().all(|l| l.wire_diameter == 0.38e-3));
     let contact = spec.contact.unwrap();
     assert_eq!((contact.friction, contact.shape), (0.3, Shape::Capsule));
-    assert!(matches!(
-        spec.bond.law,
-        BondLawSpec::ElastoPlastic(HardeningSpec::Voce { linear: 600e6, .. })
-    ));
+    assert!(matches!(spec.bond.law, BondLawSpec::ElastoPlastic(HardeningSpec::Voce { linear: 600e6, .. })));
     assert_eq!(spec.bond.damping, [0.1, 0.0, 0.0, 0.0]);
     assert_eq!(spec.bond.rupture.unwrap().weibull_modulus, f64::INFINITY);
     assert!(spec.grip.unwrap().free_rotation);
-    assert_eq!(
-        (spec.output.frame_size, spec.output.colour),
-        ([640, 480], ColourBy::Wire)
-    );
-    assert_eq!(
-        (spec.time.step, spec.stop.steps, spec.stop.strain),
-        (Some(5e-8), Some(10), None)
-    );
+    assert_eq!((spec.output.frame_size, spec.output.colour), ([640, 480], ColourBy::Wire));
+    assert_eq!((spec.time.step, spec.stop.steps, spec.stop.strain), (Some(5e-8), Some(10), None));
 }
 
 #[test]
 fn options_make_tables_remove_them_and_the_last_one_wins() {
-    let spec = load(
-        "two-spheres",
-        &[
-            "contact=",
-            "time.safety=0.5",
-            "time.safety=0.4",
-            "sphere.1.diameter=8 mm",
-        ],
-    )
-    .unwrap()
-    .spec;
-    assert_eq!(
-        (spec.contact, spec.time.safety, spec.spheres[1].diameter),
-        (None, 0.4, 0.008)
-    );
+    let spec = load("two-spheres", &["contact=", "time.safety=0.5", "time.safety=0.4", "sphere.1.diameter=8 mm"])
+        .unwrap()
+        .spec;
+    assert_eq!((spec.contact, spec.time.safety, spec.spheres[1].diameter), (None, 0.4, 0.008));
     let layers = "strand.layer=[{ wires = 1, name = 'only', lay_radius = 'auto' }]";
-    assert_eq!(
-        load("ka4", &[layers])
-            .unwrap()
-            .spec
-            .strand
-            .unwrap()
-            .layers
-            .len(),
-        1
-    );
+    assert_eq!(load("ka4", &[layers]).unwrap().spec.strand.unwrap().layers.len(), 1);
     let layer = "strand.layer.1={ wires = 12, name = 'new' }";
-    assert_eq!(
-        load("ka4", &[layer]).unwrap().spec.strand.unwrap().layers[1].wires,
-        12
-    );
+    assert_eq!(load("ka4", &[layer]).unwrap().spec.strand.unwrap().layers[1].wires, 12);
 }
 
 #[test]
@@ -336,89 +229,30 @@ fn errors_in_an_option_point_at_it() {
             "did you mean `pitch`?",
             "strand.layer.0.pich",
         ),
-        (
-            "brond.law=elastic",
-            "unknown key `brond`",
-            "did you mean `bond`?",
-            "brond.law",
-        ),
-        (
-            "strand.pitch=39 MPa",
-            "is a pressure, but a length",
-            "39 mm",
-            "39 MPa",
-        ),
+        ("brond.law=elastic", "unknown key `brond`", "did you mean `bond`?", "brond.law"),
+        ("strand.pitch=39 MPa", "is a pressure, but a length", "39 mm", "39 MPa"),
         ("strand.pitch=39", "bare number 39", "39 mm", "39"),
         ("bond.damping=-1", "`damping` is -1", "", "-1"),
-        (
-            "bond.law=rubber",
-            "`rubber` is not a value of `bond.law`",
-            "elasto-plastic",
-            "rubber",
-        ),
-        (
-            "strand.layer.3.pitch=44 mm",
-            "`strand.layer` has 3 elements",
-            "from 0 to 2",
-            "strand.layer.3.pitch",
-        ),
-        (
-            "strand.layer.outer.pitch=44 mm",
-            "`outer` is none of them",
-            "from 0 to 2",
-            "strand.layer.outer.pitch",
-        ),
-        (
-            "seed.x=1",
-            "`seed` is of type integer",
-            "set `seed` itself",
-            "seed.x",
-        ),
-        (
-            "strand.layer.0=",
-            "cannot be removed one by one",
-            "whole array",
-            "strand.layer.0",
-        ),
-        (
-            "strand.lenth=",
-            "there is no `strand.lenth` to remove",
-            "did you mean `length`?",
-            "strand.lenth",
-        ),
-        (
-            "output.frame_size=[640,",
-            "is not TOML",
-            "close every bracket",
-            "[640,",
-        ),
-        (
-            "grip.length=60 mm",
-            "leave nothing of a body of 120 mm",
-            "gauge length",
-            "60 mm",
-        ),
+        ("bond.law=rubber", "`rubber` is not a value of `bond.law`", "elasto-plastic", "rubber"),
+        ("strand.layer.3.pitch=44 mm", "`strand.layer` has 3 elements", "from 0 to 2", "strand.layer.3.pitch"),
+        ("strand.layer.outer.pitch=44 mm", "`outer` is none of them", "from 0 to 2", "strand.layer.outer.pitch"),
+        ("seed.x=1", "`seed` is of type integer", "set `seed` itself", "seed.x"),
+        ("strand.layer.0=", "cannot be removed one by one", "whole array", "strand.layer.0"),
+        ("strand.lenth=", "there is no `strand.lenth` to remove", "did you mean `length`?", "strand.lenth"),
+        ("output.frame_size=[640,", "is not TOML", "close every bracket", "[640,"),
+        ("grip.length=60 mm", "leave nothing of a body of 120 mm", "gauge length", "60 mm"),
         (
             "hold=[{ body = 34, fix = ['x'] }]",
             "there is no body 34",
             "strand wires come first",
             "[{ body = 34, fix = ['x'] }]",
         ),
-        (
-            "strand.layer.1=3",
-            "is a table, but the value is of type integer",
-            "{ key = value",
-            "3",
-        ),
+        ("strand.layer.1=3", "is a table, but the value is of type integer", "{ key = value", "3"),
     ];
     for (option, what, help, at) in cases {
         let error = scene_error(load("ka4", &[option]), option);
         assert!(error.what.contains(what), "{option}: {}", error.what);
-        assert!(
-            error.help.clone().unwrap_or_default().contains(help),
-            "{option}: {:?}",
-            error.help
-        );
+        assert!(error.help.clone().unwrap_or_default().contains(help), "{option}: {:?}", error.help);
         assert_at_option(&error, option, at);
     }
     for option in ["seed", "=3", "strand..pitch=3 mm"] {
@@ -436,15 +270,7 @@ fn unknown_keys_are_answered_with_the_nearest_one() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/unknown-key.toml");
     let error = scene_error(load(file.to_str().unwrap(), &[]), "unknown key");
     assert_eq!(pointed(&error).0, "pich");
-    assert!(
-        error
-            .help
-            .as_ref()
-            .unwrap()
-            .starts_with("did you mean `pitch`?"),
-        "{:?}",
-        error.help
-    );
+    assert!(error.help.as_ref().unwrap().starts_with("did you mean `pitch`?"), "{:?}", error.help);
 }
 
 #[test]
@@ -456,33 +282,22 @@ fn later_floors_can_point_at_a_key() {
     };
     assert_eq!(at("strand.layer.2.lay_radius").0, "\"1.165 mm\"");
     let (text, _, source) = at("strand.layer.1.lay_radius");
-    assert_eq!(
-        (text.as_str(), source.as_str()),
-        ("0.5 mm", "--set strand.layer.1.lay_radius=0.5 mm")
-    );
+    assert_eq!((text.as_str(), source.as_str()), ("0.5 mm", "--set strand.layer.1.lay_radius=0.5 mm"));
     // A key that is not there: its table.
     assert!(at("strand.layer.2.pitch").1.contains("[[strand.layer]]"));
-    let error = scene
-        .source
-        .error("strand.layer.2.lay_radius", "overlap", "");
+    let error = scene.source.error("strand.layer.2.lay_radius", "overlap", "");
     assert!(error.help().is_none());
 }
 
 #[test]
 fn unknown_scenes_are_answered_with_the_nearest() {
-    for (name, near) in [
-        ("ka5", "ka4"),
-        ("two-sphere", "two-spheres"),
-        ("cantilver", "cantilever"),
-        ("torsion.toml", "torsion"),
-    ] {
+    for (name, near) in
+        [("ka5", "ka4"), ("two-sphere", "two-spheres"), ("cantilver", "cantilever"), ("torsion.toml", "torsion")]
+    {
         let error = load(name, &[]).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         let help = error.help().unwrap().to_string();
-        assert!(
-            help.contains(&format!("did you mean `{near}`?")),
-            "{name}: {help}"
-        );
+        assert!(help.contains(&format!("did you mean `{near}`?")), "{name}: {help}");
     }
     let error = load("no/such/file", &[]).unwrap_err().to_string();
     assert!(error.contains("no scene file no/such/file"), "{error}");
@@ -492,14 +307,7 @@ fn unknown_scenes_are_answered_with_the_nearest() {
 fn the_main_scene_is_the_strand_of_the_paper() {
     let spec = load("ka4", &[]).unwrap().spec;
     let strand = spec.strand.unwrap();
-    assert_eq!(
-        strand
-            .layers
-            .iter()
-            .map(|layer| layer.wires)
-            .collect::<Vec<_>>(),
-        [5, 11, 18]
-    );
+    assert_eq!(strand.layers.iter().map(|layer| layer.wires).collect::<Vec<_>>(), [5, 11, 18]);
     for layer in &strand.layers {
         assert_close(layer.pitch, 39e-3);
         assert_close(layer.wire_diameter, 0.39e-3);
@@ -514,10 +322,7 @@ fn the_main_scene_is_the_strand_of_the_paper() {
 fn the_jaw_scene_differs_from_the_main_one_in_its_grip_alone() {
     let main = load("ka4", &[]).unwrap().spec;
     let mut jaw = load("jaw-grip", &[]).unwrap().spec;
-    assert_eq!(
-        jaw.grip.as_ref().unwrap().kind,
-        GripKind::Jaw { pressure: 100e6 }
-    );
+    assert_eq!(jaw.grip.as_ref().unwrap().kind, GripKind::Jaw { pressure: 100e6 });
     jaw.grip.as_mut().unwrap().kind = GripKind::All;
     (jaw.name, jaw.about) = (main.name.clone(), main.about.clone());
     assert_eq!(jaw, main);

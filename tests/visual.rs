@@ -4,10 +4,13 @@
 
 mod common;
 
-use common::{curve, ka4_like, snapped};
+use common::{bond_at, curve, ka4_like, snapped, stretched, two_spheres};
 use image::RgbImage;
-use strandsnap::engine::view::{RunInfo, Rupture, Snapshot};
-use strandsnap::render::{FrameOptions, Renderer, Theme, View};
+use std::sync::Arc;
+use strandsnap::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+use strandsnap::observe::Observer;
+use strandsnap::render::{CameraOptions, FrameOptions, FrameWriter, Renderer, Theme, View};
+use strandsnap::scene::spec::ColourBy;
 
 /// Whether `test` can run here; else says that it did not.
 fn adapter(test: &str) -> bool {
@@ -41,6 +44,42 @@ fn keep(name: &str, picture: &RgbImage) {
     }
 }
 
+fn panel(info: &RunInfo, options: &FrameOptions, view: View) -> [u32; 4] {
+    let renderer = Renderer::new(info, options).expect("the adapter opens");
+    let found = renderer.panels().into_iter().find(|(v, _)| *v == view);
+    found.expect("the view is in the frame").1
+}
+
+fn near(a: [u8; 3], b: [u8; 3], tolerance: i32) -> bool {
+    (0..3).all(|k| (i32::from(a[k]) - i32::from(b[k])).abs() <= tolerance)
+}
+
+/// Signal-coloured pixels in a rectangle: red far above green and blue, also when shaded.
+fn signal_pixels(picture: &RgbImage, [x, y, w, h]: [u32; 4]) -> usize {
+    let red = |p: &image::Rgb<u8>| p.0[0] > 110 && p.0[0] > 2 * p.0[1] && p.0[0] > 2 * p.0[2];
+    (y..y + h)
+        .flat_map(|y| (x..x + w).map(move |x| (x, y)))
+        .filter(|&(x, y)| red(picture.get_pixel(x, y)))
+        .count()
+}
+
+#[test]
+fn every_shader_is_valid() {
+    let module =
+        naga::front::wgsl::parse_str(strandsnap::render::solid::SHADER).expect("the shader parses");
+    let mut validator = naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    );
+    validator.validate(&module).expect("the shader is valid");
+    let names: Vec<_> = module
+        .entry_points
+        .iter()
+        .map(|e| e.name.as_str())
+        .collect();
+    assert_eq!(names, ["vs", "fs_masked", "fs_whole"]);
+}
+
 #[test]
 fn a_frame_has_the_size_asked_for() {
     if !adapter("a_frame_has_the_size_asked_for") {
@@ -48,13 +87,7 @@ fn a_frame_has_the_size_asked_for() {
     }
     let info = ka4_like();
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
-    let all = FrameOptions {
-        views: View::ALL[..6].to_vec(),
-        theme: Theme::Light,
-        ..Default::default()
-    };
-    keep("all", &draw(&info, &all, &snapshot, &ruptures));
-    for size in [[1280, 720], [641, 363]] {
+    for size in [[1280, 720], [641, 363], [400, 900]] {
         let options = FrameOptions {
             size,
             ..Default::default()
@@ -63,4 +96,307 @@ fn a_frame_has_the_size_asked_for() {
         keep(&format!("size-{}", size[0]), &picture);
         assert_eq!(picture.dimensions(), (size[0], size[1]));
     }
+}
+
+#[test]
+fn a_size_that_cannot_be_drawn_is_refused() {
+    let options = FrameOptions {
+        size: [40, 20],
+        ..Default::default()
+    };
+    let message = Renderer::new(&ka4_like(), &options)
+        .err()
+        .expect("40 × 20 is too small")
+        .to_string();
+    assert!(message.contains("40 × 20"), "{message}");
+}
+
+#[test]
+fn two_draws_of_one_snapshot_are_identical() {
+    if !adapter("two_draws_of_one_snapshot_are_identical") {
+        return;
+    }
+    let info = ka4_like();
+    let options = FrameOptions {
+        views: View::ALL[..6].to_vec(),
+        theme: Theme::Light,
+        ..Default::default()
+    };
+    let (snapshot, ruptures) = snapped(&info, 0.27, 7);
+    let mut renderer = Renderer::new(&info, &options).expect("the adapter opens");
+    let points = curve(0.27);
+    let first = renderer.draw(&snapshot, &points, &ruptures).expect("drawn");
+    // Another snapshot in between must leave no trace.
+    renderer
+        .draw(&stretched(&info, 0.1), &points[..100], &[])
+        .expect("drawn");
+    let again = renderer.draw(&snapshot, &points, &ruptures).expect("drawn");
+    keep("all-light", &first);
+    assert!(first == again, "the same data gave different pictures");
+    println!(
+        "{} on {}",
+        renderer.timings(),
+        renderer.adapter().unwrap_or("no adapter")
+    );
+}
+
+/// A view of the break of outer wire 25 (number 24 from 0) from the side where it broke.
+fn facing_the_break(info: &RunInfo) -> (FrameOptions, usize) {
+    let bond = bond_at(info, 24, 64.0);
+    let [x, y, z] = info.rest_position[bond];
+    // The eye at elevation 0 looks along +x from −x; at elevation e it sits at angle 180° − e.
+    let elevation_deg = 180.0 - y.atan2(x).to_degrees();
+    let camera = CameraOptions {
+        elevation_deg,
+        focus_z_mm: Some(z),
+        zoom: 2.0,
+        azimuth_deg: 0.0,
+    };
+    (
+        FrameOptions {
+            views: vec![View::Midsection],
+            camera,
+            ..Default::default()
+        },
+        bond,
+    )
+}
+
+#[test]
+fn a_broken_wire_shows_a_gap_between_two_marked_ends() {
+    if !adapter("a_broken_wire_shows_a_gap_between_two_marked_ends") {
+        return;
+    }
+    let info = ka4_like();
+    let (options, bond) = facing_the_break(&info);
+    let (whole, (broken, ruptures)) = (stretched(&info, 0.27), snapped(&info, 0.27, 1));
+    let before = draw(&info, &options, &whole, &[]);
+    // Without the list of ruptures, so that no number is written over the place.
+    let after = draw(&info, &options, &broken, &[]);
+    keep("gap-before", &before);
+    keep("gap-after", &after);
+    let [x, y, w, h] = panel(&info, &options, View::Midsection);
+    let front = [x, y, w / 2, h];
+    let (cx, cy) = (x + w / 4, y + h / 2);
+    let middle = |p: &RgbImage| p.get_pixel(cx, cy).0;
+    // Before: the wire, lit from the front, in a bright green of the map. After: what lies below, in its shade.
+    let brightness = |c: [u8; 3]| c.iter().map(|v| u32::from(*v)).sum::<u32>();
+    assert!(
+        !near(middle(&before), middle(&after), 40),
+        "{:?} {:?}",
+        middle(&before),
+        middle(&after)
+    );
+    assert!(brightness(middle(&after)) * 10 < brightness(middle(&before)) * 8);
+    assert_eq!(
+        signal_pixels(&before, front),
+        0,
+        "no break, no signal colour"
+    );
+    let (left, right) = ([x, y, w / 4, h], [cx, y, w / 4, h]);
+    assert!(signal_pixels(&after, left) > 200, "left end marked");
+    assert!(signal_pixels(&after, right) > 200, "right end marked");
+    assert_eq!(
+        signal_pixels(&after, [cx - 3, cy - 3, 7, 7]),
+        0,
+        "nothing of the wire in the gap"
+    );
+    assert_eq!(ruptures[0].bond, bond);
+}
+
+#[test]
+fn the_colour_bar_ends_in_the_colours_of_the_range() {
+    if !adapter("the_colour_bar_ends_in_the_colours_of_the_range") {
+        return;
+    }
+    let info = ka4_like();
+    for (by, map) in [
+        (ColourBy::Stress, colorous::VIRIDIS),
+        (ColourBy::Velocity, colorous::CIVIDIS),
+    ] {
+        let options = FrameOptions {
+            colour: by,
+            views: vec![View::Unrolled],
+            ..Default::default()
+        };
+        let picture = draw(&info, &options, &stretched(&info, 0.1), &[]);
+        for (x, fraction) in [(989, 0.0), (1258, 1.0)] {
+            let c = map.eval_continuous(fraction);
+            let seen = picture.get_pixel(x, 29).0;
+            assert!(
+                near(seen, [c.r, c.g, c.b], 4),
+                "{by:?} {fraction}: {seen:?} {c:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_unrolled_map_marks_every_broken_bond_in_its_row() {
+    let info = ka4_like();
+    let options = FrameOptions {
+        views: vec![View::Unrolled],
+        ..Default::default()
+    };
+    let (snapshot, ruptures) = snapped(&info, 0.27, 7);
+    let whole = draw(&info, &options, &stretched(&info, 0.27), &[]);
+    let broken = draw(&info, &options, &snapshot, &ruptures);
+    keep("unrolled", &broken);
+    let area = panel(&info, &options, View::Unrolled);
+    assert_eq!(signal_pixels(&whole, area), 0);
+    // Seven marks of 5 × 15 or more pixels each, none hidden by a number.
+    let marked = signal_pixels(&broken, area);
+    assert!((7 * 60..7 * 140).contains(&marked), "{marked}");
+}
+
+#[test]
+fn the_part_in_a_grip_is_grey() {
+    let info = ka4_like();
+    let options = FrameOptions {
+        views: vec![View::Unrolled],
+        ..Default::default()
+    };
+    let picture = draw(&info, &options, &stretched(&info, 0.2), &[]);
+    let [x, y, w, h] = panel(&info, &options, View::Unrolled);
+    let colourful = |px: u32| {
+        let [low, high] = (y + h / 4..y + h / 2).fold([0, 0], |[a, b], py| {
+            let c = picture.get_pixel(px, py).0;
+            let spread = c.iter().max().unwrap() - c.iter().min().unwrap();
+            if spread > 40 { [a, b + 1] } else { [a + 1, b] }
+        });
+        high > low
+    };
+    assert!(!colourful(x + 90), "in the lower grip");
+    assert!(colourful(x + w / 2), "in the gauge");
+}
+
+#[test]
+fn layers_apart_show_all_three_layers() {
+    if !adapter("layers_apart_show_all_three_layers") {
+        return;
+    }
+    let info = ka4_like();
+    let options = FrameOptions {
+        views: vec![View::Exploded],
+        colour: ColourBy::Layer,
+        ..Default::default()
+    };
+    let picture = draw(&info, &options, &stretched(&info, 0.1), &[]);
+    keep("exploded-layer", &picture);
+    let [x, y, w, h] = panel(&info, &options, View::Exploded);
+    let column: Vec<[u8; 3]> = (y..y + h)
+        .map(|py| picture.get_pixel(x + w / 2, py).0)
+        .collect();
+    let blue = |c: &&[u8; 3]| c[2] > 110 && c[2] > c[0] + 40;
+    let green = |c: &&[u8; 3]| c[1] > 70 && c[1] > c[0] + 40 && c[1] > c[2] + 15;
+    let orange = |c: &&[u8; 3]| c[0] > 110 && c[0] > c[2] + 60;
+    for (name, count) in [
+        ("inner", column.iter().filter(orange).count()),
+        ("middle", column.iter().filter(blue).count()),
+        ("outer", column.iter().filter(green).count()),
+    ] {
+        assert!(count > 40, "{name}: {count} pixels");
+    }
+}
+
+#[test]
+fn free_bodies_get_one_view_that_frames_everything() {
+    if !adapter("free_bodies_get_one_view_that_frames_everything") {
+        return;
+    }
+    let (info, mut snapshot) = two_spheres();
+    let options = FrameOptions::default();
+    let picture = draw(&info, &options, &snapshot, &[]);
+    keep("spheres", &picture);
+    // One of them far away: the view widens, so that its border still shows ground.
+    snapshot.position[1] = [0.1, 0.2, 40.0];
+    let wide = draw(&info, &options, &snapshot, &[]);
+    keep("spheres-far", &wide);
+    let [x, y, w, h] = panel(&info, &options, View::Scene);
+    let ground = picture.get_pixel(x + 2, y + h / 2).0;
+    for p in [&picture, &wide] {
+        for py in y + 30..y + h - 30 {
+            assert_eq!(p.get_pixel(x + 1, py).0, ground);
+            assert_eq!(p.get_pixel(x + w - 2, py).0, ground);
+        }
+        let body = (y..y + h).flat_map(|py| (x..x + w).map(move |px| (px, py)));
+        assert!(
+            body.filter(|&(px, py)| p.get_pixel(px, py).0 != ground)
+                .count()
+                > 500
+        );
+    }
+}
+
+#[test]
+fn the_writer_leaves_a_numbered_sequence_of_whole_files() {
+    if !adapter("the_writer_leaves_a_numbered_sequence_of_whole_files") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let frames = folder.path().join("frames");
+    let info = Arc::new(ka4_like());
+    let mut writer = FrameWriter::new(&frames, FrameOptions::default()).expect("the adapter opens");
+    writer.start(&info).expect("started");
+    for k in 0..6 {
+        let strain = 0.045 * k as f32;
+        let (snapshot, ruptures) = snapped(&info, strain, if k < 4 { 0 } else { 2 });
+        let sample = Sample {
+            strain: f64::from(strain),
+            ..Default::default()
+        };
+        writer.sample(&sample).expect("sampled");
+        if k == 4 {
+            ruptures
+                .iter()
+                .for_each(|r| writer.rupture(r).expect("ruptured"));
+        }
+        writer.snapshot(&Arc::new(snapshot)).expect("handed over");
+    }
+    writer.finish().expect("finished");
+    let mut names: Vec<_> = std::fs::read_dir(&frames)
+        .expect("the folder is there")
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        (0..6)
+            .map(|k| format!("frame_{k:04}.png"))
+            .collect::<Vec<_>>()
+    );
+    for name in names {
+        assert_eq!(
+            image::open(frames.join(name))
+                .expect("a whole PNG")
+                .to_rgb8()
+                .dimensions(),
+            (1280, 720)
+        );
+    }
+    assert_eq!(writer.timings().frames, 6);
+    println!("{}", writer.timings());
+}
+
+#[test]
+fn a_folder_that_vanishes_is_reported_with_its_path() {
+    if !adapter("a_folder_that_vanishes_is_reported_with_its_path") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let frames = folder.path().join("frames");
+    let info = Arc::new(ka4_like());
+    let options = FrameOptions {
+        size: [320, 180],
+        ..Default::default()
+    };
+    let mut writer = FrameWriter::new(&frames, options).expect("the adapter opens");
+    writer.start(&info).expect("started");
+    std::fs::remove_dir(&frames).expect("removed");
+    let snapshot = Arc::new(stretched(&info, 0.1));
+    let error = (0..20)
+        .find_map(|_| writer.snapshot(&snapshot).err())
+        .or_else(|| writer.finish().err())
+        .expect("the lost folder must be noticed");
+    assert!(error.to_string().contains("frame_0000.png"), "{error}");
 }

@@ -120,11 +120,7 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     let Ok(value) = number.parse::<f64>() else {
         return Err(UnitError {
             what: format!("`{text}` does not begin with a number"),
-            help: format!(
-                "give a {}, for example {}",
-                dimension.name(),
-                dimension.example()
-            ),
+            help: format!("give a {}, for example {}", dimension.name(), dimension.example()),
         });
     };
     if unit.is_empty() {
@@ -160,18 +156,13 @@ fn shortest(value: f64) -> String {
 
 /// Splits `39 mm` or `39mm` into number and unit.
 fn split(text: &str) -> (&str, &str) {
-    let end = text
-        .find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))
-        .unwrap_or(text.len());
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(text.len());
     (&text[..end], text[end..].trim())
 }
 
 /// Common spellings → the abbreviations of `uom`.
 fn normalise(unit: &str) -> String {
-    let unit = unit
-        .replace("^3", "³")
-        .replace("^2", "²")
-        .replace('\u{3bc}', "µ");
+    let unit = unit.replace("^3", "³").replace("^2", "²").replace('\u{3bc}', "µ");
     match unit.as_str() {
         "deg" | "degree" | "degrees" => return "°".into(),
         "deg/s" => return "°/s".into(),
@@ -189,17 +180,12 @@ fn normalise(unit: &str) -> String {
 
 /// `N m`, `N*m`, `N·m` and `Nm`, with prefixes on either unit → `N · m`.
 fn moment_spelling(unit: &str) -> Option<String> {
-    let separated: Vec<&str> = unit
-        .split([' ', '*', '·', '⋅'])
-        .filter(|part| !part.is_empty())
-        .collect();
+    let separated: Vec<&str> = unit.split([' ', '*', '·', '⋅']).filter(|part| !part.is_empty()).collect();
     if let [force, arm] = separated[..] {
         return Some(format!("{force} · {arm}"));
     }
     let (force, arm) = unit.split_at(unit.find('N')? + 1);
-    ["m", "mm", "cm"]
-        .contains(&arm)
-        .then(|| format!("{force} · {arm}"))
+    ["m", "mm", "cm"].contains(&arm).then(|| format!("{force} · {arm}"))
 }
 
 /// The conversion by `uom`; `None` when the unit is not one of this dimension.
@@ -226,15 +212,9 @@ fn convert(text: &str, dimension: Dimension) -> Option<f64> {
 
 fn wrong_unit(text: &str, unit: &str, canonical: &str, expected: Dimension) -> UnitError {
     let help = format!("for example {}", expected.example());
-    let other = Dimension::ALL
-        .into_iter()
-        .find(|other| convert(canonical, *other).is_some());
+    let other = Dimension::ALL.into_iter().find(|other| convert(canonical, *other).is_some());
     let what = match other {
-        Some(other) => format!(
-            "`{text}` is a {}, but a {} is expected",
-            other.name(),
-            expected.name()
-        ),
+        Some(other) => format!("`{text}` is a {}, but a {} is expected", other.name(), expected.name()),
         None => format!("`{unit}` is not a known unit of {}", expected.name()),
     };
     UnitError { what, help }
@@ -286,18 +266,12 @@ mod tests {
     #[test]
     fn errors_name_the_dimension_and_an_example() {
         let wrong = parse("110 GPa", Dimension::Length).unwrap_err();
-        assert!(
-            wrong.what.contains("is a pressure, but a length"),
-            "{wrong}"
-        );
+        assert!(wrong.what.contains("is a pressure, but a length"), "{wrong}");
         assert!(wrong.help.contains("39 mm"), "{}", wrong.help);
         let bare = parse("39", Dimension::Length).unwrap_err();
         assert!(bare.what.contains("has no unit"), "{bare}");
         let unknown = parse("3 parsnips", Dimension::Force).unwrap_err();
-        assert!(
-            unknown.what.contains("not a known unit of force"),
-            "{unknown}"
-        );
+        assert!(unknown.what.contains("not a known unit of force"), "{unknown}");
         assert!(parse("mm", Dimension::Length).is_err());
         assert!(parse("", Dimension::Ratio).is_err());
     }

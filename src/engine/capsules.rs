@@ -13,6 +13,7 @@ use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::reduced_radius;
 use crate::law::contact::geometry::closest_on_segment;
+use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
@@ -237,7 +238,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
         for c in self.contacts.iter().filter(|c| c.history.touching) {
             let mass = reduced_mass(state, c);
             let k = c.history.stiffness.map(|k| k * c.share);
-            let damping = 2.0 * self.laws.damping * (mass / c.history.stiffness[0].max(f64::MIN_POSITIVE)).sqrt();
+            let damping = viscous_coefficient(self.laws.damping, mass, c.history.stiffness[0]) * c.share;
             let next = if c.segment { c.j + 1 } else { c.j };
             let t = if c.segment { c.t } else { 0.0 };
             out.contact([c.i, c.j, next], [1.0, 1.0 - t, t], k, [c.arm[0], c.arm[1], c.arm[1]], damping);

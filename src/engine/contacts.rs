@@ -13,7 +13,7 @@ use crate::law::contact::thornton::Thornton;
 use crate::law::tangential::TangentialLaw;
 use crate::law::tangential::mindlin::Mindlin;
 use crate::law::tangential::mindlin_deresiewicz::MindlinDeresiewicz;
-use crate::law::tangential::none::None as Frictionless;
+use crate::law::tangential::none::Frictionless;
 use crate::scene::spec::{ContactSpec, Material, NormalSpec, Shape, TangentialSpec};
 use crate::strand::assembly::Assembly;
 

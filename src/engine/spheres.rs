@@ -7,6 +7,7 @@ use super::state::{CHUNK, Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::reduced_radius;
+use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -177,7 +178,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             let (i, j) = (c.i as usize, c.j as usize);
             let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);
             let k = c.history.stiffness;
-            let damping = 2.0 * self.laws.damping * (mass / k[0].max(f64::MIN_POSITIVE)).sqrt();
+            let damping = viscous_coefficient(self.laws.damping, mass, k[0]);
             out.contact([c.i, c.j, 0], [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], damping);
         }
     }

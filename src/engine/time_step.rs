@@ -23,8 +23,8 @@ struct Element {
     /// Bending and torsional stiffness [N m/rad].
     bend: f64,
     twist: f64,
-    /// Largest damping over stiffness of its modes [s].
-    damping: f64,
+    /// Largest viscous coefficient of its translation [N s/m] and rotation [N m s].
+    viscous: [f64; 2],
     bond: bool,
 }
 
@@ -60,6 +60,8 @@ pub struct Stiffness {
     translation: Vec<f64>,
     /// The same for rotation [N m/rad].
     rotation: Vec<f64>,
+    /// Σ viscous coefficient × weight per particle, translation [N s/m] and rotation [N m s].
+    viscous: Vec<[f64; 2]>,
 }
 
 impl Stiffness {
@@ -72,10 +74,9 @@ impl Stiffness {
     pub fn bond(&mut self, slot: usize, k: &BondStiffness, length: f64, viscosity: [f64; 4], turn: bool) {
         let arm = if turn { 0.5 * length } else { 0.0 };
         let (shear, bend, twist) = if turn { (k.shear, k.bend, k.twist) } else { (0.0, 0.0, 0.0) };
-        let mut damping = viscosity[0] / k.axial;
-        if turn {
-            damping = damping.max(viscosity[1] / k.shear).max(viscosity[2] / k.bend).max(viscosity[3] / k.twist);
-        }
+        let [axial, across, bending, torsion] = viscosity;
+        let turning = (across * arm * arm).max(bending).max(torsion);
+        let viscous = if turn { [axial.max(across), turning] } else { [axial, 0.0] };
         self.elements.push(Element {
             nodes: [slot as u32, slot as u32 + 1, 0],
             weight: [1.0, 1.0, 0.0],
@@ -84,15 +85,26 @@ impl Stiffness {
             arm: [arm, arm, 0.0],
             bend,
             twist,
-            damping,
+            viscous,
             bond: true,
         });
     }
 
-    /// Adds a contact between nodes with weights; `arm` are the lever arms of friction [m] (0 when nothing turns).
-    pub fn contact(&mut self, nodes: [u32; 3], weight: [f64; 3], stiffness: [f64; 2], arm: [f64; 3], damping: f64) {
+    /// Adds a contact between nodes with weights; `arm` are the lever arms of friction [m]
+    /// (0 when nothing turns), `viscosity` the viscous coefficient along the normal [N s/m].
+    pub fn contact(&mut self, nodes: [u32; 3], weight: [f64; 3], stiffness: [f64; 2], arm: [f64; 3], viscosity: f64) {
         let [normal, across] = stiffness;
-        self.elements.push(Element { nodes, weight, normal, across, arm, bend: 0.0, twist: 0.0, damping, bond: false });
+        self.elements.push(Element {
+            nodes,
+            weight,
+            normal,
+            across,
+            arm,
+            bend: 0.0,
+            twist: 0.0,
+            viscous: [viscosity, 0.0],
+            bond: false,
+        });
     }
 
     /// The bound for what was added. Particles that are wholly held do not move and do not count.
@@ -102,19 +114,24 @@ impl Stiffness {
         self.translation.resize(n, 0.0);
         self.rotation.clear();
         self.rotation.resize(n, 0.0);
+        self.viscous.clear();
+        self.viscous.resize(n, [0.0; 2]);
         for e in &self.elements {
             for k in 0..3 {
                 let node = e.nodes[k] as usize;
                 self.translation[node] += e.translation() * e.weight[k];
                 self.rotation[node] += e.rotation() * e.weight[k];
+                self.viscous[node][0] += e.viscous[0] * e.weight[k];
+                self.viscous[node][1] += e.viscous[1] * e.weight[k];
             }
         }
         let mut worst = 0.0;
+        // Greatest eigenvalue of damping over mass [1/s], bounded element by element like the stiffness.
         let mut damping = 0.0f64;
         let mut bound = Bound { step: f64::INFINITY, mode: "nothing", ..Default::default() };
         for e in &self.elements {
             let (value, mode) = self.element(e, state, &held);
-            damping = damping.max(e.damping);
+            damping = damping.max(self.damping(e, state, &held));
             if value > worst {
                 worst = value;
                 bound = Bound { particle: e.nodes[0] as usize, bond: e.bond, mode, ..bound };
@@ -122,10 +139,25 @@ impl Stiffness {
         }
         if worst > 0.0 {
             let omega = worst.sqrt();
-            let xi = 0.5 * damping * omega;
+            let xi = 0.5 * damping / omega;
             bound.step = 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi);
         }
         bound
+    }
+
+    /// Largest eigenvalue of damping over mass that one element can have [1/s], with shares as for stiffness.
+    fn damping(&self, e: &Element, state: &State, held: &impl Fn(usize) -> bool) -> f64 {
+        if e.viscous == [0.0; 2] {
+            return 0.0;
+        }
+        (0..3)
+            .filter(|k| e.weight[*k] > 0.0 && !held(e.nodes[*k] as usize))
+            .map(|k| {
+                let node = e.nodes[k] as usize;
+                let [translation, rotation] = self.viscous[node];
+                e.weight[k] * (translation / state.mass[node] + rotation / state.inertia[node])
+            })
+            .sum()
     }
 
     /// Largest eigenvalue of one element with its shares [1/s²], and its mode.

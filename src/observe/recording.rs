@@ -5,7 +5,8 @@
 //! | entity | contents |
 //! | --- | --- |
 //! | `/strand/<layer>/wire_<NN>` | particles: positions [mm], mean radius [mm], colours; fields `Bond`: true axial stress [MPa], equivalent plastic strain [-], state |
-//! | `/strand/<layer>/wire_<NN>/ruptures` | marked, labelled points at the places of rupture [mm], from their time on |
+//! | `/strand/<layer>/wire_<NN>/tube` | the same wire as straight pieces of tube, apart where it broke |
+//! | `/strand/<layer>/wire_<NN>/ruptures`, `…/ruptures/label` | marked, labelled points at the places of rupture [mm], from their time on |
 //! | `/spheres`, `/grips` | free spheres; boxes around what the grips hold [mm] |
 //! | `/map/<layer>`, `/map/<layer>/wire_<NN>/ruptures` | unrolled map: a row per wire, coloured like the particles |
 //! | `/states/<layer>/wire_<NN>` | lane of the wire's state: whole, yielding, broken |
@@ -30,6 +31,7 @@ pub mod read;
 mod sink;
 mod states;
 mod stream;
+mod tubes;
 
 pub use particles::{PLASTIC_STRAIN, SPEED, STATE, STRESS};
 pub use sink::{DEFAULT_VIEWER, RERUN_VERSION};
@@ -222,10 +224,16 @@ impl Observer for Recording {
 impl Run {
     fn send_fixed(&self, id: &str) -> Result<()> {
         layout::send(&self.stream, APPLICATION, id, &self.info, &self.map)?;
+        // Rerun hands on data before messages; without this the layout would come last, and a viewer that is still
+        // loading would invent one.
+        self.stream.checked(self.stream.rerun.flush_blocking())?;
         self.send_properties()?;
         self.stream.fixed("/", &ViewCoordinates::RIGHT_HAND_Z_UP())?;
         self.stream.fixed("/", &annotation())?;
         self.map.send(&self.stream, &self.info)?;
+        if let Some(scale) = self.palette.scale() {
+            self.map.send_colour_bar(&self.stream, &scale)?;
+        }
         curve::send_names(&self.stream, &self.info)?;
         States::send_style(&self.stream, &self.info)?;
         self.send_sphere_radii()
@@ -306,6 +314,8 @@ fn about(info: &RunInfo) -> String {
 fn recording_id(info: &RunInfo, identity: &str) -> Result<String, postcard::Error> {
     let mut hasher = DefaultHasher::new();
     postcard::to_stdvec(info)?.hash(&mut hasher);
+    // The viewer remembers layouts by id, so a program with another layout needs other ids.
+    env!("CARGO_PKG_VERSION").hash(&mut hasher);
     identity.hash(&mut hasher);
     Ok(format!("{}-{:016x}", info.name, hasher.finish()))
 }

@@ -114,13 +114,7 @@ mod tests {
     use super::*;
 
     fn steel_rod() -> RoundBar {
-        RoundBar {
-            length: 1.0,
-            diameter: 0.02,
-            young: 200e9,
-            poisson: 0.3,
-            density: 7800.0,
-        }
+        RoundBar { length: 1.0, diameter: 0.02, young: 200e9, poisson: 0.3, density: 7800.0 }
     }
 
     /// A tall order for typing errors: each value worked by hand from I = 7.853982e-9 m⁴, A = 3.141593e-4 m².
@@ -128,10 +122,7 @@ mod tests {
     fn values_worked_by_hand() {
         let rod = steel_rod();
         let near = |value: f64, expected: f64| {
-            assert!(
-                (value / expected - 1.0).abs() < 1e-5,
-                "{value} against {expected}"
-            );
+            assert!((value / expected - 1.0).abs() < 1e-5, "{value} against {expected}");
         };
         near(rod.cantilever_tip(10.0), 2.122066e-3 + 4.670087e-7);
         near(rod.twist(5.0), 4.138029e-3);
@@ -154,12 +145,8 @@ mod tests {
     fn shear_parameter_agrees_with_the_cantilever() {
         let rod = steel_rod();
         let piece = 0.1_f64;
-        let guided = 12.0 * rod.young * rod.second_moment()
-            / (piece.powi(3) * (1.0 + rod.shear_parameter(piece)));
-        let half = RoundBar {
-            length: piece / 2.0,
-            ..rod
-        };
+        let guided = 12.0 * rod.young * rod.second_moment() / (piece.powi(3) * (1.0 + rod.shear_parameter(piece)));
+        let half = RoundBar { length: piece / 2.0, ..rod };
         let from_cantilevers = 1.0 / (2.0 * half.cantilever_tip(1.0));
         assert!((guided / from_cantilevers - 1.0).abs() < 1e-12);
     }

@@ -38,8 +38,7 @@ impl Pair {
 
     /// Duration of the contact at relative speed `speed` v [m/s], 2.868 (m*²/(R* E*² v))^(1/5) [s].
     pub fn contact_time(&self, speed: f64) -> f64 {
-        contact_time_factor()
-            * (self.mass.powi(2) / (self.radius * self.modulus.powi(2) * speed)).powf(0.2)
+        contact_time_factor() * (self.mass.powi(2) / (self.radius * self.modulus.powi(2) * speed)).powf(0.2)
     }
 }
 

@@ -50,12 +50,7 @@ mod tests {
     use super::*;
 
     fn contact() -> Held {
-        Held {
-            shear_modulus: effective_shear_modulus(43e9, 0.34),
-            radius: 4e-6,
-            normal_force: 0.1,
-            friction: 0.2,
-        }
+        Held { shear_modulus: effective_shear_modulus(43e9, 0.34), radius: 4e-6, normal_force: 0.1, friction: 0.2 }
     }
 
     #[test]

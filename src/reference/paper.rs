@@ -132,10 +132,9 @@ pub struct Fracture {
 impl Paper {
     /// The simulation at `pitch_mm` [mm] and `wire_diameter_mm` [mm], if the paper has it.
     pub fn simulation_at(&self, pitch_mm: f64, wire_diameter_mm: f64) -> Option<&Simulation> {
-        self.simulation.iter().find(|s| {
-            (s.pitch_mm - pitch_mm).abs() < 1e-6
-                && (s.wire_diameter_mm - wire_diameter_mm).abs() < 1e-6
-        })
+        self.simulation
+            .iter()
+            .find(|s| (s.pitch_mm - pitch_mm).abs() < 1e-6 && (s.wire_diameter_mm - wire_diameter_mm).abs() < 1e-6)
     }
 }
 
@@ -169,19 +168,10 @@ mod tests {
         let simulation = paper.simulation_at(39.0, 0.39).unwrap();
         let stated = simulation.error_against_experiment_percent.unwrap();
         let error = |a: f64, b: f64| 100.0 * (b - a) / b;
-        let strength = error(
-            simulation.tensile_strength_mpa,
-            paper.experiment.tensile_strength_mpa,
-        );
-        let elongation = error(
-            simulation.fracture_elongation_percent,
-            paper.experiment.fracture_elongation_percent,
-        );
+        let strength = error(simulation.tensile_strength_mpa, paper.experiment.tensile_strength_mpa);
+        let elongation = error(simulation.fracture_elongation_percent, paper.experiment.fracture_elongation_percent);
         assert!((strength - stated.strength).abs() < 0.01, "{strength}");
-        assert!(
-            (elongation - stated.elongation).abs() < 0.01,
-            "{elongation}"
-        );
+        assert!((elongation - stated.elongation).abs() < 0.01, "{elongation}");
     }
 
     /// The fitted curves pass near the simulations that they were fitted to.
@@ -192,10 +182,7 @@ mod tests {
             let fit = if simulation.wire_diameter_mm == 0.39 {
                 paper.fit.elongation_over_pitch.value(simulation.pitch_mm)
             } else {
-                paper
-                    .fit
-                    .elongation_over_diameter
-                    .value(simulation.wire_diameter_mm)
+                paper.fit.elongation_over_diameter.value(simulation.wire_diameter_mm)
             };
             let difference = fit - simulation.fracture_elongation_percent;
             assert!(difference.abs() < 0.2, "{simulation:?}: {fit}");

@@ -88,11 +88,7 @@ pub fn tension_at(strain: f64, stress: impl Fn(f64) -> f64, young: f64) -> Tensi
 ///
 /// `stress` is σ_y(p) [Pa], `slope` its derivative [Pa]. With the area A₀ e^(−p) the force σ A₀ e^(−p) peaks where
 /// dσ/dp = σ (Considère 1885).
-pub fn considere_strain(
-    stress: impl Fn(f64) -> f64,
-    slope: impl Fn(f64) -> f64,
-    limit: f64,
-) -> Option<f64> {
+pub fn considere_strain(stress: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64, limit: f64) -> Option<f64> {
     // A law may harden anew, so the first crossing is looked for in pieces before it is refined.
     const PIECES: usize = 4000;
     let excess = |p: f64| slope(p) - stress(p);
@@ -100,9 +96,7 @@ pub fn considere_strain(
         return Some(0.0);
     }
     let at = |i: usize| limit * i as f64 / PIECES as f64;
-    (0..PIECES)
-        .find(|&i| excess(at(i + 1)) <= 0.0)
-        .map(|i| bisect(at(i), at(i + 1), excess))
+    (0..PIECES).find(|&i| excess(at(i + 1)) <= 0.0).map(|i| bisect(at(i), at(i + 1), excess))
 }
 
 /// Root of `f` between `a` and `b`, where it changes sign, to the last bits.
@@ -129,16 +123,11 @@ mod tests {
     /// The section's limits are integrals of the stress over it; a fine sum over its points must agree.
     #[test]
     fn limits_are_integrals_over_the_section() {
-        let section = Section {
-            radius: 0.195e-3,
-            yield_stress: 90e6,
-        };
+        let section = Section { radius: 0.195e-3, yield_stress: 90e6 };
         let n = 2000;
         let dr = section.radius / n as f64;
         let sum = |weight: fn(f64) -> f64| -> f64 {
-            (0..n)
-                .map(|i| weight((i as f64 + 0.5) * dr) * dr * section.yield_stress)
-                .sum()
+            (0..n).map(|i| weight((i as f64 + 0.5) * dr) * dr * section.yield_stress).sum()
         };
         let near = |value: f64, expected: f64| assert!((value / expected - 1.0).abs() < 1e-6);
         near(section.plastic_force(), sum(|r| 2.0 * PI * r));
@@ -147,21 +136,14 @@ mod tests {
         let root3 = 3.0_f64.sqrt();
         near(section.plastic_torque() * root3, sum(|r| 2.0 * PI * r * r));
         near(section.plastic_shear() * root3, sum(|r| 2.0 * PI * r));
-        near(
-            section.plastic_moment() / section.first_yield_moment(),
-            16.0 / (3.0 * PI),
-        );
+        near(section.plastic_moment() / section.first_yield_moment(), 16.0 / (3.0 * PI));
     }
 
     /// For σ = K p^n the neck starts at p = n.
     #[test]
     fn considere_of_a_power_law_is_its_exponent() {
         let (k, n) = (450e6, 0.31);
-        let strain = considere_strain(
-            |p: f64| k * p.powf(n),
-            |p: f64| n * k * p.powf(n - 1.0),
-            1.0,
-        );
+        let strain = considere_strain(|p: f64| k * p.powf(n), |p: f64| n * k * p.powf(n - 1.0), 1.0);
         assert!((strain.unwrap() - n).abs() < 1e-12);
         let early = considere_strain(|p: f64| k * p.powf(n), |p| n * k * p.powf(n - 1.0), 0.2);
         assert_eq!(early, None);

@@ -50,13 +50,7 @@ pub fn critical_step_of_long_chain(stiffness: f64, mass: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Ends; 5] = [
-        Ends::FixedFixed,
-        Ends::FixedFree,
-        Ends::FreeFree,
-        Ends::FreeFreeHalf,
-        Ends::FixedFreeHalf,
-    ];
+    const ALL: [Ends; 5] = [Ends::FixedFixed, Ends::FixedFree, Ends::FreeFree, Ends::FreeFreeHalf, Ends::FixedFreeHalf];
 
     /// Accelerations of a chain of unit springs and masses at displacements `u`.
     fn accelerations(ends: Ends, u: &[f64]) -> Vec<f64> {
@@ -91,9 +85,7 @@ mod tests {
     fn closed_forms_are_the_greatest_eigenvalues() {
         for ends in ALL {
             for n in [2, 3, 7, 12] {
-                let mut u: Vec<f64> = (0..n)
-                    .map(|i| (1.0 + 0.1 * i as f64) * [1.0, -1.0][i % 2])
-                    .collect();
+                let mut u: Vec<f64> = (0..n).map(|i| (1.0 + 0.1 * i as f64) * [1.0, -1.0][i % 2]).collect();
                 let mut eigenvalue = 0.0;
                 for _ in 0..20_000 {
                     let a = accelerations(ends, &u);

@@ -97,10 +97,7 @@ pub fn contracting_responses(layers: &[Layer], poisson: f64) -> Vec<Response> {
             if layer.radius == 0.0 {
                 // A core wire's centre does not move; its surface does by half its thinning.
                 inward = thinning;
-                return Response {
-                    strain: 1.0,
-                    radius: 0.0,
-                };
+                return Response { strain: 1.0, radius: 0.0 };
             }
             let (sin, cos) = layer.lay_angle().sin_cos();
             // x = cos²β − (inward + thinning x)/R sin²β, solved for x.
@@ -120,11 +117,7 @@ pub fn strength_factor(layers: &[Layer]) -> f64 {
 
 fn mean_over_section(layers: &[Layer], value: impl Fn(usize, &Layer) -> f64) -> f64 {
     let total: f64 = layers.iter().map(Layer::weight).sum();
-    let sum: f64 = layers
-        .iter()
-        .enumerate()
-        .map(|(i, layer)| layer.weight() * value(i, layer))
-        .sum();
+    let sum: f64 = layers.iter().enumerate().map(|(i, layer)| layer.weight() * value(i, layer)).sum();
     sum / total
 }
 
@@ -135,24 +128,16 @@ mod tests {
     fn ka4(pitch: f64) -> Vec<Layer> {
         [(5, 0.385e-3), (11, 0.775e-3), (18, 1.165e-3)]
             .into_iter()
-            .map(|(wires, radius)| Layer {
-                wires,
-                diameter: 0.39e-3,
-                radius,
-                pitch,
-            })
+            .map(|(wires, radius)| Layer { wires, diameter: 0.39e-3, radius, pitch })
             .collect()
     }
 
     /// The values printed in the physics page, section 8.
     #[test]
     fn stiffness_of_ka4_at_four_pitches() {
-        for (pitch, plain, contracting) in [
-            (39e-3, 0.9649, 0.9587),
-            (44e-3, 0.9722, 0.9672),
-            (49e-3, 0.9775, 0.9734),
-            (54e-3, 0.9814, 0.9780),
-        ] {
+        for (pitch, plain, contracting) in
+            [(39e-3, 0.9649, 0.9587), (44e-3, 0.9722, 0.9672), (49e-3, 0.9775, 0.9734), (54e-3, 0.9814, 0.9780)]
+        {
             let layers = ka4(pitch);
             let value = stiffness_factor(&layers);
             assert!((value - plain).abs() < 5.1e-5, "{pitch}: {value}");
@@ -180,8 +165,7 @@ mod tests {
             assert!((exact - response.strain).abs() < 1e-6, "{exact}");
         }
         for i in 0..2 {
-            let gap = responses[i + 1].radius * layers[i + 1].radius
-                - responses[i].radius * layers[i].radius;
+            let gap = responses[i + 1].radius * layers[i + 1].radius - responses[i].radius * layers[i].radius;
             let thinning = 0.34 * 0.39e-3 * 0.5 * (responses[i].strain + responses[i + 1].strain);
             assert!((gap + thinning).abs() < 1e-12);
         }
@@ -197,10 +181,7 @@ mod tests {
         let layer = ka4(39e-3)[2];
         let (strain, radius, poisson) = (1e-6, -0.3, 0.34);
         let stretched = |f: fn(f64, f64) -> f64| {
-            let moved = f(
-                layer.radius * (1.0 + radius * strain),
-                layer.pitch * (1.0 + strain),
-            );
+            let moved = f(layer.radius * (1.0 + radius * strain), layer.pitch * (1.0 + strain));
             (moved - f(layer.radius, layer.pitch)) / strain
         };
         let right: fn(f64, f64) -> f64 = |r, h| torsion(r, h, 1.0);
@@ -222,12 +203,8 @@ mod tests {
     /// A core with straight wires around it is as stiff and strong as its wires.
     #[test]
     fn straight_wires_lose_nothing() {
-        let layers = [(1, 0.0), (6, 1e-3)].map(|(wires, radius)| Layer {
-            wires,
-            diameter: 1e-3,
-            radius,
-            pitch: f64::INFINITY,
-        });
+        let layers =
+            [(1, 0.0), (6, 1e-3)].map(|(wires, radius)| Layer { wires, diameter: 1e-3, radius, pitch: f64::INFINITY });
         assert_eq!(stiffness_factor(&layers), 1.0);
         assert_eq!(stiffness_factor_contracting(&layers, 0.34), 1.0);
         assert_eq!(strength_factor(&layers), 1.0);

@@ -41,12 +41,7 @@ mod tests {
     /// The values printed in the physics page, section 8.
     #[test]
     fn restitution_at_four_speeds() {
-        for (ratio, expected) in [
-            (1.5, 0.971239),
-            (3.0, 0.862740),
-            (10.0, 0.658558),
-            (100.0, 0.374299),
-        ] {
+        for (ratio, expected) in [(1.5, 0.971239), (3.0, 0.862740), (10.0, 0.658558), (100.0, 0.374299)] {
             assert!((restitution(ratio) - expected).abs() < 5e-7, "at {ratio}");
         }
     }

@@ -12,7 +12,7 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data, rest_z: f32) {
     let u = canvas.unit;
     canvas.fill(panel, data.style.panel, 1.0);
     let x = marks::title(canvas, panel, data, "section");
-    marks::subtitle(canvas, x, panel, data, "broken wires hollow");
+    marks::subtitle(canvas, x, panel, data, "broken: hollow");
     let area = panel.inset(8.0 * u, 28.0 * u, 8.0 * u, 8.0 * u);
     // A tenth of room around the strand for wires that sprang out.
     let scale = 0.5 * area.w.min(area.h) / (1.15 * data.body.radius);

@@ -9,7 +9,7 @@ use crate::engine::view::RunInfo;
 use glam::Vec3;
 
 /// Space between layers over the body's radius [-].
-const SPACE: f32 = 0.3;
+const SPACE: f32 = 0.45;
 
 /// How far each layer is moved up in the picture [mm], outermost on top, and the total height of the stack [mm].
 pub fn lifts(info: &RunInfo, body: &Body) -> (Vec<f32>, f32) {
@@ -54,12 +54,17 @@ pub fn camera(
     z: f32,
     height: f32,
 ) -> Camera {
-    let room = panel.h - 34.0 * unit;
+    // The title needs room above.
+    let room = panel.h - 24.0 * unit;
+    let scale = options.zoom * room / height.max(1e-6);
+    let rotation = Camera::orientation(0.0, options.elevation_deg);
+    let middle = Vec3::new(body.axis.x, body.axis.y, z)
+        + rotation.transpose() * Vec3::Y * (8.0 * unit / scale);
     Camera {
-        rotation: Camera::orientation(0.0, options.elevation_deg),
-        centre: Vec3::new(body.axis.x, body.axis.y, z),
+        rotation,
+        centre: middle,
         panel,
-        scale: options.zoom * room / height.max(1e-6),
+        scale,
         depth: 10.0 * (body.high - body.low).length().max(body.radius),
     }
 }
@@ -74,7 +79,8 @@ pub fn names(canvas: &mut Canvas, camera: &Camera, data: &Data, lifts: &[f32]) {
         align: Align::Left,
     };
     for (name, lift) in data.info.layers.iter().zip(lifts) {
-        let y = camera.panel.y + 0.5 * camera.panel.h - lift * camera.scale;
+        let [_, middle] = camera.project(data.body.axis);
+        let y = middle - lift * camera.scale;
         let w = canvas.fonts.width(name, kind.size, kind.weight);
         let r = Rect::new(
             camera.panel.x + 8.0 * u,

@@ -4,7 +4,7 @@ use super::adapter::Gpu;
 use super::camera::Camera;
 use super::canvas::{Canvas, Fonts, Rect};
 use super::colour::ColourScale;
-use super::layout::{Layout, default_views, layout};
+use super::layout::{GAP, Layout, default_views, layout};
 use super::occlusion::occlusion;
 use super::solid::{Drawing, SolidPipeline};
 use super::style::{FrameOptions, Rgb, Style, View};
@@ -173,7 +173,7 @@ impl Renderer {
             solid.draw(&data, &shots)?;
             self.timings.draw += start.elapsed();
             let start = Instant::now();
-            solid.read_into(&mut picture)?;
+            solid.read_into(&mut picture, &shots)?;
             self.timings.read_back += start.elapsed();
         }
         let start = Instant::now();
@@ -225,7 +225,7 @@ fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
                 shot(camera, "whole strand", body.radius);
             }
             View::Midsection => {
-                let half = ((panel.w - 4.0 * u) * 0.5).floor();
+                let half = ((panel.w - GAP * u) * 0.5).floor();
                 let front = Rect::new(panel.x, panel.y, half, panel.h);
                 let back = Rect::new(panel.right() - half, panel.y, half, panel.h);
                 for (panel, caption, turn) in [(front, "front", 0.0), (back, "back", 180.0)] {
@@ -345,15 +345,21 @@ impl Solid {
         )
     }
 
-    fn read_into(&self, picture: &mut RgbImage) -> Result<()> {
+    /// Copies the panels, and nothing between them, into the picture.
+    fn read_into(&self, picture: &mut RgbImage, shots: &[Shot]) -> Result<()> {
         let (left, top) = (self.area.x as usize, self.area.y as usize);
         let width = picture.width() as usize;
         let bytes: &mut [u8] = picture;
         self.target.read(&self.gpu, |y, row| {
-            let start = ((top + y as usize) * width + left) * 3;
-            let out = &mut bytes[start..start + row.len() / 4 * 3];
-            for (to, from) in out.chunks_exact_mut(3).zip(row.chunks_exact(4)) {
-                to.copy_from_slice(&from[..3]);
+            let y = top + y as usize;
+            let crosses = |p: &Rect| (p.y as usize..p.bottom() as usize).contains(&y);
+            for panel in shots.iter().map(|s| s.camera.panel).filter(crosses) {
+                let (from, to) = (panel.x as usize, panel.right() as usize);
+                let out = &mut bytes[(y * width + from) * 3..(y * width + to) * 3];
+                let row = &row[(from - left) * 4..(to - left) * 4];
+                for (to, from) in out.chunks_exact_mut(3).zip(row.chunks_exact(4)) {
+                    to.copy_from_slice(&from[..3]);
+                }
             }
         })
     }
@@ -405,35 +411,6 @@ fn overlay(
             View::Curve => curve::draw(canvas, *panel, data),
             View::CrossSection => cut::draw(canvas, *panel, data, focus),
             _ => {}
-        }
-    }
-    gutters(canvas, data, layout, shots);
-}
-
-/// The adapter fills its whole area; what is not a panel of it becomes page again.
-fn gutters(canvas: &mut Canvas, data: &Data, layout: &Layout, shots: &[Shot]) {
-    let bottom = canvas.image.height() as f32;
-    for (_, panel) in &layout.panels {
-        let next = layout
-            .panels
-            .iter()
-            .map(|(_, p)| p.y)
-            .filter(|y| *y > panel.y)
-            .fold(bottom, f32::min);
-        canvas.fill(
-            Rect::new(panel.x, panel.bottom(), panel.w, next - panel.bottom()),
-            data.style.page,
-            1.0,
-        );
-    }
-    for pair in shots.windows(2) {
-        let (a, b) = (pair[0].camera.panel, pair[1].camera.panel);
-        if a.y == b.y {
-            canvas.fill(
-                Rect::new(a.right(), a.y, b.x - a.right(), a.h),
-                data.style.page,
-                1.0,
-            );
         }
     }
 }

@@ -17,7 +17,7 @@ pub struct Layout {
 /// Height of the header in units.
 const HEADER: f32 = 62.0;
 /// Space around panels in units.
-const GAP: f32 = 6.0;
+pub const GAP: f32 = 6.0;
 
 /// Rows of a frame: which views, share of the height, shares of the width.
 const ROWS: [(&[(View, f32)], f32); 3] = [

@@ -66,10 +66,7 @@ impl Range {
 impl<'a> At<'a> {
     /// The whole scene.
     pub fn root(source: &'a SceneSource) -> Self {
-        Self {
-            source,
-            path: Vec::new(),
-        }
+        Self { source, path: Vec::new() }
     }
 
     /// Key `name` below this place.
@@ -90,16 +87,13 @@ impl<'a> At<'a> {
         let Some(key) = self.path.iter().rposition(is_key) else {
             return "the scene".into();
         };
-        let elements = self.path[key + 1..]
-            .iter()
-            .map(|index| format!("[{index}]"));
+        let elements = self.path[key + 1..].iter().map(|index| format!("[{index}]"));
         self.path[key].clone() + &elements.collect::<String>()
     }
 
     /// An error here.
     pub fn error(&self, what: impl Into<String>, help: impl Into<String>) -> Error {
-        self.source
-            .error_at(&self.path, Part::Value, what.into(), help.into())
+        self.source.error_at(&self.path, Part::Value, what.into(), help.into())
     }
 
     /// An error that says that a key below this place is missing.
@@ -131,37 +125,22 @@ impl<'a> At<'a> {
             return Ok(value);
         }
         let what = format!("`{}` is {raw}, but must be {}", self.name(), range.words());
-        Err(self.error(
-            what,
-            format!("for example {} = {}", self.name(), dimension.example()),
-        ))
+        Err(self.error(what, format!("for example {} = {}", self.name(), dimension.example())))
     }
 
     fn read(&self, raw: &Scalar, dimension: Dimension, range: Range) -> Result<f64> {
         match raw {
-            Scalar::Text(text) if text == "inf" && range == Range::PositiveOrInfinite => {
-                Ok(f64::INFINITY)
-            }
+            Scalar::Text(text) if text == "inf" && range == Range::PositiveOrInfinite => Ok(f64::INFINITY),
             Scalar::Text(text) => units::parse(text, dimension).map_err(|error| {
                 let what = format!("`{}`: {}", self.name(), error.what);
                 self.error(what, error.help)
             }),
             Scalar::Number(number) if dimension == Dimension::Ratio => Ok(*number),
-            Scalar::Number(number)
-                if number.is_infinite() && range == Range::PositiveOrInfinite =>
-            {
-                Ok(*number)
-            }
+            Scalar::Number(number) if number.is_infinite() && range == Range::PositiveOrInfinite => Ok(*number),
             Scalar::Number(number) => {
-                let what = format!(
-                    "`{}` is the bare number {number}, but a {} needs its unit",
-                    self.name(),
-                    dimension.name()
-                );
-                Err(self.error(
-                    what,
-                    format!("write {} = {}", self.name(), dimension.example()),
-                ))
+                let what =
+                    format!("`{}` is the bare number {number}, but a {} needs its unit", self.name(), dimension.name());
+                Err(self.error(what, format!("write {} = {}", self.name(), dimension.example())))
             }
         }
     }
@@ -174,43 +153,21 @@ impl<'a> At<'a> {
         dimension: Dimension,
         range: Range,
     ) -> Result<Option<f64>> {
-        raw.as_ref()
-            .map(|raw| self.key(name).quantity(raw, dimension, range))
-            .transpose()
+        raw.as_ref().map(|raw| self.key(name).quantity(raw, dimension, range)).transpose()
     }
 
     /// The quantity under key `name`; an error when it is missing [SI].
-    pub fn required(
-        &self,
-        name: &str,
-        raw: &Option<Scalar>,
-        dimension: Dimension,
-        range: Range,
-    ) -> Result<f64> {
-        self.optional(name, raw, dimension, range)?
-            .ok_or_else(|| self.missing(name, dimension.example()))
+    pub fn required(&self, name: &str, raw: &Option<Scalar>, dimension: Dimension, range: Range) -> Result<f64> {
+        self.optional(name, raw, dimension, range)?.ok_or_else(|| self.missing(name, dimension.example()))
     }
 
     /// The ratio under key `name`, or its default [-].
-    pub fn ratio_or(
-        &self,
-        name: &str,
-        raw: &Option<Scalar>,
-        default: f64,
-        range: Range,
-    ) -> Result<f64> {
-        Ok(self
-            .optional(name, raw, Dimension::Ratio, range)?
-            .unwrap_or(default))
+    pub fn ratio_or(&self, name: &str, raw: &Option<Scalar>, default: f64, range: Range) -> Result<f64> {
+        Ok(self.optional(name, raw, Dimension::Ratio, range)?.unwrap_or(default))
     }
 
     /// The vector under key `name`, zero when absent [SI].
-    pub fn vector_or_zero(
-        &self,
-        name: &str,
-        raw: &Option<Triple>,
-        dimension: Dimension,
-    ) -> Result<DVec3> {
+    pub fn vector_or_zero(&self, name: &str, raw: &Option<Triple>, dimension: Dimension) -> Result<DVec3> {
         match raw {
             Some(raw) => self.key(name).vector(raw, dimension),
             None => Ok(DVec3::ZERO),
@@ -236,15 +193,9 @@ impl<'a> At<'a> {
 
     /// The whole number at exactly this place, which must be at least `least`.
     pub fn count(&self, number: i64, least: u64) -> Result<u64> {
-        u64::try_from(number)
-            .ok()
-            .filter(|count| *count >= least)
-            .ok_or_else(|| {
-                let what = format!(
-                    "`{}` is {number}, but must be at least {least}",
-                    self.name()
-                );
-                self.error(what, "")
-            })
+        u64::try_from(number).ok().filter(|count| *count >= least).ok_or_else(|| {
+            let what = format!("`{}` is {number}, but must be at least {least}", self.name());
+            self.error(what, "")
+        })
     }
 }

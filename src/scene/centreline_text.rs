@@ -27,13 +27,7 @@ pub struct CentrelineWire {
 /// Errors name file and line: a line that is not three finite numbers, a point that repeats the one before, a wire of
 /// one point, a broken header, a text without wires.
 pub fn parse(text: &str, path: &Path) -> Result<Vec<CentrelineWire>> {
-    let mut reader = Reader {
-        path,
-        wires: Vec::new(),
-        header: Header::default(),
-        points: Vec::new(),
-        line: 0,
-    };
+    let mut reader = Reader { path, wires: Vec::new(), header: Header::default(), points: Vec::new(), line: 0 };
     for (index, line) in text.lines().enumerate() {
         reader.line = index + 1;
         reader.read(line.trim())?;
@@ -90,21 +84,15 @@ impl Reader<'_> {
         }
         let point = self.read_point(data)?;
         if self.points.last() == Some(&point) {
-            return Err(self.error(
-                "this point repeats the one before it",
-                "remove one of the two",
-            ));
+            return Err(self.error("this point repeats the one before it", "remove one of the two"));
         }
         self.points.push(point);
         Ok(())
     }
 
     fn read_point(&self, data: &str) -> Result<DVec3> {
-        let numbers: Vec<Option<f64>> = data
-            .split([' ', '\t', ',', ';'])
-            .filter(|word| !word.is_empty())
-            .map(from_millimetres)
-            .collect();
+        let numbers: Vec<Option<f64>> =
+            data.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty()).map(from_millimetres).collect();
         match numbers[..] {
             [Some(x), Some(y), Some(z)] => Ok(DVec3::new(x, y, z)),
             _ => Err(self.error(
@@ -125,21 +113,14 @@ impl Reader<'_> {
             return Ok(());
         }
         if !self.points.is_empty() {
-            return Err(self.error(
-                "a new wire begins here without a blank line before it",
-                "put a blank line between wires",
-            ));
+            return Err(
+                self.error("a new wire begins here without a blank line before it", "put a blank line between wires")
+            );
         }
         let words: Vec<&str> = words.collect();
-        let diameter_at = words
-            .iter()
-            .rposition(|word| *word == "diameter")
-            .unwrap_or(words.len());
+        let diameter_at = words.iter().rposition(|word| *word == "diameter").unwrap_or(words.len());
         let (layer, diameter) = words.split_at(diameter_at);
-        self.header = Header {
-            layer: self.header_layer(layer)?,
-            diameter: self.header_diameter(diameter)?,
-        };
+        self.header = Header { layer: self.header_layer(layer)?, diameter: self.header_diameter(diameter)? };
         Ok(())
     }
 
@@ -154,31 +135,23 @@ impl Reader<'_> {
     fn header_diameter(&self, words: &[&str]) -> Result<Option<f64>> {
         match words {
             [] => Ok(None),
-            ["diameter", number, "mm"] => {
-                match from_millimetres(number).filter(|diameter| *diameter > 0.0) {
-                    Some(diameter) => Ok(Some(diameter)),
-                    None => Err(self.bad_header()),
-                }
-            }
+            ["diameter", number, "mm"] => match from_millimetres(number).filter(|diameter| *diameter > 0.0) {
+                Some(diameter) => Ok(Some(diameter)),
+                None => Err(self.bad_header()),
+            },
             _ => Err(self.bad_header()),
         }
     }
 
     fn bad_header(&self) -> Error {
-        self.error(
-            "the header of this wire cannot be read",
-            "write for example # wire 3 layer outer diameter 0.39 mm",
-        )
+        self.error("the header of this wire cannot be read", "write for example # wire 3 layer outer diameter 0.39 mm")
     }
 
     fn end_block(&mut self) -> Result<()> {
         match self.points.len() {
             // Blank lines may follow one another, and a header may stand apart from its points.
             0 => Ok(()),
-            1 => Err(self.error(
-                "the wire that ends here has one point only",
-                "a wire needs two points at least",
-            )),
+            1 => Err(self.error("the wire that ends here has one point only", "a wire needs two points at least")),
             _ => {
                 let header = std::mem::take(&mut self.header);
                 self.wires.push(CentrelineWire {
@@ -192,10 +165,7 @@ impl Reader<'_> {
     }
 
     fn error(&self, what: &str, help: &str) -> Error {
-        Error::input(
-            format!("{}, line {}: {what}", self.path.display(), self.line),
-            help,
-        )
+        Error::input(format!("{}, line {}: {what}", self.path.display(), self.line), help)
     }
 }
 
@@ -204,9 +174,7 @@ fn in_millimetres(metres: f64) -> String {
     let text = format!("{metres:e}");
     let (digits, exponent) = shifted(&text, 3).expect("a formatted number is a number");
     // Plain notation where it is exact and short.
-    let plain = format!("{digits}e{exponent}")
-        .parse::<f64>()
-        .map(|value| value.to_string());
+    let plain = format!("{digits}e{exponent}").parse::<f64>().map(|value| value.to_string());
     match plain {
         Ok(plain) if plain.len() <= 24 && from_millimetres(&plain) == Some(metres) => plain,
         _ => format!("{digits}e{exponent}"),
@@ -216,10 +184,7 @@ fn in_millimetres(metres: f64) -> String {
 /// Decimal text in mm as metres; `None` when it is no finite number.
 fn from_millimetres(text: &str) -> Option<f64> {
     let (digits, exponent) = shifted(text, -3)?;
-    format!("{digits}e{exponent}")
-        .parse()
-        .ok()
-        .filter(|value: &f64| value.is_finite())
+    format!("{digits}e{exponent}").parse().ok().filter(|value: &f64| value.is_finite())
 }
 
 /// Splits decimal text into digits and exponent, the exponent shifted.
@@ -242,20 +207,14 @@ mod tests {
 
     #[test]
     fn blocks_headers_and_comments_are_read() {
-        let text = "# from CAD\n# wire 1 layer outer left diameter 0.39 mm\n0 0 0\n0 0 1 # second\n\n\n0,1,0\n0,1,2\n0,1,3\n";
+        let text =
+            "# from CAD\n# wire 1 layer outer left diameter 0.39 mm\n0 0 0\n0 0 1 # second\n\n\n0,1,0\n0,1,2\n0,1,3\n";
         let wires = parse(text, Path::new("wires.txt")).unwrap();
         assert_eq!(wires.len(), 2);
         assert_eq!(wires[0].layer, "outer left");
         assert_eq!(wires[0].diameter, Some(0.39e-3));
         assert_eq!(wires[0].points, [DVec3::ZERO, DVec3::new(0.0, 0.0, 1e-3)]);
-        assert_eq!(
-            (
-                wires[1].layer.as_str(),
-                wires[1].diameter,
-                wires[1].points.len()
-            ),
-            ("wire", None, 3)
-        );
+        assert_eq!((wires[1].layer.as_str(), wires[1].diameter, wires[1].points.len()), ("wire", None, 3));
     }
 
     #[test]
@@ -264,10 +223,7 @@ mod tests {
         assert!(line_of("0 0 0\n0 0\n").contains("line 2"));
         assert!(line_of("0 0 0\n0 0 0\n").contains("line 2: this point repeats"));
         assert!(line_of("0 0 0\n\n0 0 0\n0 0 1\n").contains("line 2: the wire that ends here"));
-        assert!(
-            line_of("# wire 1 layer a diameter 0.39\n0 0 0\n0 0 1\n")
-                .contains("line 1: the header")
-        );
+        assert!(line_of("# wire 1 layer a diameter 0.39\n0 0 0\n0 0 1\n").contains("line 1: the header"));
         assert!(line_of("0 0 0\n0 0 1\n# wire 2\n0 1 0\n0 1 1").contains("line 3: a new wire"));
         assert!(line_of("0 0 0\n0 0 inf\n").contains("line 2"));
         assert!(line_of("# nothing\n").contains("no wires"));

@@ -22,12 +22,7 @@ pub(super) fn resolve(at: &At, raw: &RawHardening, young: f64) -> Result<Hardeni
             exponent: at.required("exponent", &raw.exponent, Ratio, Range::Fraction)?,
         }),
         RawForm::Ludwik => Ok(HardeningSpec::Ludwik {
-            yield_stress: at.required(
-                "yield_stress",
-                &raw.yield_stress,
-                Pressure,
-                Range::Positive,
-            )?,
+            yield_stress: at.required("yield_stress", &raw.yield_stress, Pressure, Range::Positive)?,
             strength: at.required("strength", &raw.strength, Pressure, Range::NotNegative)?,
             exponent: at.required("exponent", &raw.exponent, Ratio, Range::Fraction)?,
         }),
@@ -68,9 +63,7 @@ fn refuse_other_keys(at: &At, raw: &RawHardening, form: RawForm) -> Result<()> {
 
 fn voce(at: &At, raw: &RawHardening) -> Result<HardeningSpec> {
     let or_zero = |name, raw: &Option<Scalar>, dimension| -> Result<f64> {
-        Ok(at
-            .optional(name, raw, dimension, Range::NotNegative)?
-            .unwrap_or(0.0))
+        Ok(at.optional(name, raw, dimension, Range::NotNegative)?.unwrap_or(0.0))
     };
     let saturation = or_zero("saturation", &raw.saturation, Pressure)?;
     let rate = or_zero("rate", &raw.rate, Ratio)?;
@@ -87,30 +80,18 @@ fn voce(at: &At, raw: &RawHardening) -> Result<HardeningSpec> {
 
 /// The points as [strain, stress], strains rising; at least two.
 fn points(at: &At, raw: &RawHardening, example: &str) -> Result<Vec<[f64; 2]>> {
-    let given = raw
-        .points
-        .as_ref()
-        .ok_or_else(|| at.missing("points", example))?;
+    let given = raw.points.as_ref().ok_or_else(|| at.missing("points", example))?;
     let at = at.key("points");
     if given.len() < 2 {
-        return Err(at.error(
-            "`points` needs two points at least",
-            format!("for example {example}"),
-        ));
+        return Err(at.error("`points` needs two points at least", format!("for example {example}")));
     }
     let mut points: Vec<[f64; 2]> = Vec::with_capacity(given.len());
     for (index, [strain, stress]) in given.iter().enumerate() {
         let element = at.element(index);
-        let strain = element
-            .element(0)
-            .quantity(strain, Ratio, Range::NotNegative)?;
-        let stress = element
-            .element(1)
-            .quantity(stress, Pressure, Range::NotNegative)?;
+        let strain = element.element(0).quantity(strain, Ratio, Range::NotNegative)?;
+        let stress = element.element(1).quantity(stress, Pressure, Range::NotNegative)?;
         if let Some([before, _]) = points.last().filter(|[before, _]| strain <= *before) {
-            let what = format!(
-                "the strain of point {index} is {strain}, not above {before}, that of the point before"
-            );
+            let what = format!("the strain of point {index} is {strain}, not above {before}, that of the point before");
             return Err(element.error(what, "order the points by rising strain"));
         }
         points.push([strain, stress]);
@@ -122,21 +103,15 @@ fn table(at: &At, raw: &RawHardening) -> Result<HardeningSpec> {
     let points = points(at, raw, "[[0.0, \"90 MPa\"], [0.3, \"300 MPa\"]]")?;
     let first = at.key("points").element(0);
     if points[0][0] != 0.0 {
-        return Err(first.error(
-            "the first point of a table must be at plastic strain 0",
-            "its stress is the yield stress",
-        ));
+        return Err(
+            first.error("the first point of a table must be at plastic strain 0", "its stress is the yield stress")
+        );
     }
     if points[0][1] == 0.0 {
         return Err(first.error("the yield stress of a table must be greater than zero", ""));
     }
     for (index, pair) in points.windows(2).enumerate() {
-        refuse_softening(
-            &at.key("points").element(index + 1),
-            "",
-            pair[0][1],
-            pair[1][1],
-        )?;
+        refuse_softening(&at.key("points").element(index + 1), "", pair[0][1], pair[1][1])?;
     }
     Ok(HardeningSpec::Table(points))
 }
@@ -145,15 +120,8 @@ fn refuse_softening(at: &At, true_: &str, before: f64, stress: f64) -> Result<()
     if stress >= before {
         return Ok(());
     }
-    let what = format!(
-        "the {true_}stress falls from {} to {} MPa: softening",
-        before / 1e6,
-        stress / 1e6
-    );
-    Err(at.error(
-        what,
-        "strain would localise in one bond; end the curve where it stops rising",
-    ))
+    let what = format!("the {true_}stress falls from {} to {} MPa: softening", before / 1e6, stress / 1e6);
+    Err(at.error(what, "strain would localise in one bond; end the curve where it stops rising"))
 }
 
 /// Engineering stress s over engineering strain e of one wire → true stress over true plastic strain.
@@ -162,11 +130,7 @@ fn refuse_softening(at: &At, true_: &str, before: f64, stress: f64) -> Result<()
 /// Dieter, Mechanical Metallurgy, § 8-3). The yield stress is that of the last point on the elastic line; without
 /// one, the line through the first two plastic points is drawn back to p = 0.
 fn engineering_curve(at: &At, raw: &RawHardening, young: f64) -> Result<HardeningSpec> {
-    let given = points(
-        at,
-        raw,
-        "[[\"0 %\", \"0 MPa\"], [\"0.1 %\", \"90 MPa\"], [\"25 %\", \"240 MPa\"]]",
-    )?;
+    let given = points(at, raw, "[[\"0 %\", \"0 MPa\"], [\"0.1 %\", \"90 MPa\"], [\"25 %\", \"240 MPa\"]]")?;
     let at = at.key("points");
     let mut yield_stress = None;
     let mut plastic: Vec<[f64; 2]> = Vec::new();
@@ -179,10 +143,7 @@ fn engineering_curve(at: &At, raw: &RawHardening, young: f64) -> Result<Hardenin
         refuse_softening(&element, "true ", before, true_stress)?;
         before = true_stress;
         if p < -ELASTIC_LINE_TOLERANCE * elastic {
-            let what = format!(
-                "point {index} is stiffer than Young's modulus of {} GPa",
-                young / 1e9
-            );
+            let what = format!("point {index} is stiffer than Young's modulus of {} GPa", young / 1e9);
             return Err(element.error(what, "correct the point or material.young"));
         }
         if p <= ELASTIC_LINE_TOLERANCE * elastic && plastic.is_empty() {
@@ -191,10 +152,7 @@ fn engineering_curve(at: &At, raw: &RawHardening, young: f64) -> Result<Hardenin
         }
         if p <= plastic.last().map_or(0.0, |[before, _]| *before) {
             let what = format!("the plastic strain falls to {p:.3e} at point {index}");
-            return Err(element.error(
-                what,
-                "the curve may not rise more steeply than Young's modulus",
-            ));
+            return Err(element.error(what, "the curve may not rise more steeply than Young's modulus"));
         }
         if true_stress == 0.0 {
             return Err(element.error(format!("the stress of point {index} is zero"), ""));
@@ -202,10 +160,7 @@ fn engineering_curve(at: &At, raw: &RawHardening, young: f64) -> Result<Hardenin
         plastic.push([p, true_stress]);
     }
     if plastic.is_empty() {
-        return Err(at.error(
-            "no point of the curve lies beyond the elastic line",
-            "give plastic points too",
-        ));
+        return Err(at.error("no point of the curve lies beyond the elastic line", "give plastic points too"));
     }
     let yield_stress = match yield_stress {
         Some(stress) => stress,
@@ -219,46 +174,26 @@ fn engineering_curve(at: &At, raw: &RawHardening, young: f64) -> Result<Hardenin
 fn drawn_back(at: &At, plastic: &[[f64; 2]]) -> Result<f64> {
     let help = "give a point on the elastic line: the end of proportionality";
     let [[p0, s0], [p1, s1], ..] = plastic else {
-        return Err(at.error(
-            "one plastic point alone does not give the yield stress",
-            help,
-        ));
+        return Err(at.error("one plastic point alone does not give the yield stress", help));
     };
     let stress = s0 - (s1 - s0) / (p1 - p0) * p0;
     match stress > 0.0 {
         true => Ok(stress),
-        false => Err(at.error(
-            "the curve, drawn back to zero plastic strain, gives no positive yield stress",
-            help,
-        )),
+        false => Err(at.error("the curve, drawn back to zero plastic strain, gives no positive yield stress", help)),
     }
 }
 
 /// Yield stress σ_y(p) [Pa] of a hardening law at equivalent plastic strain `p` [-]; equations at [`HardeningSpec`].
 pub fn yield_stress(law: &HardeningSpec, p: f64) -> f64 {
     match law {
-        HardeningSpec::Voce {
-            yield_stress,
-            saturation,
-            rate,
-            linear,
-        } => yield_stress + saturation * -(-rate * p).exp_m1() + linear * p,
-        HardeningSpec::Swift {
-            strength,
-            prestrain,
-            exponent,
-        } => strength * (prestrain + p).powf(*exponent),
-        HardeningSpec::Ludwik {
-            yield_stress,
-            strength,
-            exponent,
-        } => yield_stress + strength * p.powf(*exponent),
+        HardeningSpec::Voce { yield_stress, saturation, rate, linear } => {
+            yield_stress + saturation * -(-rate * p).exp_m1() + linear * p
+        }
+        HardeningSpec::Swift { strength, prestrain, exponent } => strength * (prestrain + p).powf(*exponent),
+        HardeningSpec::Ludwik { yield_stress, strength, exponent } => yield_stress + strength * p.powf(*exponent),
         HardeningSpec::Table(points) => {
             // The segment that holds p; beyond the last point its slope is kept.
-            let end = points[1..]
-                .iter()
-                .position(|[strain, _]| p <= *strain)
-                .map_or(points.len() - 1, |i| i + 1);
+            let end = points[1..].iter().position(|[strain, _]| p <= *strain).map_or(points.len() - 1, |i| i + 1);
             let ([p0, s0], [p1, s1]) = (points[end - 1], points[end]);
             s0 + (s1 - s0) / (p1 - p0) * (p - p0)
         }
@@ -272,40 +207,20 @@ mod tests {
     #[test]
     fn the_table_is_met_at_its_points_and_keeps_its_last_slope() {
         let law = HardeningSpec::Table(vec![[0.0, 90e6], [0.1, 150e6], [0.3, 210e6]]);
-        for (p, stress) in [
-            (0.0, 90e6),
-            (0.05, 120e6),
-            (0.1, 150e6),
-            (0.2, 180e6),
-            (0.3, 210e6),
-            (0.4, 240e6),
-        ] {
+        for (p, stress) in [(0.0, 90e6), (0.05, 120e6), (0.1, 150e6), (0.2, 180e6), (0.3, 210e6), (0.4, 240e6)] {
             assert!((yield_stress(&law, p) - stress).abs() < 1.0, "{p}");
         }
     }
 
     #[test]
     fn the_formulas_begin_at_the_yield_stress() {
-        let voce = HardeningSpec::Voce {
-            yield_stress: 90e6,
-            saturation: 200e6,
-            rate: 8.0,
-            linear: 300e6,
-        };
+        let voce = HardeningSpec::Voce { yield_stress: 90e6, saturation: 200e6, rate: 8.0, linear: 300e6 };
         assert_eq!(yield_stress(&voce, 0.0), 90e6);
         let far = yield_stress(&voce, 10.0);
         assert!((far - (290e6 + 3000e6)).abs() < 1.0, "{far}");
-        let swift = HardeningSpec::Swift {
-            strength: 400e6,
-            prestrain: 0.01,
-            exponent: 0.5,
-        };
+        let swift = HardeningSpec::Swift { strength: 400e6, prestrain: 0.01, exponent: 0.5 };
         assert!((yield_stress(&swift, 0.0) - 40e6).abs() < 1e-6);
-        let ludwik = HardeningSpec::Ludwik {
-            yield_stress: 90e6,
-            strength: 292e6,
-            exponent: 0.31,
-        };
+        let ludwik = HardeningSpec::Ludwik { yield_stress: 90e6, strength: 292e6, exponent: 0.31 };
         assert_eq!(yield_stress(&ludwik, 1.0), 382e6);
     }
 }

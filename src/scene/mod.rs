@@ -44,12 +44,7 @@ pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Scene> {
     let path = Path::new(name_or_path);
     if !is_path(name_or_path) {
         let text = builtin::find(name_or_path)?;
-        return parse(
-            text,
-            &format!("{name_or_path}.toml"),
-            Path::new("."),
-            overrides,
-        );
+        return parse(text, &format!("{name_or_path}.toml"), Path::new("."), overrides);
     }
     let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => builtin::no_such_file(path),
@@ -61,9 +56,7 @@ pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Scene> {
 
 /// Whether a scene argument means a file.
 fn is_path(argument: &str) -> bool {
-    argument.ends_with(".toml")
-        || argument.contains(std::path::is_separator)
-        || Path::new(argument).is_file()
+    argument.ends_with(".toml") || argument.contains(std::path::is_separator) || Path::new(argument).is_file()
 }
 
 /// Reads a scene from its text. `file_name` is shown in errors, and its stem names the scene where the text does not;
@@ -71,27 +64,14 @@ fn is_path(argument: &str) -> bool {
 pub fn parse(text: &str, file_name: &str, folder: &Path, overrides: &[String]) -> Result<Scene> {
     let document = Document::parse(text.to_owned()).map_err(|error| {
         let span = error.span().unwrap_or(0..0);
-        scene_error(
-            file_name,
-            text,
-            span,
-            format!("this is not TOML: {}", error.message()),
-            String::new(),
-        )
+        scene_error(file_name, text, span, format!("this is not TOML: {}", error.message()), String::new())
     })?;
-    let overrides = overrides
-        .iter()
-        .map(|text| Override::parse(text))
-        .collect::<Result<Vec<_>>>()?;
+    let overrides = overrides.iter().map(|text| Override::parse(text)).collect::<Result<Vec<_>>>()?;
     let mut changed = document.clone().into_mut();
-    overrides
-        .iter()
-        .try_for_each(|option| option.apply(&mut changed))?;
+    overrides.iter().try_for_each(|option| option.apply(&mut changed))?;
     let source = SceneSource::new(file_name, document, overrides);
     let raw = read_tables(&changed.to_string(), &source)?;
-    let stem = Path::new(file_name)
-        .file_stem()
-        .map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
+    let stem = Path::new(file_name).file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
     let spec = resolve::resolve(&At::root(&source), &raw, &stem, folder)?;
     Ok(Scene { spec, source })
 }
@@ -100,10 +80,8 @@ pub fn parse(text: &str, file_name: &str, folder: &Path, overrides: &[String]) -
 fn read_tables(text: &str, source: &SceneSource) -> Result<raw::RawScene> {
     toml::from_str(text).map_err(|error| {
         let document = Document::parse(text).expect("toml_edit writes TOML");
-        let (path, part) = error.span().map_or_else(
-            || (Vec::new(), source::Part::Value),
-            |span| path_at(document.as_item(), &span),
-        );
+        let (path, part) =
+            error.span().map_or_else(|| (Vec::new(), source::Part::Value), |span| path_at(document.as_item(), &span));
         let (what, help) = in_plain_words(error.message(), &path);
         source.error_at(&path, part, what, help)
     })
@@ -118,16 +96,10 @@ fn in_plain_words(message: &str, path: &[String]) -> (String, String) {
             Some((_, parents)) if !parents.is_empty() => format!("`{}`", parents.join(".")),
             _ => "a scene".into(),
         };
-        return (
-            format!("unknown key `{unknown}` in {place}"),
-            did_you_mean(unknown, known, "known keys"),
-        );
+        return (format!("unknown key `{unknown}` in {place}"), did_you_mean(unknown, known, "known keys"));
     }
     if let (true, [unknown, known @ ..]) = (message.starts_with("unknown variant"), &quoted[..]) {
-        return (
-            format!("`{unknown}` is not a value of `{key}`"),
-            did_you_mean(unknown, known, "one of"),
-        );
+        return (format!("`{unknown}` is not a value of `{key}`"), did_you_mean(unknown, known, "one of"));
     }
     let message = message
         .replace("expected i64", "expected a whole number")

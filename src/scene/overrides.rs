@@ -24,10 +24,7 @@ impl Override {
         let Some(equals) = text.find('=') else {
             return Err(malformed(text, "there is no `=` in this option"));
         };
-        let path: Vec<String> = text[..equals]
-            .split('.')
-            .map(|part| part.trim().to_owned())
-            .collect();
+        let path: Vec<String> = text[..equals].split('.').map(|part| part.trim().to_owned()).collect();
         if path.iter().any(String::is_empty) {
             return Err(malformed(text, "the key is empty or has an empty part"));
         }
@@ -56,10 +53,7 @@ impl Override {
     /// Changes the document. Errors: an element that is not there, a key below something that is no table, a value
     /// that opens a TOML bracket or quote and does not close it. Unknown keys show when the scene is read.
     pub(super) fn apply(&self, document: &mut DocumentMut) -> Result<()> {
-        let (last, parents) = self
-            .path
-            .split_last()
-            .expect("a split has one part at least");
+        let (last, parents) = self.path.split_last().expect("a split has one part at least");
         let mut item = document.as_item_mut();
         for (depth, name) in parents.iter().enumerate() {
             item = self.enter(item, depth, name)?;
@@ -108,11 +102,8 @@ impl Override {
         *element = match (&element, value) {
             (Item::Table(_), Value::InlineTable(table)) => Item::Table(table.into_table()),
             (Item::Table(_), other) => {
-                let what = format!(
-                    "`{}` is a table, but the value is of type {}",
-                    self.path.join("."),
-                    other.type_name()
-                );
+                let what =
+                    format!("`{}` is a table, but the value is of type {}", self.path.join("."), other.type_name());
                 return Err(self.error(Part::Value, what, "give { key = value, … }".into()));
             }
             (_, value) => Item::Value(value),
@@ -123,8 +114,7 @@ impl Override {
     fn remove(&self, item: &mut Item, name: &str) -> Result<()> {
         let whole = self.path.join(".");
         let Some(table) = item.as_table_like_mut() else {
-            let what =
-                format!("`{whole}` is an element, and elements cannot be removed one by one");
+            let what = format!("`{whole}` is an element, and elements cannot be removed one by one");
             return Err(self.error(Part::Key, what, "give the whole array instead".into()));
         };
         if table.remove(name).is_none() {
@@ -141,10 +131,7 @@ impl Override {
             Item::ArrayOfTables(tables) => tables.len(),
             Item::Value(Value::Array(array)) => array.len(),
             other => {
-                let what = format!(
-                    "`{parent}` is of type {}, so it has no key `{name}`",
-                    other.type_name()
-                );
+                let what = format!("`{parent}` is of type {}, so it has no key `{name}`", other.type_name());
                 return Err(self.error(Part::Key, what, format!("set `{parent}` itself")));
             }
         };
@@ -169,13 +156,7 @@ fn option_name(text: &str) -> String {
 
 fn malformed(text: &str, what: &str) -> Error {
     let help = "write --set key=value, for example --set 'strand.layer.0.pitch=44 mm'";
-    scene_error(
-        &option_name(text),
-        text,
-        0..text.len(),
-        what.into(),
-        help.into(),
-    )
+    scene_error(&option_name(text), text, 0..text.len(), what.into(), help.into())
 }
 
 fn present_keys(table: &dyn TableLike, name: &str) -> String {

@@ -569,7 +569,6 @@ impl<'de> Visitor<'de> for DampingVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RawDamping, A::Error> {
-        RawDampingModes::deserialize(de::value::MapAccessDeserializer::new(map))
-            .map(RawDamping::Modes)
+        RawDampingModes::deserialize(de::value::MapAccessDeserializer::new(map)).map(RawDamping::Modes)
     }
 }

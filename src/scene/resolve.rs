@@ -28,26 +28,15 @@ const FRAME_SIDE: std::ops::RangeInclusive<i64> = 16..=8192;
 pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Result<Spec> {
     let material = material(&at.key("material"), raw.material.as_ref())?;
     let bond = bond(&at.key("bond"), raw.bond.as_ref(), &material)?;
-    let strand = raw
-        .strand
-        .as_ref()
-        .map(|raw| resolve_bodies::strand(&at.key("strand"), raw))
-        .transpose()?;
+    let strand = raw.strand.as_ref().map(|raw| resolve_bodies::strand(&at.key("strand"), raw)).transpose()?;
     let wires = resolve_bodies::wires(&at.key("wire"), &raw.wire, folder)?;
     let spheres = resolve_bodies::spheres(&at.key("sphere"), &raw.sphere)?;
     if strand.is_none() && wires.is_empty() && spheres.is_empty() {
-        return Err(at.error(
-            "the scene has no body",
-            "add a [strand], a [[wire]] or a [[sphere]]",
-        ));
+        return Err(at.error("the scene has no body", "add a [strand], a [[wire]] or a [[sphere]]"));
     }
     let bodies = resolve_bodies::count(strand.as_ref(), &wires, &spheres);
     let extent = resolve_bodies::extent(strand.as_ref(), &wires);
-    let grip = raw
-        .grip
-        .as_ref()
-        .map(|raw| resolve_drive::grip(&at.key("grip"), raw, extent))
-        .transpose()?;
+    let grip = raw.grip.as_ref().map(|raw| resolve_drive::grip(&at.key("grip"), raw, extent)).transpose()?;
     Ok(Spec {
         name: scene_name(at, raw, name)?,
         about: about(at, raw)?,
@@ -56,12 +45,7 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
         spacing: at.ratio_or("spacing", &raw.spacing, 1.0, Range::Positive)?,
         holds: resolve_drive::holds(&at.key("hold"), &raw.hold, bodies)?,
         time: time(&at.key("time"), &raw.time)?,
-        stop: resolve_drive::stop(
-            &at.key("stop"),
-            &raw.stop,
-            grip.as_ref(),
-            bond.rupture.is_some(),
-        )?,
+        stop: resolve_drive::stop(&at.key("stop"), &raw.stop, grip.as_ref(), bond.rupture.is_some())?,
         output: output(&at.key("output"), &raw.output)?,
         plan: match raw.plan {
             None | Some(RawPlan::Auto) => PlanMode::Auto,
@@ -89,14 +73,9 @@ fn scene_name(at: &At, raw: &RawScene, file: &str) -> Result<String> {
 }
 
 fn about(at: &At, raw: &RawScene) -> Result<String> {
-    let about = raw
-        .about
-        .as_ref()
-        .ok_or_else(|| at.missing("about", "\"What this scene shows.\""))?;
+    let about = raw.about.as_ref().ok_or_else(|| at.missing("about", "\"What this scene shows.\""))?;
     match about.trim() {
-        "" => Err(at
-            .key("about")
-            .error("`about` is empty", "say in a sentence what the scene shows")),
+        "" => Err(at.key("about").error("`about` is empty", "say in a sentence what the scene shows")),
         text => Ok(text.to_owned()),
     }
 }
@@ -118,45 +97,24 @@ fn bond(at: &At, raw: Option<&RawBond>, material: &Material) -> Result<BondSpec>
     let raw = raw.unwrap_or(&none);
     let law = match raw.law.unwrap_or(RawBondLaw::Elastic) {
         RawBondLaw::Elastic => {
-            at.refuse(
-                "hardening",
-                &raw.hardening,
-                "has no effect under the elastic bond law",
-            )?;
+            at.refuse("hardening", &raw.hardening, "has no effect under the elastic bond law")?;
             BondLawSpec::Elastic
         }
         RawBondLaw::ElastoPlastic => {
             let example = "{ form = \"voce\", yield_stress = \"90 MPa\" }";
-            let given = raw
-                .hardening
-                .as_ref()
-                .ok_or_else(|| at.missing("hardening", example))?;
-            BondLawSpec::ElastoPlastic(hardening::resolve(
-                &at.key("hardening"),
-                given,
-                material.young,
-            )?)
+            let given = raw.hardening.as_ref().ok_or_else(|| at.missing("hardening", example))?;
+            BondLawSpec::ElastoPlastic(hardening::resolve(&at.key("hardening"), given, material.young)?)
         }
     };
-    let rupture = raw
-        .rupture
-        .as_ref()
-        .map(|raw| rupture(&at.key("rupture"), raw, &law))
-        .transpose()?;
-    Ok(BondSpec {
-        damping: damping(at, raw.damping.as_ref())?,
-        law,
-        rupture,
-    })
+    let rupture = raw.rupture.as_ref().map(|raw| rupture(&at.key("rupture"), raw, &law)).transpose()?;
+    Ok(BondSpec { damping: damping(at, raw.damping.as_ref())?, law, rupture })
 }
 
 fn damping(at: &At, raw: Option<&RawDamping>) -> Result<[f64; 4]> {
     match raw {
         None => Ok([0.0; 4]),
         Some(RawDamping::All(raw)) => {
-            let value = at
-                .key("damping")
-                .quantity(raw, Dimension::Ratio, Range::NotNegative)?;
+            let value = at.key("damping").quantity(raw, Dimension::Ratio, Range::NotNegative)?;
             Ok([value; 4])
         }
         Some(RawDamping::Modes(raw)) => {
@@ -173,9 +131,7 @@ fn damping(at: &At, raw: Option<&RawDamping>) -> Result<[f64; 4]> {
 }
 
 fn rupture(at: &At, raw: &RawRupture, law: &BondLawSpec) -> Result<RuptureSpec> {
-    let form = raw
-        .criterion
-        .ok_or_else(|| at.missing("criterion", "\"plastic-strain\""))?;
+    let form = raw.criterion.ok_or_else(|| at.missing("criterion", "\"plastic-strain\""))?;
     let beam = form == RawCriterion::BeamStress;
     if beam {
         at.refuse(
@@ -191,10 +147,7 @@ fn rupture(at: &At, raw: &RawRupture, law: &BondLawSpec) -> Result<RuptureSpec> 
     }
     if form == RawCriterion::PlasticStrain && *law == BondLawSpec::Elastic {
         let help = "set bond.law = \"elasto-plastic\", or take beam-stress or fibre-strain";
-        return Err(at.key("criterion").error(
-            "plastic-strain never holds under the elastic bond law",
-            help,
-        ));
+        return Err(at.key("criterion").error("plastic-strain never holds under the elastic bond law", help));
     }
     let strain = || at.required("strain", &raw.strain, Dimension::Ratio, Range::Positive);
     let stress = |name, raw| at.required(name, raw, Dimension::Pressure, Range::Positive);
@@ -204,24 +157,11 @@ fn rupture(at: &At, raw: &RawRupture, law: &BondLawSpec) -> Result<RuptureSpec> 
         RawCriterion::BeamStress => RuptureCriterion::BeamStress {
             tensile: stress("tensile", &raw.tensile)?,
             shear: stress("shear", &raw.shear)?,
-            moment_share: at.ratio_or(
-                "moment_share",
-                &raw.moment_share,
-                1.0,
-                Range::UnitInterval,
-            )?,
+            moment_share: at.ratio_or("moment_share", &raw.moment_share, 1.0, Range::UnitInterval)?,
         },
     };
-    let modulus = at.ratio_or(
-        "weibull_modulus",
-        &raw.weibull_modulus,
-        f64::INFINITY,
-        Range::PositiveOrInfinite,
-    )?;
-    Ok(RuptureSpec {
-        criterion,
-        weibull_modulus: modulus,
-    })
+    let modulus = at.ratio_or("weibull_modulus", &raw.weibull_modulus, f64::INFINITY, Range::PositiveOrInfinite)?;
+    Ok(RuptureSpec { criterion, weibull_modulus: modulus })
 }
 
 fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<ContactSpec>> {
@@ -231,10 +171,7 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
     let friction = at.ratio_or("friction", &raw.friction, FRICTION, Range::NotNegative)?;
     let damping = at.ratio_or("damping", &raw.damping, 0.0, Range::NotNegative)?;
     let skin = at.ratio_or("skin", &raw.skin, SKIN, Range::Positive)?;
-    let normal = match raw
-        .normal
-        .ok_or_else(|| at.missing("normal", "\"thornton\""))?
-    {
+    let normal = match raw.normal.ok_or_else(|| at.missing("normal", "\"thornton\""))? {
         RawNormal::None => return Ok(None),
         RawNormal::Hertz => {
             let why = "belongs to contact.normal = \"thornton\" only";
@@ -243,9 +180,7 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
             at.refuse("limiting_pressure", &raw.limiting_pressure, why)?;
             NormalSpec::Hertz
         }
-        RawNormal::Thornton => NormalSpec::Thornton {
-            limiting_pressure: limiting_pressure(at, raw, bond)?,
-        },
+        RawNormal::Thornton => NormalSpec::Thornton { limiting_pressure: limiting_pressure(at, raw, bond)? },
     };
     Ok(Some(ContactSpec {
         normal,
@@ -266,35 +201,19 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
 
 /// Thornton's p_y [Pa]: given, or a multiple of the bonds' yield stress.
 fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<f64> {
-    if let Some(pressure) = at.optional(
-        "limiting_pressure",
-        &raw.limiting_pressure,
-        Dimension::Pressure,
-        Range::Positive,
-    )? {
+    if let Some(pressure) =
+        at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?
+    {
         let why = "has no effect beside limiting_pressure";
         at.refuse("hardness_factor", &raw.hardness_factor, why)?;
         at.refuse("hardness_strain", &raw.hardness_strain, why)?;
         return Ok(pressure);
     }
     let BondLawSpec::ElastoPlastic(law) = &bond.law else {
-        return Err(at.missing(
-            "limiting_pressure",
-            "\"600 MPa\" (under an elastic bond law there is no yield stress)",
-        ));
+        return Err(at.missing("limiting_pressure", "\"600 MPa\" (under an elastic bond law there is no yield stress)"));
     };
-    let factor = at.ratio_or(
-        "hardness_factor",
-        &raw.hardness_factor,
-        HARDNESS_FACTOR,
-        Range::Positive,
-    )?;
-    let strain = at.ratio_or(
-        "hardness_strain",
-        &raw.hardness_strain,
-        0.0,
-        Range::NotNegative,
-    )?;
+    let factor = at.ratio_or("hardness_factor", &raw.hardness_factor, HARDNESS_FACTOR, Range::Positive)?;
+    let strain = at.ratio_or("hardness_strain", &raw.hardness_strain, 0.0, Range::NotNegative)?;
     Ok(factor * hardening::yield_stress(law, strain))
 }
 
@@ -305,12 +224,7 @@ fn time(at: &At, raw: &RawTime) -> Result<TimeSpec> {
         mass_scale: at.ratio_or("mass_scale", &raw.mass_scale, 1.0, Range::Positive)?,
         inertia_scale: at.ratio_or("inertia_scale", &raw.inertia_scale, 1.0, Range::Positive)?,
         kinetic_limit: at.ratio_or("kinetic_limit", &raw.kinetic_limit, 0.05, Range::Positive)?,
-        mismatch_limit: at.ratio_or(
-            "mismatch_limit",
-            &raw.mismatch_limit,
-            0.05,
-            Range::Positive,
-        )?,
+        mismatch_limit: at.ratio_or("mismatch_limit", &raw.mismatch_limit, 0.05, Range::Positive)?,
     })
 }
 
@@ -323,22 +237,14 @@ fn output(at: &At, raw: &RawOutput) -> Result<OutputSpec> {
                 FRAME_SIDE.start(),
                 FRAME_SIDE.end()
             );
-            return Err(at
-                .key("frame_size")
-                .element(index)
-                .error(what, "for example [1280, 720]"));
+            return Err(at.key("frame_size").element(index).error(what, "for example [1280, 720]"));
         }
         Ok(pixels as u32)
     };
     Ok(OutputSpec {
         samples: at.count_or("samples", raw.samples, 2000, 1)? as usize,
         snapshots: at.count_or("snapshots", raw.snapshots, 160, 1)? as usize,
-        rupture_density: at.ratio_or(
-            "rupture_density",
-            &raw.rupture_density,
-            4.0,
-            Range::AtLeastOne,
-        )?,
+        rupture_density: at.ratio_or("rupture_density", &raw.rupture_density, 4.0, Range::AtLeastOne)?,
         frame_size: [side(0, width)?, side(1, height)?],
         colour: match raw.colour.unwrap_or(RawColour::Stress) {
             RawColour::Stress => ColourBy::Stress,

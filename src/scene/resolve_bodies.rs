@@ -15,10 +15,7 @@ const DEFAULT_LAYER: &str = "wire";
 pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
     let length = at.required("length", &raw.length, Dimension::Length, Range::Positive)?;
     if raw.layer.is_empty() {
-        return Err(at.error(
-            "the strand has no layer",
-            "add [[strand.layer]] with `wires`",
-        ));
+        return Err(at.error("the strand has no layer", "add [[strand.layer]] with `wires`"));
     }
     let mut layers: Vec<LayerSpec> = Vec::with_capacity(raw.layer.len());
     for (index, layer) in raw.layer.iter().enumerate() {
@@ -33,42 +30,20 @@ pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
     Ok(StrandSpec { length, layers })
 }
 
-fn layer(
-    at: &At,
-    strand: &At,
-    raw: &RawLayer,
-    defaults: &RawStrand,
-    index: usize,
-) -> Result<LayerSpec> {
+fn layer(at: &At, strand: &At, raw: &RawLayer, defaults: &RawStrand, index: usize) -> Result<LayerSpec> {
     let wires = raw.wires.ok_or_else(|| at.missing("wires", "6"))?;
     let wires = at.key("wires").count(wires, 1)? as usize;
     let lay_radius = lay_radius(at, raw.lay_radius.as_ref(), wires, index)?;
     let on_axis = lay_radius == Some(0.0);
-    let pitch = match layer_or_strand(
-        at,
-        strand,
-        "pitch",
-        &raw.pitch,
-        &defaults.pitch,
-        Range::PositiveOrInfinite,
-    )? {
+    let pitch = match layer_or_strand(at, strand, "pitch", &raw.pitch, &defaults.pitch, Range::PositiveOrInfinite)? {
         Some(pitch) => pitch,
         None if on_axis => f64::INFINITY,
         None => return Err(at.missing("pitch", "\"39 mm\"")),
     };
-    let diameter = layer_or_strand(
-        at,
-        strand,
-        "wire_diameter",
-        &raw.wire_diameter,
-        &defaults.wire_diameter,
-        Range::Positive,
-    )?;
+    let diameter =
+        layer_or_strand(at, strand, "wire_diameter", &raw.wire_diameter, &defaults.wire_diameter, Range::Positive)?;
     Ok(LayerSpec {
-        name: raw
-            .name
-            .clone()
-            .unwrap_or_else(|| format!("layer {}", index + 1)),
+        name: raw.name.clone().unwrap_or_else(|| format!("layer {}", index + 1)),
         wires,
         wire_diameter: diameter.ok_or_else(|| at.missing("wire_diameter", "\"0.39 mm\""))?,
         lay_radius,
@@ -77,9 +52,7 @@ fn layer(
             RawLay::Right => 1.0,
             RawLay::Left => -1.0,
         },
-        phase: at
-            .optional("phase", &raw.phase, Dimension::Angle, Range::Any)?
-            .unwrap_or(0.0),
+        phase: at.optional("phase", &raw.phase, Dimension::Angle, Range::Any)?.unwrap_or(0.0),
     })
 }
 
@@ -109,14 +82,11 @@ fn lay_radius(at: &At, raw: Option<&Scalar>, wires: usize, index: usize) -> Resu
         return Ok((wires == 1 && index == 0).then_some(0.0));
     }
     let here = at.key("lay_radius");
-    let radius = raw
-        .map(|raw| here.quantity(raw, Dimension::Length, Range::NotNegative))
-        .transpose()?;
+    let radius = raw.map(|raw| here.quantity(raw, Dimension::Length, Range::NotNegative)).transpose()?;
     if radius == Some(0.0) && wires > 1 {
-        return Err(here.error(
-            format!("{wires} wires cannot all lie on the axis"),
-            "give a radius, or lay_radius = \"auto\"",
-        ));
+        return Err(
+            here.error(format!("{wires} wires cannot all lie on the axis"), "give a radius, or lay_radius = \"auto\"")
+        );
     }
     Ok(radius)
 }
@@ -146,24 +116,10 @@ fn straight_wire(at: &At, raw: &RawWire) -> Result<WireSpec> {
     let from = at.key("from").vector(from, Dimension::Length)?;
     let to = at.key("to").vector(to, Dimension::Length)?;
     if from == to {
-        return Err(at.key("to").error(
-            "the wire has no length: `to` is the same point as `from`",
-            "",
-        ));
+        return Err(at.key("to").error("the wire has no length: `to` is the same point as `from`", ""));
     }
-    let diameter = at.required(
-        "diameter",
-        &raw.diameter,
-        Dimension::Length,
-        Range::Positive,
-    )?;
-    wire(
-        at,
-        raw,
-        DEFAULT_LAYER,
-        diameter,
-        PathSpec::Straight { from, to },
-    )
+    let diameter = at.required("diameter", &raw.diameter, Dimension::Length, Range::Positive)?;
+    wire(at, raw, DEFAULT_LAYER, diameter, PathSpec::Straight { from, to })
 }
 
 fn wire(at: &At, raw: &RawWire, layer: &str, diameter: f64, path: PathSpec) -> Result<WireSpec> {
@@ -181,27 +137,12 @@ fn wires_of_file(at: &At, raw: &RawWire, file: &str, folder: &Path) -> Result<Ve
     at.refuse("to", &raw.to, "has no effect beside `file`")?;
     let (path, centrelines) = read_centrelines(at, file, folder)?;
     let numbers = chosen_wires(at, raw, centrelines.len())?;
-    let given = at.optional(
-        "diameter",
-        &raw.diameter,
-        Dimension::Length,
-        Range::Positive,
-    )?;
+    let given = at.optional("diameter", &raw.diameter, Dimension::Length, Range::Positive)?;
     numbers
         .map(|index| {
-            let CentrelineWire {
-                layer,
-                diameter,
-                points,
-            } = &centrelines[index];
-            let diameter = given
-                .or(*diameter)
-                .ok_or_else(|| at.missing("diameter", "\"0.39 mm\""))?;
-            let path = PathSpec::File {
-                file: path.clone(),
-                index,
-                points: points.clone(),
-            };
+            let CentrelineWire { layer, diameter, points } = &centrelines[index];
+            let diameter = given.or(*diameter).ok_or_else(|| at.missing("diameter", "\"0.39 mm\""))?;
+            let path = PathSpec::File { file: path.clone(), index, points: points.clone() };
             wire(at, raw, layer, diameter, path)
         })
         .collect()
@@ -211,8 +152,7 @@ fn wires_of_file(at: &At, raw: &RawWire, file: &str, folder: &Path) -> Result<Ve
 fn read_centrelines(at: &At, file: &str, folder: &Path) -> Result<(PathBuf, Vec<CentrelineWire>)> {
     let unreadable = |path: &Path, source: std::io::Error| {
         let what = format!("cannot read {}: {source}", path.display());
-        at.key("file")
-            .error(what, "the path is taken from the scene's folder")
+        at.key("file").error(what, "the path is taken from the scene's folder")
     };
     let given = folder.join(file);
     let path = std::path::absolute(&given).map_err(|source| unreadable(&given, source))?;
@@ -246,25 +186,14 @@ fn chosen_wires(at: &At, raw: &RawWire, len: usize) -> Result<std::ops::Range<us
 
 /// Resolves all `[[sphere]]`.
 pub(super) fn spheres(at: &At, raw: &[RawSphere]) -> Result<Vec<SphereSpec>> {
-    raw.iter()
-        .enumerate()
-        .map(|(index, raw)| sphere(&at.element(index), raw))
-        .collect()
+    raw.iter().enumerate().map(|(index, raw)| sphere(&at.element(index), raw)).collect()
 }
 
 fn sphere(at: &At, raw: &RawSphere) -> Result<SphereSpec> {
     let example = "[\"0 mm\", \"0 mm\", \"5 mm\"]";
-    let position = raw
-        .position
-        .as_ref()
-        .ok_or_else(|| at.missing("position", example))?;
+    let position = raw.position.as_ref().ok_or_else(|| at.missing("position", example))?;
     Ok(SphereSpec {
-        diameter: at.required(
-            "diameter",
-            &raw.diameter,
-            Dimension::Length,
-            Range::Positive,
-        )?,
+        diameter: at.required("diameter", &raw.diameter, Dimension::Length, Range::Positive)?,
         position: at.key("position").vector(position, Dimension::Length)?,
         velocity: at.vector_or_zero("velocity", &raw.velocity, Dimension::Velocity)?,
         spin: at.vector_or_zero("spin", &raw.spin, Dimension::AngularVelocity)?,
@@ -272,30 +201,20 @@ fn sphere(at: &At, raw: &RawSphere) -> Result<SphereSpec> {
 }
 
 /// Number of bodies: strand wires, wires, spheres.
-pub(super) fn count(
-    strand: Option<&StrandSpec>,
-    wires: &[WireSpec],
-    spheres: &[SphereSpec],
-) -> usize {
-    let in_strand: usize = strand.map_or(0, |strand| {
-        strand.layers.iter().map(|layer| layer.wires).sum()
-    });
+pub(super) fn count(strand: Option<&StrandSpec>, wires: &[WireSpec], spheres: &[SphereSpec]) -> usize {
+    let in_strand: usize = strand.map_or(0, |strand| strand.layers.iter().map(|layer| layer.wires).sum());
     in_strand + wires.len() + spheres.len()
 }
 
 /// Length along z of all that grips can hold [m]; `None` without wires.
 pub(super) fn extent(strand: Option<&StrandSpec>, wires: &[WireSpec]) -> Option<f64> {
-    let ends = strand
-        .map(|strand| [0.0, strand.length])
-        .into_iter()
-        .flatten();
+    let ends = strand.map(|strand| [0.0, strand.length]).into_iter().flatten();
     let heights = wires.iter().flat_map(|wire| match &wire.path {
         PathSpec::Straight { from, to } => vec![from.z, to.z],
         PathSpec::File { points, .. } => points.iter().map(|point| point.z).collect(),
     });
-    let (least, greatest) = ends.chain(heights).fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(least, greatest), z| (z.min(least), z.max(greatest)),
-    );
+    let (least, greatest) = ends
+        .chain(heights)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), z| (z.min(least), z.max(greatest)));
     (least <= greatest).then_some(greatest - least)
 }

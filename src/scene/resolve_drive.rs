@@ -11,30 +11,17 @@ use glam::DVec3;
 pub(super) fn grip(at: &At, raw: &RawGrip, extent: Option<f64>) -> Result<GripSpec> {
     let length = at.required("length", &raw.length, Dimension::Length, Range::Positive)?;
     let Some(extent) = extent else {
-        return Err(at.error(
-            "the grips have nothing to hold",
-            "grips hold a [strand] or [[wire]]s",
-        ));
+        return Err(at.error("the grips have nothing to hold", "grips hold a [strand] or [[wire]]s"));
     };
     if 2.0 * length >= extent {
         let body = units::format(extent, Dimension::Length);
         let what = format!("two grips of this length leave nothing of a body of {body}");
-        return Err(at.key("length").error(
-            what,
-            "the gauge length is the body's length less both grips",
-        ));
+        return Err(at.key("length").error(what, "the gauge length is the body's length less both grips"));
     }
-    let rotation = at.optional(
-        "rotation_rate",
-        &raw.rotation_rate,
-        Dimension::AngularVelocity,
-        Range::Any,
-    )?;
+    let rotation = at.optional("rotation_rate", &raw.rotation_rate, Dimension::AngularVelocity, Range::Any)?;
     let free_rotation = raw.free_rotation.unwrap_or(false);
     if free_rotation && rotation.is_some_and(|rate| rate != 0.0) {
-        return Err(at
-            .key("rotation_rate")
-            .refused("has no effect beside `free_rotation = true`"));
+        return Err(at.key("rotation_rate").refused("has no effect beside `free_rotation = true`"));
     }
     Ok(GripSpec {
         kind: grip_kind(at, raw)?,
@@ -48,20 +35,11 @@ pub(super) fn grip(at: &At, raw: &RawGrip, extent: Option<f64>) -> Result<GripSp
 fn grip_kind(at: &At, raw: &RawGrip) -> Result<GripKind> {
     match raw.kind.unwrap_or(RawGripKind::All) {
         RawGripKind::All => {
-            at.refuse(
-                "clamp_pressure",
-                &raw.clamp_pressure,
-                "belongs to kind = \"jaw\" only",
-            )?;
+            at.refuse("clamp_pressure", &raw.clamp_pressure, "belongs to kind = \"jaw\" only")?;
             Ok(GripKind::All)
         }
         RawGripKind::Jaw => Ok(GripKind::Jaw {
-            pressure: at.required(
-                "clamp_pressure",
-                &raw.clamp_pressure,
-                Dimension::Pressure,
-                Range::Positive,
-            )?,
+            pressure: at.required("clamp_pressure", &raw.clamp_pressure, Dimension::Pressure, Range::Positive)?,
         }),
     }
 }
@@ -74,10 +52,7 @@ fn drive(at: &At, raw: &RawGrip) -> Result<DriveSpec> {
         return Ok(DriveSpec::Speed(speed));
     }
     if raw.displacement_amplitude.is_none() && raw.frequency.is_none() {
-        return Err(at.missing(
-            "speed",
-            "\"5 m/s\", or displacement_amplitude and frequency",
-        ));
+        return Err(at.missing("speed", "\"5 m/s\", or displacement_amplitude and frequency"));
     }
     Ok(DriveSpec::Cyclic {
         amplitude: at.required(
@@ -86,21 +61,13 @@ fn drive(at: &At, raw: &RawGrip) -> Result<DriveSpec> {
             Dimension::Length,
             Range::Positive,
         )?,
-        frequency: at.required(
-            "frequency",
-            &raw.frequency,
-            Dimension::Frequency,
-            Range::Positive,
-        )?,
+        frequency: at.required("frequency", &raw.frequency, Dimension::Frequency, Range::Positive)?,
     })
 }
 
 /// Resolves all `[[hold]]` of a scene with this many bodies.
 pub(super) fn holds(at: &At, raw: &[RawHold], bodies: usize) -> Result<Vec<HoldSpec>> {
-    raw.iter()
-        .enumerate()
-        .map(|(index, raw)| hold(&at.element(index), raw, bodies))
-        .collect()
+    raw.iter().enumerate().map(|(index, raw)| hold(&at.element(index), raw, bodies)).collect()
 }
 
 fn hold(at: &At, raw: &RawHold, bodies: usize) -> Result<HoldSpec> {
@@ -108,15 +75,10 @@ fn hold(at: &At, raw: &RawHold, bodies: usize) -> Result<HoldSpec> {
     let body = at.key("body").count(body, 0)? as usize;
     if body >= bodies {
         let what = format!("there is no body {body}: the scene has {bodies}, numbered from 0");
-        return Err(at.key("body").error(
-            what,
-            "strand wires come first, inside out, then [[wire]], then [[sphere]]",
-        ));
+        return Err(at.key("body").error(what, "strand wires come first, inside out, then [[wire]], then [[sphere]]"));
     }
     let mut fixed = [false; 6];
-    raw.fix
-        .iter()
-        .for_each(|component| fixed[*component as usize] = true);
+    raw.fix.iter().for_each(|component| fixed[*component as usize] = true);
     let hold = HoldSpec {
         body,
         part: match raw.part.unwrap_or(RawPart::All) {
@@ -129,9 +91,7 @@ fn hold(at: &At, raw: &RawHold, bodies: usize) -> Result<HoldSpec> {
         spin: at.vector_or_zero("spin", &raw.spin, Dimension::AngularVelocity)?,
         force: at.vector_or_zero("force", &raw.force, Dimension::Force)?,
         moment: at.vector_or_zero("moment", &raw.moment, Dimension::Moment)?,
-        ramp: at
-            .optional("ramp", &raw.ramp, Dimension::Time, Range::NotNegative)?
-            .unwrap_or(0.0),
+        ramp: at.optional("ramp", &raw.ramp, Dimension::Time, Range::NotNegative)?.unwrap_or(0.0),
     };
     refuse_idle(at, &hold)?;
     Ok(hold)
@@ -167,66 +127,37 @@ fn refuse_idle(at: &At, hold: &HoldSpec) -> Result<()> {
     }
     let idle = hold.fixed == [false; 6] && hold.force == DVec3::ZERO && hold.moment == DVec3::ZERO;
     match idle {
-        true => Err(at.error(
-            "this hold neither prescribes nor loads anything",
-            "give `fix`, `force` or `moment`",
-        )),
+        true => Err(at.error("this hold neither prescribes nor loads anything", "give `fix`, `force` or `moment`")),
         false => Ok(()),
     }
 }
 
 /// Resolves `[stop]`.
-pub(super) fn stop(
-    at: &At,
-    raw: &RawStop,
-    grip: Option<&GripSpec>,
-    breaks: bool,
-) -> Result<StopSpec> {
+pub(super) fn stop(at: &At, raw: &RawStop, grip: Option<&GripSpec>, breaks: bool) -> Result<StopSpec> {
     if grip.is_none() {
         let why = "needs a [grip], which this scene does not have";
         at.refuse("strain", &raw.strain, why)?;
         at.refuse("stress_fraction", &raw.stress_fraction, why)?;
     }
     if !breaks {
-        at.refuse(
-            "stress_fraction",
-            &raw.stress_fraction,
-            "never holds: no bond of this scene can break",
-        )?;
+        at.refuse("stress_fraction", &raw.stress_fraction, "never holds: no bond of this scene can break")?;
     }
     let stop = StopSpec {
         strain: at.optional("strain", &raw.strain, Dimension::Ratio, Range::Positive)?,
-        stress_fraction: at.optional(
-            "stress_fraction",
-            &raw.stress_fraction,
-            Dimension::Ratio,
-            Range::Fraction,
-        )?,
+        stress_fraction: at.optional("stress_fraction", &raw.stress_fraction, Dimension::Ratio, Range::Fraction)?,
         time: at.optional("time", &raw.time, Dimension::Time, Range::Positive)?,
-        steps: raw
-            .steps
-            .map(|steps| at.key("steps").count(steps, 1))
-            .transpose()?,
+        steps: raw.steps.map(|steps| at.key("steps").count(steps, 1)).transpose()?,
     };
-    if stop
-        == (StopSpec {
-            strain: None,
-            stress_fraction: None,
-            time: None,
-            steps: None,
-        })
-    {
-        return Err(at.error(
-            "the scene does not say when to stop",
-            "add [stop] with strain, stress_fraction, time or steps",
-        ));
+    if stop == (StopSpec { strain: None, stress_fraction: None, time: None, steps: None }) {
+        return Err(
+            at.error("the scene does not say when to stop", "add [stop] with strain, stress_fraction, time or steps")
+        );
     }
     let still = grip.is_some_and(|grip| grip.drive == DriveSpec::Speed(0.0));
     if still && stop.time.is_none() && stop.steps.is_none() {
-        return Err(at.error(
-            "the grips do not move apart, so this scene would never stop",
-            "add time or steps to [stop]",
-        ));
+        return Err(
+            at.error("the grips do not move apart, so this scene would never stop", "add time or steps to [stop]")
+        );
     }
     Ok(stop)
 }

@@ -23,48 +23,25 @@ pub(super) enum Part {
 }
 
 impl SceneSource {
-    pub(super) fn new(
-        file_name: &str,
-        document: Document<String>,
-        overrides: Vec<Override>,
-    ) -> Self {
-        Self {
-            file_name: file_name.to_owned(),
-            document,
-            overrides,
-        }
+    pub(super) fn new(file_name: &str, document: Document<String>, overrides: Vec<Override>) -> Self {
+        Self { file_name: file_name.to_owned(), document, overrides }
     }
 
     /// An error at the value of a key path such as `strand.layer.1.lay_radius`, or at its nearest parent that the
     /// scene has. A value that a `--set` option gave is shown there. An empty `help` means none.
     pub fn error(&self, key_path: &str, what: impl Into<String>, help: impl Into<String>) -> Error {
-        let path: Vec<String> = key_path
-            .split('.')
-            .filter(|part| !part.is_empty())
-            .map(str::to_owned)
-            .collect();
+        let path: Vec<String> = key_path.split('.').filter(|part| !part.is_empty()).map(str::to_owned).collect();
         self.error_at(&path, Part::Value, what.into(), help.into())
     }
 
-    pub(super) fn error_at(
-        &self,
-        path: &[String],
-        part: Part,
-        what: String,
-        help: String,
-    ) -> Error {
+    pub(super) fn error_at(&self, path: &[String], part: Part, what: String, help: String) -> Error {
         let place = find(self.document.as_item(), path, part);
         let in_file = place.as_ref().is_some_and(|place| place.exact);
         // A value that an option replaced is shown in the option. A table that only options made, too.
-        let chosen = self
-            .overrides
-            .iter()
-            .rev()
-            .find(|option| path.starts_with(option.path()))
-            .or_else(|| {
-                let below = |option: &&Override| option.path().starts_with(path);
-                self.overrides.iter().rev().find(|o| !in_file && below(o))
-            });
+        let chosen = self.overrides.iter().rev().find(|option| path.starts_with(option.path())).or_else(|| {
+            let below = |option: &&Override| option.path().starts_with(path);
+            self.overrides.iter().rev().find(|o| !in_file && below(o))
+        });
         match chosen {
             Some(option) => {
                 // At what the error is about; at the value that holds it; at the key that made the table.
@@ -84,13 +61,7 @@ impl SceneSource {
 }
 
 /// A scene error with its place.
-pub(super) fn scene_error(
-    name: &str,
-    text: &str,
-    span: Range<usize>,
-    what: String,
-    help: String,
-) -> Error {
+pub(super) fn scene_error(name: &str, text: &str, span: Range<usize>, what: String, help: String) -> Error {
     Error::Scene(Box::new(SceneError {
         what,
         help: (!help.is_empty()).then_some(help),
@@ -140,11 +111,7 @@ fn child<'a>(item: &'a Item, name: &str) -> Option<(Option<Range<usize>>, &'a It
 ///
 /// Serde reports places in the text; this turns them into key paths, which stay valid when options change the text.
 pub(super) fn path_at(root: &Item, at: &Range<usize>) -> (Vec<String>, Part) {
-    let mut best = Nearest {
-        width: usize::MAX,
-        path: Vec::new(),
-        part: Part::Value,
-    };
+    let mut best = Nearest { width: usize::MAX, path: Vec::new(), part: Part::Value };
     visit(root, at, &mut Vec::new(), &mut best);
     (best.path, best.part)
 }
@@ -156,13 +123,7 @@ struct Nearest {
 }
 
 impl Nearest {
-    fn offer(
-        &mut self,
-        span: Option<Range<usize>>,
-        at: &Range<usize>,
-        path: &[String],
-        part: Part,
-    ) {
+    fn offer(&mut self, span: Option<Range<usize>>, at: &Range<usize>, path: &[String], part: Part) {
         let Some(span) = span else { return };
         if span.start <= at.start && at.end <= span.end && span.len() < self.width {
             self.width = span.len();
@@ -176,12 +137,7 @@ fn visit(item: &Item, at: &Range<usize>, path: &mut Vec<String>, best: &mut Near
     if let Some(table) = item.as_table_like() {
         for (name, next) in table.iter() {
             path.push(name.to_owned());
-            best.offer(
-                table.key(name).and_then(|key| key.span()),
-                at,
-                path,
-                Part::Key,
-            );
+            best.offer(table.key(name).and_then(|key| key.span()), at, path, Part::Key);
             best.offer(next.span(), at, path, Part::Value);
             visit(next, at, path, best);
             path.pop();

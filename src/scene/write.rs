@@ -18,16 +18,10 @@ pub fn to_toml(spec: &Spec) -> String {
     bond(&mut out, &spec.bond);
     contact(&mut out, spec.contact.as_ref());
     strand(&mut out, spec.strand.as_ref());
-    spec.wires
-        .iter()
-        .for_each(|wire| self::wire(&mut out, wire));
-    spec.spheres
-        .iter()
-        .for_each(|sphere| self::sphere(&mut out, sphere));
+    spec.wires.iter().for_each(|wire| self::wire(&mut out, wire));
+    spec.spheres.iter().for_each(|sphere| self::sphere(&mut out, sphere));
     grip(&mut out, spec.grip.as_ref());
-    spec.holds
-        .iter()
-        .for_each(|hold| self::hold(&mut out, hold));
+    spec.holds.iter().for_each(|hold| self::hold(&mut out, hold));
     time(&mut out, &spec.time);
     stop(&mut out, &spec.stop);
     output(&mut out, &spec.output);
@@ -110,10 +104,7 @@ fn bond(out: &mut Lines, bond: &BondSpec) {
         }
     }
     let [axial, shear, bending, torsion] = bond.damping.map(number);
-    out.entry(
-        "damping",
-        format!("{{ axial = {axial}, shear = {shear}, bending = {bending}, torsion = {torsion} }}"),
-    );
+    out.entry("damping", format!("{{ axial = {axial}, shear = {shear}, bending = {bending}, torsion = {torsion} }}"));
     if let Some(rupture) = &bond.rupture {
         out.entry("rupture", self::rupture(rupture));
     }
@@ -122,43 +113,28 @@ fn bond(out: &mut Lines, bond: &BondSpec) {
 fn hardening(law: &HardeningSpec) -> String {
     let stress = |value| quantity(value, Dimension::Pressure);
     match law {
-        HardeningSpec::Voce {
-            yield_stress,
-            saturation,
-            rate,
-            linear,
-        } => format!(
+        HardeningSpec::Voce { yield_stress, saturation, rate, linear } => format!(
             "{{ form = \"voce\", yield_stress = {}, saturation = {}, rate = {}, linear = {} }}",
             stress(*yield_stress),
             stress(*saturation),
             number(*rate),
             stress(*linear)
         ),
-        HardeningSpec::Swift {
-            strength,
-            prestrain,
-            exponent,
-        } => format!(
+        HardeningSpec::Swift { strength, prestrain, exponent } => format!(
             "{{ form = \"swift\", strength = {}, prestrain = {}, exponent = {} }}",
             stress(*strength),
             number(*prestrain),
             number(*exponent)
         ),
-        HardeningSpec::Ludwik {
-            yield_stress,
-            strength,
-            exponent,
-        } => format!(
+        HardeningSpec::Ludwik { yield_stress, strength, exponent } => format!(
             "{{ form = \"ludwik\", yield_stress = {}, strength = {}, exponent = {} }}",
             stress(*yield_stress),
             stress(*strength),
             number(*exponent)
         ),
         HardeningSpec::Table(points) => {
-            let points: Vec<String> = points
-                .iter()
-                .map(|[strain, value]| format!("[{}, {}]", number(*strain), stress(*value)))
-                .collect();
+            let points: Vec<String> =
+                points.iter().map(|[strain, value]| format!("[{}, {}]", number(*strain), stress(*value))).collect();
             format!("{{ form = \"table\", points = [{}] }}", points.join(", "))
         }
     }
@@ -167,29 +143,19 @@ fn hardening(law: &HardeningSpec) -> String {
 fn rupture(rupture: &RuptureSpec) -> String {
     let criterion = match rupture.criterion {
         RuptureCriterion::PlasticStrain { strain } => {
-            format!(
-                "criterion = \"plastic-strain\", strain = {}",
-                number(strain)
-            )
+            format!("criterion = \"plastic-strain\", strain = {}", number(strain))
         }
         RuptureCriterion::FibreStrain { strain } => {
             format!("criterion = \"fibre-strain\", strain = {}", number(strain))
         }
-        RuptureCriterion::BeamStress {
-            tensile,
-            shear,
-            moment_share,
-        } => format!(
+        RuptureCriterion::BeamStress { tensile, shear, moment_share } => format!(
             "criterion = \"beam-stress\", tensile = {}, shear = {}, moment_share = {}",
             quantity(tensile, Dimension::Pressure),
             quantity(shear, Dimension::Pressure),
             number(moment_share)
         ),
     };
-    format!(
-        "{{ {criterion}, weibull_modulus = {} }}",
-        number(rupture.weibull_modulus)
-    )
+    format!("{{ {criterion}, weibull_modulus = {} }}", number(rupture.weibull_modulus))
 }
 
 fn contact(out: &mut Lines, contact: Option<&ContactSpec>) {
@@ -276,19 +242,12 @@ fn grip(out: &mut Lines, grip: Option<&GripSpec>) {
     out.quantity("length", grip.length, Dimension::Length);
     match grip.drive {
         DriveSpec::Speed(speed) => out.quantity("speed", speed, Dimension::Velocity),
-        DriveSpec::Cyclic {
-            amplitude,
-            frequency,
-        } => {
+        DriveSpec::Cyclic { amplitude, frequency } => {
             out.quantity("displacement_amplitude", amplitude, Dimension::Length);
             out.quantity("frequency", frequency, Dimension::Frequency);
         }
     }
-    out.quantity(
-        "rotation_rate",
-        grip.rotation_rate,
-        Dimension::AngularVelocity,
-    );
+    out.quantity("rotation_rate", grip.rotation_rate, Dimension::AngularVelocity);
     out.entry("free_rotation", grip.free_rotation.to_string());
 }
 
@@ -302,12 +261,8 @@ fn hold(out: &mut Lines, hold: &HoldSpec) {
     };
     out.entry("part", text(part));
     let names = ["x", "y", "z", "rx", "ry", "rz"];
-    let fixed: Vec<String> = names
-        .iter()
-        .zip(hold.fixed)
-        .filter(|(_, fixed)| *fixed)
-        .map(|(name, _)| text(name))
-        .collect();
+    let fixed: Vec<String> =
+        names.iter().zip(hold.fixed).filter(|(_, fixed)| *fixed).map(|(name, _)| text(name)).collect();
     out.entry("fix", format!("[{}]", fixed.join(", ")));
     out.vector("velocity", hold.velocity, Dimension::Velocity);
     out.vector("spin", hold.spin, Dimension::AngularVelocity);

@@ -55,12 +55,7 @@ fn nothing_there() -> BuildError {
 
 /// Refuses a wire that turns too far between neighbouring bonds.
 fn check_turns(w: usize, wire: &Strung) -> Result<(), BuildError> {
-    let sharpest = wire
-        .chain
-        .points
-        .windows(3)
-        .map(|p| (p[1] - p[0]).angle_between(p[2] - p[1]))
-        .fold(0.0, f64::max);
+    let sharpest = wire.chain.points.windows(3).map(|p| (p[1] - p[0]).angle_between(p[2] - p[1])).fold(0.0, f64::max);
     if sharpest <= GREATEST_TURN {
         return Ok(());
     }
@@ -85,14 +80,11 @@ fn check_turns(w: usize, wire: &Strung) -> Result<(), BuildError> {
 
 /// Refuses bodies that overlap by more than [`GREATEST_OVERLAP`] of a diameter.
 fn check_overlaps(spec: &Spec, strung: &[Strung], layers: &[Layer]) -> Result<(), BuildError> {
-    let wires = strung.iter().map(|wire| Body {
-        points: &wire.chain.points,
-        radius: 0.5 * wire.diameter,
-    });
-    let spheres = spec.spheres.iter().map(|sphere| Body {
-        points: std::slice::from_ref(&sphere.position),
-        radius: 0.5 * sphere.diameter,
-    });
+    let wires = strung.iter().map(|wire| Body { points: &wire.chain.points, radius: 0.5 * wire.diameter });
+    let spheres = spec
+        .spheres
+        .iter()
+        .map(|sphere| Body { points: std::slice::from_ref(&sphere.position), radius: 0.5 * sphere.diameter });
     let bodies: Vec<Body> = wires.chain(spheres).collect();
     let Some(worst) = overlap::deepest(&bodies, GREATEST_OVERLAP) else {
         return Ok(());
@@ -123,10 +115,7 @@ fn check_overlaps(spec: &Spec, strung: &[Strung], layers: &[Layer]) -> Result<()
             mm(worst.place.y),
             mm(worst.place.z)
         ),
-        help: format!(
-            "move them apart: at most {:.0} % of the diameter is accepted",
-            100.0 * GREATEST_OVERLAP
-        ),
+        help: format!("move them apart: at most {:.0} % of the diameter is accepted", 100.0 * GREATEST_OVERLAP),
         key,
     })
 }
@@ -147,9 +136,7 @@ fn assemble(spec: &Spec, layers: Vec<Layer>, strung: &[Strung]) -> Assembly {
         length: 0.0,
         area: 0.0,
     };
-    strung
-        .iter()
-        .for_each(|wire| add_wire(&mut assembly, spec, wire));
+    strung.iter().for_each(|wire| add_wire(&mut assembly, spec, wire));
     assembly.wire_particles = assembly.len();
     assembly.area = assembly.wires.iter().map(Wire::area).sum();
     assembly.length = match &spec.strand {
@@ -161,12 +148,8 @@ fn assemble(spec: &Spec, layers: Vec<Layer>, strung: &[Strung]) -> Assembly {
 }
 
 fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &Strung) {
-    let placed = Wire {
-        layer: wire.layer,
-        first: assembly.len(),
-        len: wire.chain.points.len(),
-        diameter: wire.diameter,
-    };
+    let placed =
+        Wire { layer: wire.layer, first: assembly.len(), len: wire.chain.points.len(), diameter: wire.diameter };
     let (points, arcs) = (&wire.chain.points, &wire.chain.arcs);
     let per_length = spec.material.density * placed.area();
     // Arc on both sides of a particle, halved; wire ends have one side only.
@@ -176,12 +159,7 @@ fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &Strung) {
         0.5 * (before + after)
     };
     let total: f64 = arcs.iter().sum();
-    let centre = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| *p * share(i))
-        .sum::<DVec3>()
-        / total;
+    let centre = points.iter().enumerate().map(|(i, p)| *p * share(i)).sum::<DVec3>() / total;
     let number = assembly.wires.len() as u32;
     for (i, &point) in points.iter().enumerate() {
         // A spinning wire turns as a rigid body about its centre of mass.
@@ -215,9 +193,7 @@ fn add_body(assembly: &mut Assembly, spec: &Spec, radius: f64, mass: f64) {
     let mass = mass * spec.time.mass_scale;
     assembly.radius.push(radius);
     assembly.mass.push(mass);
-    assembly
-        .inertia
-        .push(0.4 * mass * radius * radius * spec.time.inertia_scale);
+    assembly.inertia.push(0.4 * mass * radius * radius * spec.time.inertia_scale);
 }
 
 /// Greatest less least value; 0 for none.
@@ -287,11 +263,7 @@ mod tests {
     #[test]
     fn bodies_are_wires_then_spheres() {
         let mut spec = ka4();
-        spec.wires.push(straight(
-            1e-3,
-            DVec3::new(5e-3, 0.0, 0.0),
-            DVec3::new(5e-3, 0.0, 0.1),
-        ));
+        spec.wires.push(straight(1e-3, DVec3::new(5e-3, 0.0, 0.0), DVec3::new(5e-3, 0.0, 0.1)));
         spec.spheres.push(sphere(2e-3, DVec3::new(0.0, 9e-3, 0.0)));
         let assembly = build(&spec).unwrap();
         let bodies = assembly.bodies();
@@ -309,8 +281,7 @@ mod tests {
     #[test]
     fn scales_multiply_mass_and_inertia() {
         let mut spec = empty();
-        spec.wires
-            .push(straight(1e-3, DVec3::ZERO, DVec3::Z * 0.01));
+        spec.wires.push(straight(1e-3, DVec3::ZERO, DVec3::Z * 0.01));
         let plain = build(&spec).unwrap();
         spec.time.mass_scale = 4.0;
         spec.time.inertia_scale = 8.0;
@@ -352,15 +323,8 @@ mod tests {
         assert_eq!(read.len(), 34);
         let mut spec = empty();
         for (index, line) in read.into_iter().enumerate() {
-            let path = PathSpec::File {
-                file: PathBuf::from("ka4.txt"),
-                index,
-                points: line.points,
-            };
-            spec.wires.push(WireSpec {
-                layer: line.layer,
-                ..wire(line.diameter.unwrap(), path)
-            });
+            let path = PathSpec::File { file: PathBuf::from("ka4.txt"), index, points: line.points };
+            spec.wires.push(WireSpec { layer: line.layer, ..wire(line.diameter.unwrap(), path) });
         }
         let back = build(&spec).unwrap();
         assert_eq!(back.len(), strand.len());
@@ -390,17 +354,13 @@ mod tests {
         let mut spec = empty();
         for x in [0.0, 5e-3, 5.7e-3] {
             let foot = DVec3::X * x;
-            spec.wires
-                .push(straight(1e-3, foot, foot + DVec3::Z * 0.02));
+            spec.wires.push(straight(1e-3, foot, foot + DVec3::Z * 0.02));
         }
         let error = refused(&spec);
         assert_eq!(error.kind, BuildErrorKind::Overlap);
         assert_eq!(error.key, "wire.2");
         let message = &error.message;
-        assert!(
-            message.contains("wire 2") && message.contains("wire 3"),
-            "{message}"
-        );
+        assert!(message.contains("wire 2") && message.contains("wire 3"), "{message}");
         assert!(message.contains("0.3 mm, 30 %"), "{message}");
         // 10 % is the limit, and 9 % passes.
         spec.wires[2] = straight(1e-3, DVec3::X * 5.91e-3, DVec3::new(5.91e-3, 0.0, 0.02));
@@ -411,13 +371,9 @@ mod tests {
     fn a_wire_through_the_strand_is_refused() {
         let mut spec = ka4();
         let from = DVec3::new(-3e-3, 0.0, 0.06);
-        spec.wires
-            .push(straight(0.39e-3, from, from + DVec3::X * 6e-3));
+        spec.wires.push(straight(0.39e-3, from, from + DVec3::X * 6e-3));
         let error = refused(&spec);
-        assert_eq!(
-            (error.kind, error.key.as_str()),
-            (BuildErrorKind::Overlap, "wire.0")
-        );
+        assert_eq!((error.kind, error.key.as_str()), (BuildErrorKind::Overlap, "wire.0"));
         assert!(error.message.contains("wire 35"), "{}", error.message);
     }
 
@@ -435,17 +391,13 @@ mod tests {
     fn too_short_too_sharp_and_empty_are_refused() {
         let mut spec = empty();
         assert_eq!(refused(&spec).kind, BuildErrorKind::Empty);
-        spec.wires
-            .push(straight(1e-3, DVec3::ZERO, DVec3::Z * 0.9e-3));
+        spec.wires.push(straight(1e-3, DVec3::ZERO, DVec3::Z * 0.9e-3));
         let error = refused(&spec);
         assert_eq!(error.kind, BuildErrorKind::TooShort);
         assert!(error.message.contains("0.9 mm"), "{}", error.message);
         let mut spec = empty();
         spec.spacing = 4.0;
-        spec.strand = Some(StrandSpec {
-            length: 0.03,
-            layers: vec![layer(1, 0.39e-3, Some(1e-3), 3e-3)],
-        });
+        spec.strand = Some(StrandSpec { length: 0.03, layers: vec![layer(1, 0.39e-3, Some(1e-3), 3e-3)] });
         let error = refused(&spec);
         assert_eq!(error.kind, BuildErrorKind::TooFewParticles);
         assert_eq!(error.key, "strand.layer.0.pitch");
@@ -466,10 +418,6 @@ mod tests {
         ));
         let error = refused(&spec);
         assert_eq!(error.kind, BuildErrorKind::BadPath);
-        assert!(
-            error.message.contains("wire 5 of cable.txt: point 3"),
-            "{}",
-            error.message
-        );
+        assert!(error.message.contains("wire 5 of cable.txt: point 3"), "{}", error.message);
     }
 }

@@ -59,29 +59,19 @@ impl BuildError {
                     mm(given),
                     runs_into(error.clash, names)
                 ),
-                format!(
-                    "the least lay radius that works here is {} mm; \"auto\" finds it",
-                    mm_rounded_up(least)
-                ),
+                format!("the least lay radius that works here is {} mm; \"auto\" finds it", mm_rounded_up(least)),
             ),
             _ => (
                 BuildErrorKind::NoLayRadius,
                 format!("the wires of layer \"{name}\" overlap each other at every lay radius"),
-                "the pitch must be greater than the number of wires times their diameter"
-                    .to_owned(),
+                "the pitch must be greater than the number of wires times their diameter".to_owned(),
             ),
         };
         let key = match kind {
             BuildErrorKind::LayRadius => "lay_radius",
             _ => "pitch",
         };
-        Self {
-            kind,
-            layer: Some(error.layer),
-            message,
-            help,
-            key: format!("strand.layer.{}.{key}", error.layer),
-        }
+        Self { kind, layer: Some(error.layer), message, help, key: format!("strand.layer.{}.{key}", error.layer) }
     }
 }
 
@@ -118,12 +108,7 @@ mod tests {
 
     #[test]
     fn message_names_layer_radius_and_remedy() {
-        let error = LayRadiusError {
-            layer: 1,
-            given: Some(0.9e-3),
-            least: Some(1.142_03e-3),
-            clash: Clash::Below(0),
-        };
+        let error = LayRadiusError { layer: 1, given: Some(0.9e-3), least: Some(1.142_03e-3), clash: Clash::Below(0) };
         let error = BuildError::lay_radius(error, &["inner", "outer"]);
         assert_eq!(error.key, "strand.layer.1.lay_radius");
         assert!(error.message.contains("0.9 mm") && error.message.contains("\"inner\""));

@@ -68,12 +68,7 @@ mod tests {
     use super::*;
 
     fn outer_wire(lay: f64) -> Helix {
-        Helix {
-            radius: 1.165e-3,
-            pitch: 39e-3,
-            lay,
-            phase: 0.7,
-        }
+        Helix { radius: 1.165e-3, pitch: 39e-3, lay, phase: 0.7 }
     }
 
     #[test]
@@ -114,10 +109,7 @@ mod tests {
 
     #[test]
     fn infinite_pitch_is_a_straight_wire() {
-        let helix = Helix {
-            pitch: f64::INFINITY,
-            ..outer_wire(1.0)
-        };
+        let helix = Helix { pitch: f64::INFINITY, ..outer_wire(1.0) };
         assert_eq!(helix.tangent(0.02), DVec3::Z);
         assert_eq!(helix.arc_length(0.12), 0.12);
     }

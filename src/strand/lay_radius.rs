@@ -45,12 +45,7 @@ pub fn resolve(layers: &[LayerSpec]) -> Result<Vec<f64>, LayRadiusError> {
     let mut radii: Vec<f64> = Vec::with_capacity(layers.len());
     for (k, layer) in layers.iter().enumerate() {
         let least = least_radius(layers, &radii, k);
-        let error = |clash| LayRadiusError {
-            layer: k,
-            given: layer.lay_radius,
-            least,
-            clash,
-        };
+        let error = |clash| LayRadiusError { layer: k, given: layer.lay_radius, least, clash };
         let radius = match layer.lay_radius {
             None => least.ok_or(error(Clash::Own))?,
             Some(given) => match clash(layers, &radii, k, given) {
@@ -115,11 +110,7 @@ pub fn least_radius_of_layer(wires: usize, diameter: f64, pitch: f64) -> Option<
 pub fn distance(r1: f64, r2: f64, phase: f64, rate: f64) -> f64 {
     let turns = phase.rem_euclid(TAU);
     let phase = turns.min(TAU - turns);
-    let u = if rate == 0.0 {
-        phase
-    } else {
-        closest_angle(r1 * r2 * rate * rate, phase)
-    };
+    let u = if rate == 0.0 { phase } else { closest_angle(r1 * r2 * rate * rate, phase) };
     let across = (r1 - r2).powi(2) + 4.0 * r1 * r2 * (0.5 * u).sin().powi(2);
     let along = if rate == 0.0 { 0.0 } else { (u - phase) / rate };
     across.sqrt().hypot(along)
@@ -190,10 +181,7 @@ fn distance_of_layers(upper: (&LayerSpec, f64), lower: (&LayerSpec, f64)) -> f64
 
 /// Outer radius [m] of a strand with these layers and lay radii [m]: the greatest R + d/2.
 pub fn outer_radius(layers: &[LayerSpec], radii: &[f64]) -> f64 {
-    let reach = layers
-        .iter()
-        .zip(radii)
-        .map(|(layer, radius)| radius + 0.5 * layer.wire_diameter);
+    let reach = layers.iter().zip(radii).map(|(layer, radius)| radius + 0.5 * layer.wire_diameter);
     reach.fold(0.0, f64::max)
 }
 
@@ -221,10 +209,7 @@ mod tests {
         for (wires, printed) in [(18, 1.142e-3), (11, 0.697e-3), (5, 0.332e-3)] {
             let radius = least_radius_of_layer(wires, 0.39e-3, 39e-3).unwrap();
             let costello = costello_radius(wires, 0.39e-3, 39e-3);
-            assert!(
-                (radius - costello).abs() < 5e-8,
-                "{wires}: {radius} {costello}"
-            );
+            assert!((radius - costello).abs() < 5e-8, "{wires}: {radius} {costello}");
             assert!((radius - printed).abs() < 1e-6, "{wires}: {radius}");
         }
     }

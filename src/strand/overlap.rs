@@ -39,10 +39,7 @@ struct Segment {
 /// back within 0.909 d of itself there.
 pub fn deepest(bodies: &[Body], limit: f64) -> Option<Overlap> {
     let segments = segments(bodies);
-    let cell = segments
-        .iter()
-        .map(|s| s.ends[0].distance(s.ends[1]) + 2.0 * s.radius)
-        .fold(0.0, f64::max);
+    let cell = segments.iter().map(|s| s.ends[0].distance(s.ends[1]) + 2.0 * s.radius).fold(0.0, f64::max);
     let mut grid: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
     for (i, segment) in segments.iter().enumerate() {
         grid.entry(cell_of(segment, cell)).or_default().push(i);
@@ -67,21 +64,11 @@ pub fn deepest(bodies: &[Body], limit: f64) -> Option<Overlap> {
 fn segments(bodies: &[Body]) -> Vec<Segment> {
     let mut all = Vec::new();
     for (body, b) in bodies.iter().enumerate() {
-        let segment = |index, ends| Segment {
-            body,
-            index,
-            ends,
-            radius: b.radius,
-        };
+        let segment = |index, ends| Segment { body, index, ends, radius: b.radius };
         match b.points {
             [] => {}
             [centre] => all.push(segment(0, [*centre; 2])),
-            points => all.extend(
-                points
-                    .windows(2)
-                    .enumerate()
-                    .map(|(i, pair)| segment(i, [pair[0], pair[1]])),
-            ),
+            points => all.extend(points.windows(2).enumerate().map(|(i, pair)| segment(i, [pair[0], pair[1]]))),
         }
     }
     all
@@ -110,12 +97,7 @@ fn are_neighbours(a: &Segment, b: &Segment) -> bool {
 fn overlap(a: &Segment, b: &Segment) -> Overlap {
     let [p, q] = closest_points(a.ends, b.ends);
     let depth = a.radius + b.radius - p.distance(q);
-    Overlap {
-        bodies: [a.body, b.body],
-        share: depth / (2.0 * a.radius.min(b.radius)),
-        depth,
-        place: 0.5 * (p + q),
-    }
+    Overlap { bodies: [a.body, b.body], share: depth / (2.0 * a.radius.min(b.radius)), depth, place: 0.5 * (p + q) }
 }
 
 /// The closest points of two segments (Ericson, *Real-Time Collision Detection*, 2005, section 5.1.9); a segment may be
@@ -125,22 +107,14 @@ pub fn closest_points(a: [DVec3; 2], b: [DVec3; 2]) -> [DVec3; 2] {
     let (len1, len2) = (d1.length_squared(), d2.length_squared());
     let (c, f, mixed) = (d1.dot(r), d2.dot(r), d1.dot(d2));
     let on_first = |t: f64| {
-        if len1 > 0.0 {
-            ((mixed * t - c) / len1).clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
+        if len1 > 0.0 { ((mixed * t - c) / len1).clamp(0.0, 1.0) } else { 0.0 }
     };
     if len2 == 0.0 {
         return [a[0] + d1 * on_first(0.0), b[0]];
     }
     let area = len1 * len2 - mixed * mixed;
     // Parallel segments (area 0) may start anywhere; the clamps below bring both points to where the two face.
-    let s = if area > 0.0 {
-        ((mixed * f - c * len2) / area).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let s = if area > 0.0 { ((mixed * f - c * len2) / area).clamp(0.0, 1.0) } else { 0.0 };
     let t = (mixed * s + f) / len2;
     let (s, t) = if t < 0.0 {
         (on_first(0.0), 0.0)
@@ -164,13 +138,7 @@ mod tests {
     #[test]
     fn the_deepest_pair_is_named() {
         let lines = [line(0.0, 20), line(0.95, 20), line(1.75, 20), line(3.0, 20)];
-        let bodies: Vec<_> = lines
-            .iter()
-            .map(|points| Body {
-                points,
-                radius: 0.5,
-            })
-            .collect();
+        let bodies: Vec<_> = lines.iter().map(|points| Body { points, radius: 0.5 }).collect();
         let worst = deepest(&bodies, 0.1).unwrap();
         assert_eq!(worst.bodies, [1, 2]);
         assert!((worst.share - 0.2).abs() < 1e-12 && (worst.depth - 0.2).abs() < 1e-12);
@@ -181,13 +149,8 @@ mod tests {
     #[test]
     fn crossing_wires_are_found_between_their_particles() {
         let along = line(0.0, 10);
-        let across: Vec<DVec3> = (0..=10)
-            .map(|i| DVec3::new(i as f64 - 4.5, 0.3, 4.5))
-            .collect();
-        let body = |points| Body {
-            points,
-            radius: 0.25,
-        };
+        let across: Vec<DVec3> = (0..=10).map(|i| DVec3::new(i as f64 - 4.5, 0.3, 4.5)).collect();
+        let body = |points| Body { points, radius: 0.25 };
         let worst = deepest(&[body(&along), body(&across)], 0.1).unwrap();
         assert!((worst.depth - 0.2).abs() < 1e-12);
     }
@@ -196,16 +159,7 @@ mod tests {
     fn a_sphere_is_compared_with_the_smaller_diameter() {
         let wire = line(0.0, 10);
         let centre = [DVec3::new(1.9, 0.0, 5.2)];
-        let bodies = [
-            Body {
-                points: &wire,
-                radius: 0.5,
-            },
-            Body {
-                points: &centre,
-                radius: 1.5,
-            },
-        ];
+        let bodies = [Body { points: &wire, radius: 0.5 }, Body { points: &centre, radius: 1.5 }];
         let worst = deepest(&bodies, 0.05).unwrap();
         assert!((worst.share - 0.1).abs() < 1e-12);
     }
@@ -221,15 +175,7 @@ mod tests {
                 })
                 .collect()
         };
-        let worst_of = |points: &[DVec3]| {
-            deepest(
-                &[Body {
-                    points,
-                    radius: 0.5,
-                }],
-                0.1,
-            )
-        };
+        let worst_of = |points: &[DVec3]| deepest(&[Body { points, radius: 0.5 }], 0.1);
         assert_eq!(worst_of(&line(0.0, 30)), None);
         assert_eq!(worst_of(&ring(3.0, 17)), None);
         let worst = worst_of(&ring(3.0, 22)).unwrap();

@@ -53,9 +53,7 @@ pub fn straight(from: DVec3, to: DVec3, spacing: f64) -> Result<Chain, PathTroub
     let length = from.distance(to);
     let n = pieces(length, spacing).ok_or(PathTrouble::TooShort(length))?;
     Ok(Chain {
-        points: (0..=n)
-            .map(|i| from.lerp(to, i as f64 / n as f64))
-            .collect(),
+        points: (0..=n).map(|i| from.lerp(to, i as f64 / n as f64)).collect(),
         arcs: vec![length / n as f64; n],
     })
 }
@@ -72,10 +70,7 @@ pub fn resample(points: &[DVec3], spacing: f64) -> Result<Chain, PathTrouble> {
     let total: f64 = spline.arcs.iter().sum();
     let n = pieces(total, spacing).ok_or(PathTrouble::TooShort(total))?;
     if has_spacing(&spline.chords, spacing) {
-        return Ok(Chain {
-            points: points.to_vec(),
-            arcs: spline.arcs,
-        });
+        return Ok(Chain { points: points.to_vec(), arcs: spline.arcs });
     }
     let mut resampled = Vec::with_capacity(n + 1);
     resampled.push(points[0]);
@@ -89,10 +84,7 @@ pub fn resample(points: &[DVec3], spacing: f64) -> Result<Chain, PathTrouble> {
         resampled.push(spline.point_at_arc(span, target - before));
     }
     resampled.push(points[points.len() - 1]);
-    Ok(Chain {
-        points: resampled,
-        arcs: vec![total / n as f64; n],
-    })
+    Ok(Chain { points: resampled, arcs: vec![total / n as f64; n] })
 }
 
 fn check(points: &[DVec3]) -> Result<(), PathTrouble> {
@@ -133,15 +125,8 @@ impl<'a> Spline<'a> {
     fn through(points: &'a [DVec3]) -> Self {
         let chords: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1])).collect();
         let tangents = tangents(points, &chords);
-        let mut spline = Self {
-            points,
-            chords,
-            tangents,
-            arcs: Vec::new(),
-        };
-        spline.arcs = (0..spline.chords.len())
-            .map(|span| spline.arc(span, 1.0))
-            .collect();
+        let mut spline = Self { points, chords, tangents, arcs: Vec::new() };
+        spline.arcs = (0..spline.chords.len()).map(|span| spline.arc(span, 1.0)).collect();
         spline
     }
 
@@ -150,19 +135,15 @@ impl<'a> Spline<'a> {
         let (p, q, h) = self.piece(span);
         let (m, n) = (self.tangents[span] * h, self.tangents[span + 1] * h);
         let (u2, u3) = (u * u, u * u * u);
-        p * (2.0 * u3 - 3.0 * u2 + 1.0)
-            + m * (u3 - 2.0 * u2 + u)
-            + q * (3.0 * u2 - 2.0 * u3)
-            + n * (u3 - u2)
+        p * (2.0 * u3 - 3.0 * u2 + 1.0) + m * (u3 - 2.0 * u2 + u) + q * (3.0 * u2 - 2.0 * u3) + n * (u3 - u2)
     }
 
     /// Length of the derivative by u [m].
     fn speed(&self, span: usize, u: f64) -> f64 {
         let (p, q, h) = self.piece(span);
         let (m, n) = (self.tangents[span] * h, self.tangents[span + 1] * h);
-        let derivative = (q - p) * (6.0 * u * (1.0 - u))
-            + m * (3.0 * u * u - 4.0 * u + 1.0)
-            + n * (3.0 * u * u - 2.0 * u);
+        let derivative =
+            (q - p) * (6.0 * u * (1.0 - u)) + m * (3.0 * u * u - 4.0 * u + 1.0) + n * (3.0 * u * u - 2.0 * u);
         derivative.length()
     }
 
@@ -180,10 +161,7 @@ impl<'a> Spline<'a> {
             (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
         ];
         let half = 0.5 * u;
-        let sum: f64 = NODES
-            .iter()
-            .map(|(x, w)| w * self.speed(span, half * (1.0 + x)))
-            .sum();
+        let sum: f64 = NODES.iter().map(|(x, w)| w * self.speed(span, half * (1.0 + x))).sum();
         half * sum
     }
 
@@ -209,9 +187,7 @@ fn tangents(points: &[DVec3], chords: &[f64]) -> Vec<DVec3> {
     if last == 1 {
         return vec![slope(0); 2];
     }
-    let inner = |i: usize| {
-        (slope(i - 1) * chords[i] + slope(i) * chords[i - 1]) / (chords[i - 1] + chords[i])
-    };
+    let inner = |i: usize| (slope(i - 1) * chords[i] + slope(i) * chords[i - 1]) / (chords[i - 1] + chords[i]);
     (0..=last)
         .map(|i| match i {
             0 => slope(0) * 2.0 - inner(1),
@@ -227,28 +203,17 @@ mod tests {
     use crate::strand::helix::Helix;
 
     fn helix() -> Helix {
-        Helix {
-            radius: 1.165e-3,
-            pitch: 39e-3,
-            lay: 1.0,
-            phase: 0.2,
-        }
+        Helix { radius: 1.165e-3, pitch: 39e-3, lay: 1.0, phase: 0.2 }
     }
 
     fn helix_points(n: usize) -> Vec<DVec3> {
-        (0..=n)
-            .map(|i| helix().point(0.12 * i as f64 / n as f64))
-            .collect()
+        (0..=n).map(|i| helix().point(0.12 * i as f64 / n as f64)).collect()
     }
 
     /// Greatest distance of resampled points from the helix.
     fn error_of(points_given: usize) -> f64 {
         let chain = resample(&helix_points(points_given), 0.39e-3).unwrap();
-        chain
-            .points
-            .iter()
-            .map(|p| p.distance(helix().point(p.z)))
-            .fold(0.0, f64::max)
+        chain.points.iter().map(|p| p.distance(helix().point(p.z))).fold(0.0, f64::max)
     }
 
     #[test]
@@ -280,17 +245,11 @@ mod tests {
 
     #[test]
     fn spacing_is_even_and_covers_the_wire() {
-        let points: Vec<DVec3> = (0..=40)
-            .map(|i| helix().point(0.12 * (i as f64 / 40.0).powi(2)))
-            .collect();
+        let points: Vec<DVec3> = (0..=40).map(|i| helix().point(0.12 * (i as f64 / 40.0).powi(2))).collect();
         let chain = resample(&points, 0.39e-3).unwrap();
         assert_eq!(chain.points[0], points[0]);
         assert_eq!(chain.points.last(), points.last());
-        let chords: Vec<f64> = chain
-            .points
-            .windows(2)
-            .map(|p| p[0].distance(p[1]))
-            .collect();
+        let chords: Vec<f64> = chain.points.windows(2).map(|p| p[0].distance(p[1])).collect();
         let arc = chain.arcs[0];
         assert!(chords.iter().all(|c| (c / arc - 1.0).abs() < 1e-4));
         assert!((arc / 0.39e-3 - 1.0).abs() < 0.5 / chords.len() as f64);
@@ -311,14 +270,8 @@ mod tests {
     fn lines_that_are_none_are_refused() {
         let (a, b) = (DVec3::ZERO, DVec3::Z);
         assert_eq!(resample(&[a], 0.1), Err(PathTrouble::TooFewPoints));
-        assert_eq!(
-            resample(&[a, b, b], 0.1),
-            Err(PathTrouble::RepeatedPoint(2))
-        );
-        assert_eq!(
-            resample(&[a, b * f64::NAN], 0.1),
-            Err(PathTrouble::NotFinite(1))
-        );
+        assert_eq!(resample(&[a, b, b], 0.1), Err(PathTrouble::RepeatedPoint(2)));
+        assert_eq!(resample(&[a, b * f64::NAN], 0.1), Err(PathTrouble::NotFinite(1)));
         assert!(matches!(
             resample(&[a, b], 1.1),
             Err(PathTrouble::TooShort(length)) if (length - 1.0).abs() < 1e-12

@@ -53,12 +53,11 @@ pub(super) fn lay_up(
                 lay: layer.lay,
                 phase: TAU * i as f64 / layer.wires as f64 + layer.phase,
             };
-            let chain = string_helix(&helix, strand.length, spec.spacing * layer.wire_diameter)
-                .map_err(|trouble| {
-                    let who = format!("wire {} (layer \"{}\")", strung.len() + 1, layer.name);
-                    let spacing = spec.spacing * layer.wire_diameter;
-                    path_error(trouble, &who, "strand.length".into(), Some(k), spacing)
-                })?;
+            let chain = string_helix(&helix, strand.length, spec.spacing * layer.wire_diameter).map_err(|trouble| {
+                let who = format!("wire {} (layer \"{}\")", strung.len() + 1, layer.name);
+                let spacing = spec.spacing * layer.wire_diameter;
+                path_error(trouble, &who, "strand.length".into(), Some(k), spacing)
+            })?;
             strung.push(Strung {
                 layer: k,
                 diameter: layer.wire_diameter,
@@ -78,9 +77,7 @@ fn string_helix(helix: &Helix, length: f64, spacing: f64) -> Result<Chain, PathT
     let arc = helix.arc_length(length);
     let n = resample::pieces(arc, spacing).ok_or(PathTrouble::TooShort(arc))?;
     Ok(Chain {
-        points: (0..=n)
-            .map(|i| helix.point(length * (i as f64 / n as f64)))
-            .collect(),
+        points: (0..=n).map(|i| helix.point(length * (i as f64 / n as f64))).collect(),
         arcs: vec![arc / n as f64; n],
     })
 }
@@ -94,33 +91,17 @@ pub(super) fn string_wire(
 ) -> Result<Strung, BuildError> {
     let spacing = spec.spacing * wire.diameter;
     let (chain, who) = match &wire.path {
-        PathSpec::Straight { from, to } => (
-            resample::straight(*from, *to, spacing),
-            format!("[[wire]] {}", index + 1),
-        ),
-        PathSpec::File {
-            file,
-            index: in_file,
-            points,
-        } => (
-            resample::resample(points, spacing),
-            format!("wire {} of {}", in_file + 1, file.display()),
-        ),
+        PathSpec::Straight { from, to } => (resample::straight(*from, *to, spacing), format!("[[wire]] {}", index + 1)),
+        PathSpec::File { file, index: in_file, points } => {
+            (resample::resample(points, spacing), format!("wire {} of {}", in_file + 1, file.display()))
+        }
     };
     let key = format!("wire.{index}");
     let chain = chain.map_err(|trouble| path_error(trouble, &who, key.clone(), None, spacing))?;
-    let layer = layers
-        .iter()
-        .position(|l| l.name == wire.layer)
-        .unwrap_or_else(|| {
-            layers.push(Layer {
-                name: wire.layer.clone(),
-                lay_radius: 0.0,
-                pitch: f64::INFINITY,
-                lay: 0.0,
-            });
-            layers.len() - 1
-        });
+    let layer = layers.iter().position(|l| l.name == wire.layer).unwrap_or_else(|| {
+        layers.push(Layer { name: wire.layer.clone(), lay_radius: 0.0, pitch: f64::INFINITY, lay: 0.0 });
+        layers.len() - 1
+    });
     Ok(Strung {
         layer,
         diameter: wire.diameter,
@@ -132,21 +113,11 @@ pub(super) fn string_wire(
     })
 }
 
-fn path_error(
-    trouble: PathTrouble,
-    who: &str,
-    key: String,
-    layer: Option<usize>,
-    spacing: f64,
-) -> BuildError {
+fn path_error(trouble: PathTrouble, who: &str, key: String, layer: Option<usize>, spacing: f64) -> BuildError {
     let (kind, message, help) = match trouble {
         PathTrouble::TooShort(length) => (
             BuildErrorKind::TooShort,
-            format!(
-                "{who} is {} mm long, shorter than the spacing of its particles, {} mm",
-                mm(length),
-                mm(spacing)
-            ),
+            format!("{who} is {} mm long, shorter than the spacing of its particles, {} mm", mm(length), mm(spacing)),
             "make it at least one spacing (spacing × diameter) long".to_owned(),
         ),
         PathTrouble::TooFewPoints => (
@@ -165,11 +136,5 @@ fn path_error(
             "coordinates must be finite numbers".to_owned(),
         ),
     };
-    BuildError {
-        kind,
-        layer,
-        message,
-        help,
-        key,
-    }
+    BuildError { kind, layer, message, help, key }
 }

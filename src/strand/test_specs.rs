@@ -4,21 +4,8 @@ use crate::scene::spec::*;
 use glam::DVec3;
 
 /// A layer laid to the right, starting on the x axis.
-pub(crate) fn layer(
-    wires: usize,
-    wire_diameter: f64,
-    lay_radius: Option<f64>,
-    pitch: f64,
-) -> LayerSpec {
-    LayerSpec {
-        name: format!("{wires} wires"),
-        wires,
-        wire_diameter,
-        lay_radius,
-        pitch,
-        lay: 1.0,
-        phase: 0.0,
-    }
+pub(crate) fn layer(wires: usize, wire_diameter: f64, lay_radius: Option<f64>, pitch: f64) -> LayerSpec {
+    LayerSpec { name: format!("{wires} wires"), wires, wire_diameter, lay_radius, pitch, lay: 1.0, phase: 0.0 }
 }
 
 /// Nothing but annealed copper, elastic unbreakable bonds and touching spheres.
@@ -27,16 +14,8 @@ pub(crate) fn empty() -> Spec {
         name: "test".into(),
         about: "A scene built by a test.".into(),
         seed: 1,
-        material: Material {
-            density: 8940.0,
-            young: 115e9,
-            poisson: 0.34,
-        },
-        bond: BondSpec {
-            law: BondLawSpec::Elastic,
-            rupture: None,
-            damping: [0.0; 4],
-        },
+        material: Material { density: 8940.0, young: 115e9, poisson: 0.34 },
+        bond: BondSpec { law: BondLawSpec::Elastic, rupture: None, damping: [0.0; 4] },
         contact: None,
         strand: None,
         wires: Vec::new(),
@@ -52,12 +31,7 @@ pub(crate) fn empty() -> Spec {
             kinetic_limit: 0.05,
             mismatch_limit: 0.05,
         },
-        stop: StopSpec {
-            strain: None,
-            stress_fraction: None,
-            time: Some(1e-6),
-            steps: None,
-        },
+        stop: StopSpec { strain: None, stress_fraction: None, time: Some(1e-6), steps: None },
         output: OutputSpec {
             samples: 10,
             snapshots: 2,
@@ -71,18 +45,11 @@ pub(crate) fn empty() -> Spec {
 
 /// The KA4 strand: 5 + 11 + 18 wires of 0.39 mm, pitch 39 mm, outer lay radius 1.165 mm, the inner ones `auto`.
 pub(crate) fn ka4() -> Spec {
-    let named = |name: &str, wires, radius| LayerSpec {
-        name: name.into(),
-        ..layer(wires, 0.39e-3, radius, 39e-3)
-    };
+    let named = |name: &str, wires, radius| LayerSpec { name: name.into(), ..layer(wires, 0.39e-3, radius, 39e-3) };
     Spec {
         strand: Some(StrandSpec {
             length: 0.12,
-            layers: vec![
-                named("inner", 5, None),
-                named("middle", 11, None),
-                named("outer", 18, Some(1.165e-3)),
-            ],
+            layers: vec![named("inner", 5, None), named("middle", 11, None), named("outer", 18, Some(1.165e-3))],
         }),
         ..empty()
     }
@@ -90,13 +57,7 @@ pub(crate) fn ka4() -> Spec {
 
 /// A wire along `path`, at rest, counted in the layer `wire`.
 pub(crate) fn wire(diameter: f64, path: PathSpec) -> WireSpec {
-    WireSpec {
-        layer: "wire".into(),
-        diameter,
-        path,
-        velocity: DVec3::ZERO,
-        spin: DVec3::ZERO,
-    }
+    WireSpec { layer: "wire".into(), diameter, path, velocity: DVec3::ZERO, spin: DVec3::ZERO }
 }
 
 /// A straight wire at rest.
@@ -106,10 +67,5 @@ pub(crate) fn straight(diameter: f64, from: DVec3, to: DVec3) -> WireSpec {
 
 /// A sphere at rest.
 pub(crate) fn sphere(diameter: f64, position: DVec3) -> SphereSpec {
-    SphereSpec {
-        diameter,
-        position,
-        velocity: DVec3::ZERO,
-        spin: DVec3::ZERO,
-    }
+    SphereSpec { diameter, position, velocity: DVec3::ZERO, spin: DVec3::ZERO }
 }

@@ -1,6 +1,9 @@
 //! A run that was not simulated: the KA4 strand (5 + 11 + 18 wires, pitch 39 mm, 120 mm long) stretched evenly, some
 //! outer wires breaking near mid-length. For tests of what observes a run.
 
+// Each test program uses its own part of this.
+#![allow(dead_code)]
+
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use strandsnap::base::random::uniform;

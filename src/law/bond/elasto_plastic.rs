@@ -39,8 +39,6 @@ pub struct PlasticState {
 
 /// Where a return ends: factors on the trial values, and the plastic multiplier.
 struct Return {
-    /// Plastic multiplier over A l, x = λ/(Al) [Pa].
-    multiplier: f64,
     /// σ/σ* [-].
     axial: f64,
     /// M/M*, T/T*, V/V* [-].
@@ -75,43 +73,49 @@ impl Trial {
         self.axial * self.axial + self.bend + self.twist * self.twist + self.shear * self.shear > 1.0
     }
 
-    /// Newton on x. f is convex and falls with x, so from x = 0 Newton never oversteps.
+    /// Newton on x. f is convex and falls with x, so from x = 0 Newton never oversteps; two or three rounds do.
     #[inline(always)]
     fn solve(&self) -> Return {
-        let (mut x, mut bend) = (0.0, self.bend);
-        let mut end = Return { multiplier: 0.0, axial: 1.0, bend: 1.0, twist: 1.0, shear: 1.0, equivalent: 0.0 };
+        // Plastic work per x is 2 − m on the surface. Hardening within the step takes m from the trial: what that
+        // leaves out is of second order in the step, and the next step starts from σ_y(p) again.
+        let hardening = self.hardening_rate * (2.0 - self.bend.min(1.0));
+        // Without its |M| term f is lower and as convex, so its first Newton step also stays left of the root. In a
+        // pulled wire, where tension wipes out the moment, it is nearly there.
+        let square = |value: f64, rate: f64| (value * value, value * value * (hardening + rate));
+        let (n, t, v) = (
+            square(self.axial, self.axial_rate),
+            square(self.twist, self.twist_rate),
+            square(self.shear, self.shear_rate),
+        );
+        let mut x = (0.5 * (n.0 + t.0 + v.0 - 1.0) / (n.1 + t.1 + v.1)).max(0.0);
+        let mut end = Return { axial: 1.0, bend: 1.0, twist: 1.0, shear: 1.0, equivalent: 0.0 };
         for _ in 0..60 {
-            // σ_y/σ_y₀ along the return; plastic work per x is 2 − m on the surface.
-            let growth = 1.0 + self.hardening_rate * x * (2.0 - bend);
-            let (g1, g2) = (1.0 / growth, 1.0 / (growth * growth));
+            // σ_y along the return over σ_y at its start.
+            let growth = 1.0 + hardening * x;
+            let g1 = 1.0 / growth;
+            let g2 = g1 * g1;
             let soft = |rate: f64| 1.0 / (1.0 + x * rate * g2);
             let (fa, ft, fs) = (soft(self.axial_rate), soft(self.twist_rate), soft(self.shear_rate));
             let (n, t, v) = (self.axial * g1 * fa, self.twist * g1 * ft, self.shear * g1 * fs);
-            bend = (self.bend * g1 - x * self.bend_rate * g2).max(0.0);
+            let bend = (self.bend * g1 - x * self.bend_rate * g2).max(0.0);
             let f = n * n + bend + t * t + v * v - 1.0;
             end = Return {
-                multiplier: x,
                 axial: fa,
                 bend: if self.bend > 0.0 { bend * growth / self.bend } else { 0.0 },
                 twist: ft,
                 shear: fs,
                 equivalent: x * (2.0 - bend) / (self.yield_stress * growth),
             };
-            if f.abs() < 1e-12 {
+            if f.abs() < 1e-11 {
                 break;
             }
-            let mut slope = -2.0
-                * g2
-                * (n * n * self.axial_rate * fa + t * t * self.twist_rate * ft + v * v * self.shear_rate * fs);
+            let fall = |value: f64, rate: f64, soft: f64| value * value * (hardening * g1 + rate * g2 * soft);
+            let mut slope = fall(n, self.axial_rate, fa) + fall(t, self.twist_rate, ft) + fall(v, self.shear_rate, fs);
+            slope *= -2.0;
             if bend > 0.0 {
-                slope -= self.bend_rate * g2;
+                slope -= (self.bend * hardening + self.bend_rate) * g2;
             }
-            slope -= self.hardening_rate * (2.0 - bend) * (2.0 - bend);
-            let next = x - f / slope;
-            if next == x {
-                break;
-            }
-            x = next.max(0.0);
+            x = (x - f / slope).max(0.0);
         }
         end
     }

@@ -69,15 +69,21 @@ pub struct BondForce {
     pub twist: f64,
 }
 
+/// Length of a 2-vector; forces are far from the ends of the number range, so no scaling is needed.
+#[inline(always)]
+fn size(v: [f64; 2]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
 impl BondForce {
     /// |V| [N].
     pub fn shear_size(&self) -> f64 {
-        self.shear[0].hypot(self.shear[1])
+        size(self.shear)
     }
 
     /// |M| [N m].
     pub fn bend_size(&self) -> f64 {
-        self.bend[0].hypot(self.bend[1])
+        size(self.bend)
     }
 }
 

@@ -94,11 +94,7 @@ impl Thornton {
     /// first yield, (R_p, δ_p) after it.
     #[inline(always)]
     fn elastic_curve(state: &ThorntonState, reduced_radius: f64) -> (f64, f64) {
-        if state.greatest_overlap > 0.0 {
-            (state.dent_radius, state.residual_overlap)
-        } else {
-            (reduced_radius, 0.0)
-        }
+        if state.greatest_overlap > 0.0 { (state.dent_radius, state.residual_overlap) } else { (reduced_radius, 0.0) }
     }
 }
 
@@ -276,10 +272,9 @@ mod tests {
 
     /// Speed of rebound over speed of approach of a mass that meets the contact, by velocity Verlet.
     fn restitution(speed: f64, mass: f64) -> f64 {
-        // The plastic contact is stiffest at the end of loading; V/√(slope/m*) is the scale of the overlap.
+        // Two time scales: a quarter period on the plastic line, and the way to first yield.
         let slope = PI * LAW.limiting_pressure * RADIUS;
-        let dt = 1e-6 * (mass / slope).sqrt().min(LAW.yield_overlap(RADIUS) * 1e3 / speed);
-        let dt = dt * 100.0;
+        let dt = 1e-4 * (mass / slope).sqrt().min(1e3 * LAW.yield_overlap(RADIUS) / speed);
         let mut state = ThorntonState::default();
         let (mut x, mut v, mut force) = (0.0, speed, 0.0);
         loop {

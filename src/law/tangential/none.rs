@@ -4,9 +4,9 @@ use super::{TangentialInput, TangentialLaw, TangentialResponse};
 
 /// Frictionless contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct None;
+pub struct Frictionless;
 
-impl TangentialLaw for None {
+impl TangentialLaw for Frictionless {
     type State = ();
 
     const ACTIVE: bool = false;
@@ -30,7 +30,7 @@ mod tests {
     #[test]
     fn slip_meets_no_force_and_leaves_no_energy() {
         let input = TangentialInput { normal: DVec3::Z, slip: DVec3::X, normal_force: 5.0, radius: 1e-3 };
-        assert_eq!(None.response(&mut (), &input), TangentialResponse::default());
-        assert_eq!(None.elastic_energy(&()), 0.0);
+        assert_eq!(Frictionless.response(&mut (), &input), TangentialResponse::default());
+        assert_eq!(Frictionless.elastic_energy(&()), 0.0);
     }
 }

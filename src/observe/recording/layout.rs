@@ -11,7 +11,8 @@ use rerun::blueprint::components::{
     BackgroundKind, ContainerKind, Corner2D, Eye3DKind, IncludedContent, PanelState, PlayState, RootContainer,
     VisualBounds2D,
 };
-use rerun::datatypes::Range2D;
+use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
+use rerun::datatypes::{Range2D, TimeRange};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes as blueprint;
 use rerun::external::uuid::Uuid;
@@ -21,9 +22,9 @@ use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 /// Background of the strand's views: dark, so that bright stresses stand out.
 const BACKGROUND: [u8; 3] = [17, 20, 26];
 /// Length of strand that the close view shows [mm].
-const CLOSE_VIEW: f32 = 26.0;
-/// Width of a view over its height that the cameras are set for [-].
-const VIEW_ASPECT: f32 = 2.6;
+const CLOSE_VIEW: f32 = 20.0;
+/// Width over height that the view of the whole strand and the close view have in a window of usual shape [-].
+const ASPECTS: [f32; 2] = [6.0, 3.2];
 /// Rerun's vertical field of view [rad].
 const FIELD_OF_VIEW: f32 = 0.96;
 
@@ -76,11 +77,11 @@ struct Item {
 impl Layout {
     fn root(&mut self, info: &RunInfo, map: &Map) -> RecordingStreamResult<Item> {
         let whole = self.strand_view("Whole strand", info, None)?;
-        let close = self.strand_view("Close view, mid-section", info, Some(CLOSE_VIEW))?;
+        let close = self.strand_view("Mid-section", info, Some(CLOSE_VIEW))?;
         let map = self.map_view(map)?;
         let states = self.view("StateTimeline", "State of each wire", "states", &["/states/**"])?;
         let lower = self.container(ContainerKind::Tabs, &[map, states], &[])?;
-        let left = self.container(ContainerKind::Vertical, &[whole, close, lower], &[1.0, 2.2, 3.0])?;
+        let left = self.container(ContainerKind::Vertical, &[whole, close, lower], &[1.0, 2.4, 3.0])?;
 
         let curve = self.plot("Nominal stress over strain [MPa]", names::BODY_STRESS, Corner2D::RightBottom)?;
         let layers = self.plot("Stress by layer [MPa]", names::LAYER_STRESS, Corner2D::RightBottom)?;
@@ -88,7 +89,7 @@ impl Layout {
         let broken = self.plot("Broken wires and bonds", names::BROKEN, Corner2D::LeftTop)?;
         let energy = self.plot("Energy [J]", names::ENERGY, Corner2D::LeftTop)?;
         let stresses = self.container(ContainerKind::Tabs, &[layers, wires, broken, energy], &[])?;
-        let log = self.view("TextLog", "Ruptures", names::LOG, &["/ruptures"])?;
+        let log = self.log_view()?;
         let about = self.view("TextDocument", "About this run", names::ABOUT, &["/about"])?;
         let notes = self.container(ContainerKind::Tabs, &[log, about], &[])?;
         let right = self.container(ContainerKind::Vertical, &[curve, stresses, notes], &[1.0, 1.0, 1.1])?;
@@ -96,7 +97,13 @@ impl Layout {
     }
 
     fn strand_view(&mut self, name: &str, info: &RunInfo, length: Option<f32>) -> RecordingStreamResult<Item> {
-        let contents = ["/strand/**", "/spheres/**", "/grips/**"];
+        let mut contents = vec!["/strand/**".to_owned(), "/spheres/**".to_owned(), "/grips/**".to_owned()];
+        if length.is_none() {
+            // At this scale labels would only cover each other.
+            let labels = (0..info.wires.len()).map(|w| names::marks(names::STRAND, info, w).join(&names::LABEL.into()));
+            contents.extend(labels.map(|path| format!("- {path}")));
+        }
+        let contents: Vec<_> = contents.iter().map(String::as_str).collect();
         let view = self.view("3D", name, "/", &contents)?;
         let eye = eye(info, length);
         self.property(&view, "EyeControls3D", &eye)?;
@@ -111,7 +118,7 @@ impl Layout {
         let length = f64::from(map.z[1] - map.z[0]);
         let range = Range2D {
             x_range: [f64::from(map.z[0]) - 0.14 * length, f64::from(map.z[1]) + 0.03 * length].into(),
-            y_range: [-0.04 * length, f64::from(map.height) + 0.04 * length].into(),
+            y_range: [-0.04 * length, f64::from(map.height + 6.0 * map.row)].into(),
         };
         self.property(&view, "VisualBounds2D", &blueprint::VisualBounds2D::new(VisualBounds2D(range)))?;
         let background = blueprint::Background::new(BackgroundKind::SolidColor).with_color(BACKGROUND);
@@ -122,6 +129,21 @@ impl Layout {
     fn plot(&mut self, name: &str, origin: &str, legend: Corner2D) -> RecordingStreamResult<Item> {
         let view = self.view("TimeSeries", name, origin, &[&format!("/{origin}/**")])?;
         self.property(&view, "PlotLegend", &blueprint::PlotLegend::new().with_corner(legend))?;
+        // Otherwise a plot shows only what lies close to the time cursor.
+        self.property(&view, "TimeAxis", &blueprint::TimeAxis::new().with_view_range(TimeRange::EVERYTHING))?;
+        Ok(view)
+    }
+
+    fn log_view(&mut self) -> RecordingStreamResult<Item> {
+        let view = self.view("TextLog", "Ruptures", names::LOG, &[&format!("/{}", names::LOG)])?;
+        let time = TimelineColumn { visible: true.into(), timeline: stream::STRAIN.into() };
+        let column = |kind, visible: bool| TextLogColumn { visible: visible.into(), kind };
+        let columns = blueprint::TextLogColumns::new().with_timeline_columns([time]).with_text_log_columns([
+            column(TextLogColumnKind::EntityPath, false),
+            column(TextLogColumnKind::LogLevel, false),
+            column(TextLogColumnKind::Body, true),
+        ]);
+        self.property(&view, "TextLogColumns", &columns)?;
         Ok(view)
     }
 
@@ -183,7 +205,8 @@ fn eye(info: &RunInfo, length: Option<f32>) -> blueprint::EyeControls3D {
     let longest = (high - low) * (1.0 + info.strain_end.unwrap_or(0.0) as f32);
     let middle = low + 0.5 * longest;
     let width = length.unwrap_or(1.04 * longest).min(1.04 * longest);
-    let distance = 0.5 * width / VIEW_ASPECT / (0.5 * FIELD_OF_VIEW).tan();
+    let aspect = ASPECTS[usize::from(length.is_some())];
+    let distance = 0.5 * width / aspect / (0.5 * FIELD_OF_VIEW).tan();
     blueprint::EyeControls3D::new()
         .with_kind(Eye3DKind::Orbital)
         .with_position([-distance, 0.25 * distance, middle])

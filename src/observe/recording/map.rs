@@ -2,11 +2,12 @@
 //! each wire is loaded and where it broke. Places are those before loading, so that only colours change.
 
 use super::names;
+use super::paint::{NEUTRAL, Scale};
 use super::stream::Stream;
 use crate::base::error::Result;
 use crate::engine::view::{RunInfo, WireInfo};
 use crate::observe::wording::wire_number;
-use rerun::{Color, Points2D, Radius};
+use rerun::{Color, LineStrips2D, Points2D, Radius};
 
 /// Height of the map over its width [-]: wires are far thinner than they are long.
 const ASPECT: f32 = 0.45;
@@ -62,7 +63,40 @@ impl Map {
             let points = Points2D::new(places).with_radii([Radius::new_scene_units(0.4 * self.row)]);
             stream.fixed(names::layer(names::MAP, info, layer), &points)?;
         }
-        self.send_names(stream, info)
+        self.send_names(stream, info)?;
+        self.send_ticks(stream)
+    }
+
+    fn send_ticks(&self, stream: &Stream) -> Result<()> {
+        let ticks = ticks(self.z);
+        let points = Points2D::new(ticks.iter().map(|z| [*z, self.height + 0.5 * self.row]))
+            .with_labels(ticks.iter().map(|z| format!("z = {z} mm")))
+            .with_show_labels(true)
+            .with_colors([Color::from_u32(NEUTRAL)])
+            .with_radii([Radius::new_ui_points(1.0)]);
+        stream.fixed(format!("{}/ticks", names::MAP), &points)
+    }
+
+    /// Sends a bar of colours with the values at its ends, below the map.
+    ///
+    /// # Errors
+    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+    pub fn send_colour_bar(&self, stream: &Stream, scale: &Scale) -> Result<()> {
+        let length = self.z[1] - self.z[0];
+        let y = self.height + 4.0 * self.row;
+        let at = |t: f32| self.z[0] + (0.3 + 0.4 * t) * length;
+        let n = scale.colours.len();
+        let place = |i: usize| at(i as f32 / (n - 1) as f32);
+        let bar = LineStrips2D::new((0..n).map(|i| [[place(i), y], [place(i) + 0.4 * length / n as f32, y]]))
+            .with_colors(scale.colours.iter().map(|c| Color::from_u32(*c)))
+            .with_radii([Radius::new_scene_units(0.6 * self.row)]);
+        stream.fixed(format!("{}/colour_bar", names::MAP), &bar)?;
+        let ends = Points2D::new([[at(-0.2), y - self.row], [at(1.1), y - self.row]])
+            .with_labels(scale.ends.clone())
+            .with_show_labels(true)
+            .with_colors([Color::from_u32(NEUTRAL)])
+            .with_radii([Radius::new_ui_points(0.1)]);
+        stream.fixed(format!("{}/colour_bar/ends", names::MAP), &ends)
     }
 
     fn send_names(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
@@ -83,6 +117,16 @@ impl Map {
             .with_radii([Radius::new_ui_points(0.5)]);
         stream.fixed(format!("{}/names", names::MAP), &points)
     }
+}
+
+/// Round positions along z [mm], about six of them.
+fn ticks([low, high]: [f32; 2]) -> Vec<f32> {
+    let rough = (high - low) / 6.0;
+    let decade = 10f32.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(rough);
+    let first = (low / step).ceil() as i64;
+    let last = (high / step).floor() as i64;
+    (first..=last).map(|i| i as f32 * step).collect()
 }
 
 /// Extent of the particles along z before loading [mm].

@@ -1,17 +1,18 @@
 //! Ruptures: marked, labelled points that stay from their time on, and a log.
 
 use super::map::Map;
-use super::stream::{Instant, Stream, vectors};
+use super::stream::{Instant, Stream, strips, texts, vectors};
 use super::{names, paint};
 use crate::base::error::Result;
 use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::wording::{rupture_line, wire_number};
-use rerun::external::arrow::array::StringArray;
-use rerun::{
-    Color, ComponentDescriptor, Points2D, Points3D, Radius, SerializedComponentBatch, TextLog, TextLogLevel,
-};
+use rerun::{Color, LineStrips3D, Points2D, Points3D, Radius, TextLog, TextLogLevel};
 use std::collections::BTreeMap;
-use std::sync::Arc;
+
+/// Heights at which labels of successive ruptures stand.
+const LABEL_TIERS: usize = 4;
+/// Step from one height to the next, in thicknesses of the body [-].
+const LABEL_STEP: f32 = 0.16;
 
 /// Ruptures of one wire so far.
 #[derive(Default)]
@@ -66,47 +67,59 @@ impl WireMarks {
         self.all[self.sent..].iter().map(instant).collect()
     }
 
+    fn labels(&self) -> impl Iterator<Item = String> {
+        self.rows().flatten().map(|r| format!("{}: wire {}", r.order, wire_number(r.wire)))
+    }
+
     fn lengths(&self) -> Vec<usize> {
         self.rows().map(<[_]>::len).collect()
     }
 
     fn send_in_space(&self, stream: &Stream, info: &RunInfo, number: usize) -> Result<()> {
-        let places = self.rows().flatten().map(|r| r.position.map(|x| (x * 1e3) as f32));
-        let labels = self.rows().flatten().map(|r| format!("{}: wire {}", r.order, wire_number(r.wire)));
+        let marks = names::marks(names::STRAND, info, number);
+        let places = self.rows().flatten().map(place);
+        let places = vectors(Points3D::descriptor_positions(), places);
+        stream.rows(marks.clone(), &self.instants(), [(places, self.lengths())])?;
+        let ends = self.rows().flatten().map(|r| label_place(info, r));
+        let leaders = self.rows().flatten().flat_map(|r| [place(r), label_place(info, r)]);
         stream.rows(
-            names::marks(names::STRAND, info, number),
+            marks.join(&names::LABEL.into()),
             &self.instants(),
             [
-                (vectors(Points3D::descriptor_positions(), places), self.lengths()),
-                (texts(Points3D::descriptor_labels(), labels), self.lengths()),
+                (vectors(Points3D::descriptor_positions(), ends), self.lengths()),
+                (texts(Points3D::descriptor_labels(), self.labels()), self.lengths()),
+                (strips(LineStrips3D::descriptor_strips(), leaders, 2), self.lengths()),
             ],
         )
     }
 
     fn send_on_map(&self, stream: &Stream, info: &RunInfo, number: usize, map: &Map) -> Result<()> {
         let places = self.rows().flatten().map(|r| [(r.rest_z * 1e3) as f32, map.wire_y[r.wire]]);
-        let labels = self.rows().flatten().map(|r| format!("{}: wire {}", r.order, wire_number(r.wire)));
         stream.rows(
             names::marks(names::MAP, info, number),
             &self.instants(),
             [
                 (vectors(Points2D::descriptor_positions(), places), self.lengths()),
-                (texts(Points2D::descriptor_labels(), labels), self.lengths()),
+                (texts(Points2D::descriptor_labels(), self.labels()), self.lengths()),
             ],
         )
     }
 }
 
 fn send_style(stream: &Stream, info: &RunInfo, number: usize) -> Result<()> {
-    let colour = Color::from_u32(paint::BROKEN);
-    let in_space = Points3D::update_fields()
-        .with_colors([colour])
-        .with_radii([Radius::new_scene_units(0.65 * info.wires[number].diameter)])
-        .with_show_labels(true);
-    stream.fixed(names::marks(names::STRAND, info, number), &in_space)?;
+    let colour = Color::from_u32(paint::MARK);
+    let marks = names::marks(names::STRAND, info, number);
+    let radius = Radius::new_scene_units(0.5 * info.wires[number].diameter);
+    let in_space = Points3D::update_fields().with_colors([colour]).with_radii([radius]);
+    stream.fixed(marks.clone(), &in_space)?;
+    let labels = marks.join(&names::LABEL.into());
+    let thin = Radius::new_ui_points(0.75);
+    let points = Points3D::update_fields().with_colors([colour]).with_radii([thin]).with_show_labels(true);
+    stream.fixed(labels.clone(), &points)?;
+    stream.fixed(labels, &LineStrips3D::update_fields().with_colors([colour]).with_radii([thin]))?;
     let on_map = Points2D::update_fields()
         .with_colors([colour])
-        .with_radii([Radius::new_ui_points(5.0)])
+        .with_radii([Radius::new_ui_points(3.5)])
         .with_draw_order(10.0)
         .with_show_labels(true);
     stream.fixed(names::marks(names::MAP, info, number), &on_map)
@@ -130,7 +143,22 @@ fn instant(rupture: &Rupture) -> Instant {
     Instant { step: rupture.step, time: rupture.time, strain: rupture.strain }
 }
 
-fn texts(descriptor: ComponentDescriptor, values: impl Iterator<Item = String>) -> SerializedComponentBatch {
-    let all: Vec<String> = values.collect();
-    SerializedComponentBatch::new(Arc::new(StringArray::from(all)), descriptor)
+/// Place of the bond when it broke [mm].
+fn place(rupture: &Rupture) -> [f32; 3] {
+    rupture.position.map(|x| (x * 1e3) as f32)
+}
+
+/// Place of a rupture's label [mm]: off the wires, and labels that follow each other at different heights, because
+/// ruptures come close together.
+fn label_place(info: &RunInfo, rupture: &Rupture) -> [f32; 3] {
+    let tier = ((rupture.order - 1) % LABEL_TIERS) as f32;
+    let y = thickness(info) * (0.75 + LABEL_STEP * tier);
+    let [_, _, z] = place(rupture);
+    [0.0, y, z]
+}
+
+/// Largest distance of a particle's surface from the z axis before loading [mm].
+fn thickness(info: &RunInfo) -> f32 {
+    let reach = info.rest_position.iter().zip(&info.radius).map(|([x, y, _], r)| x.hypot(*y) + r);
+    2.0 * reach.fold(0.0, f32::max)
 }

@@ -25,6 +25,8 @@ pub const ENERGY: &str = "energy";
 pub const MAP: &str = "map";
 /// State of each wire over time.
 pub const STATES: &str = "states";
+/// Labels of a wire's rupture marks, below them.
+pub const LABEL: &str = "label";
 /// One line per rupture.
 pub const LOG: &str = "ruptures";
 /// What the run is.
@@ -47,6 +49,11 @@ pub fn layer(root: &str, info: &RunInfo, layer: usize) -> EntityPath {
 pub fn wire(root: &str, info: &RunInfo, wire: usize) -> EntityPath {
     let part = EntityPathPart::new(format!("wire_{:02}", wire_number(wire)));
     layer(root, info, info.wires[wire].layer).join(&vec![part].into())
+}
+
+/// Entity of a wire's tube, below the wire so that it is hidden with it.
+pub fn tube(root: &str, info: &RunInfo, number: usize) -> EntityPath {
+    wire(root, info, number).join(&EntityPath::from("tube"))
 }
 
 /// Entity of a wire's rupture marks, below the wire so that they are hidden with it.

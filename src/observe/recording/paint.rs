@@ -6,6 +6,8 @@ use colorous::{CIVIDIS, Gradient, PLASMA, TABLEAU10, VIRIDIS};
 
 /// Particles at a broken bond (0xRRGGBBAA): none of the maps comes near this red.
 pub(super) const BROKEN: u32 = 0xFF2A4DFF;
+/// Marks of ruptures and their labels.
+pub(super) const MARK: u32 = 0xFFFFFFFF;
 /// Grips and other things that carry no value.
 pub(super) const NEUTRAL: u32 = 0x9AA3AEFF;
 
@@ -14,6 +16,12 @@ pub(super) struct Palette {
     by: ColourBy,
     range: [f32; 2],
     table: Vec<u32>,
+}
+
+/// A colour bar: colours (0xRRGGBBAA) from low to high, and what stands at its ends.
+pub(super) struct Scale {
+    pub colours: Vec<u32>,
+    pub ends: [String; 2],
 }
 
 impl Palette {
@@ -51,6 +59,20 @@ impl Palette {
     /// Colour (0xRRGGBBAA) of free sphere `i`: it has neither bonds nor a layer, so only its speed can colour it.
     pub fn sphere(&self, snapshot: &Snapshot, i: usize) -> u32 {
         if self.by == ColourBy::Velocity { self.value(snapshot.speed[i]) } else { NEUTRAL }
+    }
+
+    /// What a colour bar shows; `None` where colours only tell things apart.
+    pub fn scale(&self) -> Option<Scale> {
+        let [low, high] = self.range;
+        let ends = match self.by {
+            ColourBy::Stress => [format!("true axial stress: {low:.0} MPa"), format!("{high:.0} MPa")],
+            ColourBy::PlasticStrain => {
+                [format!("plastic strain: {:.0} %", low * 100.0), format!("{:.0} %", high * 100.0)]
+            }
+            ColourBy::Velocity => [format!("speed: {low:.1} m/s"), format!("{high:.1} m/s")],
+            ColourBy::Layer | ColourBy::Wire => return None,
+        };
+        Some(Scale { colours: self.table.iter().step_by(4).copied().collect(), ends })
     }
 
     fn value(&self, value: f32) -> u32 {

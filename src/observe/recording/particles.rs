@@ -2,7 +2,7 @@
 
 use super::paint::{Palette, slot};
 use super::stream::{Instant, Stream, bond_field, classes, colours, numbers, vectors};
-use super::{map, names};
+use super::{map, names, tubes};
 use crate::base::error::Result;
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use crate::scene::spec::ColourBy;
@@ -37,6 +37,7 @@ impl Batch<'_> {
     pub fn send(&self, stream: &Stream) -> Result<()> {
         for number in 0..self.info.wires.len() {
             stream.rows(names::wire(names::STRAND, self.info, number), self.instants, self.wire(number))?;
+            stream.rows(names::tube(names::STRAND, self.info, number), self.instants, self.tube(number))?;
         }
         for layer in 0..self.info.layers.len() {
             stream.rows(names::layer(names::MAP, self.info, layer), self.instants, [self.map_colours(layer)])?;
@@ -70,6 +71,11 @@ impl Batch<'_> {
             batches.push((numbers(bond_field(SPEED), particles().map(|(s, k)| s.speed[wire.first + k])), each));
         }
         batches
+    }
+
+    fn tube(&self, number: usize) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
+        let wire = &self.info.wires[number];
+        tubes::batches(self.snapshots, self.palette, wire, number, |s| mean_radius(s, wire))
     }
 
     fn map_colours(&self, layer: usize) -> (SerializedComponentBatch, Vec<usize>) {

@@ -2,12 +2,12 @@
 
 use super::{names, stream};
 use crate::base::error::{Error, Result};
-use rerun::external::re_log_encoding::DecoderApp;
+use rerun::external::re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
 use rerun::log::{Chunk, LogMsg};
 use rerun::{Points3D, Scalars, StoreKind, TextLog};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// What one entity holds.
@@ -36,7 +36,7 @@ pub struct RecordingContents {
     pub last_positions: BTreeMap<String, Vec<[f32; 3]>>,
     /// Strain [10⁻⁶] and nominal stress of the body [MPa], in the order of the file.
     pub nominal_stress: Vec<(i64, f64)>,
-    /// Whether a layout is embedded.
+    /// Whether a layout is embedded, ahead of all data, so that a viewer opens with it.
     pub layout: bool,
     /// Messages, for an estimate of overhead.
     pub messages: usize,
@@ -48,13 +48,14 @@ pub struct RecordingContents {
 /// [`Error::Io`] when the file cannot be read or is not a whole recording.
 pub fn contents(path: &Path) -> Result<RecordingContents> {
     let broken = |e: &dyn std::fmt::Display| Error::io("cannot read", path, std::io::Error::other(e.to_string()));
-    let file = File::open(path).map_err(|e| Error::io("cannot read", path, e))?;
+    let mut file = File::open(path).map_err(|e| Error::io("cannot read", path, e))?;
+    check_end(&mut file).map_err(|e| Error::io("cannot read", path, e))?;
     let mut all = RecordingContents::default();
     for message in DecoderApp::decode_eager(BufReader::new(file)).map_err(|e| broken(&e))? {
         let message = message.map_err(|e| broken(&e))?;
         all.messages += 1;
         if let LogMsg::BlueprintActivationCommand(_) = message {
-            all.layout = true;
+            all.layout = all.entities.is_empty();
         }
         if let LogMsg::ArrowMsg(store, arrow) = message
             && store.kind() == StoreKind::Recording
@@ -64,6 +65,20 @@ pub fn contents(path: &Path) -> Result<RecordingContents> {
         }
     }
     Ok(all)
+}
+
+/// A whole recording ends with a footer; the decoder alone takes a file that was cut off for a short one.
+fn check_end(file: &mut File) -> std::io::Result<()> {
+    let mut end = [0; StreamFooter::ENCODED_SIZE_BYTES];
+    let whole = file.seek(SeekFrom::End(-(end.len() as i64))).is_ok();
+    if whole {
+        file.read_exact(&mut end)?;
+    }
+    file.rewind()?;
+    if whole && StreamFooter::from_rrd_bytes(&end).is_ok() {
+        return Ok(());
+    }
+    Err(std::io::Error::new(std::io::ErrorKind::UnexpectedEof, "it is no recording, or its end is missing"))
 }
 
 impl RecordingContents {

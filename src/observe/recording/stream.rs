@@ -1,7 +1,10 @@
 //! A thin layer over Rerun's stream: everything goes out as columns, so that a run always gives the same chunks.
 
 use crate::base::error::{Error, Result};
-use rerun::external::arrow::array::{ArrayRef, FixedSizeListArray, Float32Array, UInt16Array, UInt32Array};
+use rerun::external::arrow::array::{
+    Array, ArrayRef, FixedSizeListArray, Float32Array, ListArray, StringArray, UInt16Array, UInt32Array,
+};
+use rerun::external::arrow::buffer::OffsetBuffer;
 use rerun::external::arrow::datatypes::{DataType, Field};
 use rerun::{
     AsComponents, ComponentDescriptor, EntityPath, Loggable, RecordingStream, SerializationResult,
@@ -104,6 +107,24 @@ pub(super) fn vectors<const N: usize>(
     let field = Arc::new(Field::new("item", DataType::Float32, false));
     let array = FixedSizeListArray::new(field, N as i32, Arc::new(Float32Array::from(flat)), None);
     SerializedComponentBatch::new(Arc::new(array), descriptor)
+}
+
+/// Lines of `corners` points each as Rerun stores them.
+pub(super) fn strips(
+    descriptor: ComponentDescriptor,
+    points: impl Iterator<Item = [f32; 3]>,
+    corners: usize,
+) -> SerializedComponentBatch {
+    let points = vectors(descriptor.clone(), points).array;
+    let field = Arc::new(Field::new("item", points.data_type().clone(), false));
+    let offsets = OffsetBuffer::from_repeated_length(corners, points.len() / corners);
+    SerializedComponentBatch::new(Arc::new(ListArray::new(field, offsets, points, None)), descriptor)
+}
+
+/// Texts as Rerun stores them.
+pub(super) fn texts(descriptor: ComponentDescriptor, values: impl Iterator<Item = String>) -> SerializedComponentBatch {
+    let all: Vec<String> = values.collect();
+    SerializedComponentBatch::new(Arc::new(StringArray::from(all)), descriptor)
 }
 
 /// Numbers as Rerun stores them.
