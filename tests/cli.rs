@@ -300,6 +300,16 @@ fn a_run_away_stops_with_its_results_kept() {
     assert!(summary["warnings"][0].as_str().unwrap().contains("stopped at step"), "{}", summary["warnings"]);
 }
 
+#[cfg(unix)]
+#[test]
+fn a_reader_who_has_gone_is_no_trouble() {
+    let program = env!("CARGO_BIN_EXE_strandsnap");
+    let script = format!("'{program}' scene show ka4 | true; exit ${{PIPESTATUS[0]}}");
+    let output = Command::new("bash").args(["-c", &script]).output().expect("bash starts");
+    assert_code(&output, 0);
+    assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
+}
+
 /// Whether frames can be drawn here; else says which test did not run.
 fn has_adapter(test: &str) -> bool {
     #[cfg(feature = "render")]

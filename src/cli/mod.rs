@@ -5,6 +5,7 @@ mod interrupt;
 mod plan;
 mod render;
 mod run;
+mod say;
 mod scene;
 mod values;
 
