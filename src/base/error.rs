@@ -74,19 +74,12 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 impl Error {
     /// An input error with its remedy.
     pub fn input(what: impl Into<String>, help: impl Into<String>) -> Self {
-        Error::Input {
-            what: what.into(),
-            help: Some(help.into()),
-        }
+        Error::Input { what: what.into(), help: Some(help.into()) }
     }
 
     /// A file-system error with what was being done.
     pub fn io(action: &'static str, path: impl Into<PathBuf>, source: std::io::Error) -> Self {
-        Error::Io {
-            action,
-            path: path.into(),
-            source,
-        }
+        Error::Io { action, path: path.into(), source }
     }
 
     /// Exit code of the program for this error: 2 for bad input, 3 for something missing on the machine,

@@ -16,11 +16,7 @@ pub struct Vectors {
 impl Vectors {
     /// `n` zero vectors.
     pub fn zeros(n: usize) -> Self {
-        Self {
-            x: vec![0.0; n],
-            y: vec![0.0; n],
-            z: vec![0.0; n],
-        }
+        Self { x: vec![0.0; n], y: vec![0.0; n], z: vec![0.0; n] }
     }
 
     /// Number of vectors.

@@ -56,8 +56,7 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
     /// All bonds of the assembly; `damping` is the fraction of critical per mode [-].
     pub fn new(law: L, assembly: &Assembly, damping: [f64; 4], rupture: Option<RuptureCheck>) -> Self {
         let n = assembly.len();
-        let shape: Vec<_> =
-            (0..n).map(|i| BondShape { rest_length: assembly.rest_length[i], radius: assembly.radius[i] }).collect();
+        let shape: Vec<_> = (0..n).map(|i| BondShape::new(assembly.rest_length[i], assembly.radius[i])).collect();
         let records = (0..n)
             .map(|i| {
                 let axis = if assembly.is_bond(i) {
@@ -208,8 +207,8 @@ fn axial<L: BondLaw>(
     let d = m.x.get(slot + 1) - m.x.get(slot);
     let shape = &shared.shape[slot];
     let length = d.length();
-    let n = d / length;
-    let step = BondIncrement { log_strain: (length / shape.rest_length).ln(), length, ..Default::default() };
+    let n = d * (1.0 / length);
+    let step = BondIncrement { log_strain: (length * shape.inverse_length).ln(), length, ..Default::default() };
     partial.plastic += shared.law.axial_response(shape, &mut record.force, &mut record.state, &step);
     let mut axial = record.force.axial;
     if let Some(c) = shared.viscosity.get(slot) {
@@ -234,7 +233,7 @@ fn turning<L: BondLaw>(
     let (wa, wb) = (m.w.get(slot), m.w.get(slot + 1));
     let shape = &shared.shape[slot];
     let length = d.length();
-    let n = d / length;
+    let n = d * (1.0 / length);
 
     // Mid-step geometry.
     let middle = d - dv * (0.5 * dt);
@@ -253,7 +252,7 @@ fn turning<L: BondLaw>(
     let slide = (dv - spin.cross(middle)) * dt;
     let rotation = (wb - wa) * dt;
     let step = BondIncrement {
-        log_strain: (length / shape.rest_length).ln(),
+        log_strain: (length * shape.inverse_length).ln(),
         length,
         shear: [slide.dot(e1_mid), slide.dot(e2_mid)],
         bend: [rotation.dot(e1_mid), rotation.dot(e2_mid)],

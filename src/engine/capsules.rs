@@ -320,7 +320,7 @@ fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
         return;
     }
     let distance = distance2.sqrt();
-    let normal = d / distance;
+    let normal = d * (1.0 / distance);
     let overlap = reach - distance;
     c.arm = [state.radius[i] - 0.5 * overlap, radius - 0.5 * overlap];
     let mut velocity = state.v.get(j).lerp(state.v.get(next), c.t) - state.v.get(i);

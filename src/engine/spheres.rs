@@ -201,7 +201,7 @@ fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
         return;
     }
     let distance = distance2.sqrt();
-    let normal = d / distance;
+    let normal = d * (1.0 / distance);
     let overlap = reach - distance;
     let mut velocity = state.v.get(j) - state.v.get(i);
     if T::ACTIVE {

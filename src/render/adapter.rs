@@ -31,10 +31,7 @@ impl Gpu {
     pub fn open() -> Result<Self> {
         let adapter = request_adapter()?;
         let info = adapter.get_info();
-        let name = format!(
-            "{} ({} {}, {:?})",
-            info.name, info.driver, info.driver_info, info.backend
-        );
+        let name = format!("{} ({} {}, {:?})", info.name, info.driver, info.driver_info, info.backend);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("strandsnap"),
             required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
@@ -42,22 +39,14 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|e| failure(format!("the graphics adapter {name} refused to open: {e}")))?;
-        Ok(Self {
-            device,
-            queue,
-            name,
-            sample_mask: info.backend != wgpu::Backend::Gl,
-        })
+        Ok(Self { device, queue, name, sample_mask: info.backend != wgpu::Backend::Gl })
     }
 }
 
 /// An error of the graphics driver, with the way to do without pictures.
 pub fn failure(what: impl Into<String>) -> Error {
     let help = "update the graphics driver, or leave pictures out with --no-frames";
-    Error::Missing {
-        what: what.into(),
-        help: Some(help.into()),
-    }
+    Error::Missing { what: what.into(), help: Some(help.into()) }
 }
 
 fn request_adapter() -> Result<wgpu::Adapter> {

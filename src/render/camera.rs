@@ -24,9 +24,7 @@ impl Camera {
     pub fn orientation(azimuth_deg: f32, elevation_deg: f32) -> Mat3 {
         // Rows are the view axes in world coordinates: right = z, up = y, towards the eye = right × up = −x.
         let base = Mat3::from_cols(Vec3::new(0.0, 0.0, -1.0), Vec3::Y, Vec3::X);
-        Mat3::from_rotation_x(elevation_deg.to_radians())
-            * Mat3::from_rotation_y(azimuth_deg.to_radians())
-            * base
+        Mat3::from_rotation_x(elevation_deg.to_radians()) * Mat3::from_rotation_y(azimuth_deg.to_radians()) * base
     }
 
     /// View coordinates of a point [mm], relative to the centre.
@@ -37,10 +35,7 @@ impl Camera {
     /// Pixel of a point.
     pub fn project(&self, p: Vec3) -> [f32; 2] {
         let v = self.to_view(p);
-        let middle = [
-            self.panel.x + 0.5 * self.panel.w,
-            self.panel.y + 0.5 * self.panel.h,
-        ];
+        let middle = [self.panel.x + 0.5 * self.panel.w, self.panel.y + 0.5 * self.panel.h];
         [middle[0] + v.x * self.scale, middle[1] - v.y * self.scale]
     }
 }
@@ -65,10 +60,7 @@ mod tests {
         assert_eq!(c.project(c.centre), [300.0, 150.0]);
         assert_eq!(c.project(c.centre + Vec3::Z), [310.0, 150.0]);
         assert_eq!(c.project(c.centre + Vec3::Y), [300.0, 140.0]);
-        assert!(
-            c.to_view(c.centre - Vec3::X).z > 0.99,
-            "the eye is on the side of −x"
-        );
+        assert!(c.to_view(c.centre - Vec3::X).z > 0.99, "the eye is on the side of −x");
     }
 
     #[test]

@@ -36,20 +36,12 @@ impl Rect {
 
     /// The rectangle without margins left, top, right and bottom [px].
     pub fn inset(&self, left: f32, top: f32, right: f32, bottom: f32) -> Self {
-        Self::new(
-            self.x + left,
-            self.y + top,
-            self.w - left - right,
-            self.h - top - bottom,
-        )
+        Self::new(self.x + left, self.y + top, self.w - left - right, self.h - top - bottom)
     }
 
     /// Whether the two overlap.
     pub fn meets(&self, other: &Rect) -> bool {
-        self.x < other.right()
-            && other.x < self.right()
-            && self.y < other.bottom()
-            && other.y < self.bottom()
+        self.x < other.right() && other.x < self.right() && self.y < other.bottom() && other.y < self.bottom()
     }
 
     /// Edges moved to whole pixels.
@@ -123,13 +115,7 @@ impl Fonts {
 
     /// Calls `place(glyph, x)` for every character and returns the width [px]. Figures all get the width of a zero,
     /// so that numbers do not dance from frame to frame.
-    fn layout(
-        &self,
-        text: &str,
-        size: f32,
-        weight: Weight,
-        mut place: impl FnMut(ab_glyph::GlyphId, f32),
-    ) -> f32 {
+    fn layout(&self, text: &str, size: f32, weight: Weight, mut place: impl FnMut(ab_glyph::GlyphId, f32)) -> f32 {
         let font = self.get(weight);
         let scaled = font.as_scaled(em_scale(font, size));
         let zero = scaled.h_advance(font.glyph_id('0'));
@@ -185,9 +171,7 @@ impl Canvas<'_> {
 
     /// Fills a rectangle; edges between pixels are anti-aliased.
     pub fn fill(&mut self, r: Rect, colour: Rgb, alpha: f32) {
-        let cover = |p: i32, low: f32, high: f32| {
-            (high.min(p as f32 + 1.0) - low.max(p as f32)).clamp(0.0, 1.0)
-        };
+        let cover = |p: i32, low: f32, high: f32| (high.min(p as f32 + 1.0) - low.max(p as f32)).clamp(0.0, 1.0);
         for y in r.y.floor() as i32..r.bottom().ceil() as i32 {
             let cy = cover(y, r.y, r.bottom());
             for x in r.x.floor() as i32..r.right().ceil() as i32 {
@@ -221,12 +205,7 @@ impl Canvas<'_> {
     pub fn ring(&mut self, x: f32, y: f32, radius: f32, width: f32, colour: Rgb, alpha: f32) {
         let o = radius + width;
         let r = Rect::new(x - o, y - o, 2.0 * o, 2.0 * o);
-        self.shade(
-            r,
-            |px, py| ((px - x).hypot(py - y) - radius).abs() - 0.5 * width,
-            colour,
-            alpha,
-        );
+        self.shade(r, |px, py| ((px - x).hypot(py - y) - radius).abs() - 0.5 * width, colour, alpha);
     }
 
     /// Draws a straight line with round ends.
@@ -246,10 +225,8 @@ impl Canvas<'_> {
             }
         }
         let (x0, y0) = (low[0].max(0.0) as usize, low[1].max(0.0) as usize);
-        let (x1, y1) = (
-            (high[0].ceil().max(0.0) as usize).min(w as usize),
-            (high[1].ceil().max(0.0) as usize).min(h as usize),
-        );
+        let (x1, y1) =
+            ((high[0].ceil().max(0.0) as usize).min(w as usize), (high[1].ceil().max(0.0) as usize).min(h as usize));
         if points.len() < 2 || x1 <= x0 || y1 <= y0 {
             return;
         }
@@ -258,12 +235,8 @@ impl Canvas<'_> {
         for pair in points.windows(2) {
             let [a, b] = [pair[0], pair[1]];
             let clip = |v: f32, lo: usize, hi: usize| (v.max(lo as f32) as usize).clamp(lo, hi);
-            for y in
-                clip(a[1].min(b[1]) - reach, y0, y1)..clip(a[1].max(b[1]) + reach + 1.0, y0, y1)
-            {
-                for x in
-                    clip(a[0].min(b[0]) - reach, x0, x1)..clip(a[0].max(b[0]) + reach + 1.0, x0, x1)
-                {
+            for y in clip(a[1].min(b[1]) - reach, y0, y1)..clip(a[1].max(b[1]) + reach + 1.0, y0, y1) {
+                for x in clip(a[0].min(b[0]) - reach, x0, x1)..clip(a[0].max(b[0]) + reach + 1.0, x0, x1) {
                     let d = distance_to_segment([x as f32 + 0.5, y as f32 + 0.5], a, b);
                     let c = &mut cover[(y - y0) * columns + x - x0];
                     *c = c.max((0.5 * width + 0.5 - d).clamp(0.0, width.min(1.0)));
@@ -271,12 +244,7 @@ impl Canvas<'_> {
             }
         }
         for (k, c) in cover.iter().enumerate().filter(|(_, c)| **c > 0.0) {
-            self.blend(
-                (x0 + k % columns) as i32,
-                (y0 + k / columns) as i32,
-                colour,
-                alpha * c,
-            );
+            self.blend((x0 + k % columns) as i32, (y0 + k / columns) as i32, colour, alpha * c);
         }
     }
 
@@ -298,25 +266,12 @@ impl Canvas<'_> {
     pub fn text_upwards(&mut self, x: f32, y: f32, kind: Type, text: &str) {
         let width = self.fonts.width(text, kind.size, kind.weight);
         let start = y + width * share(kind.align);
-        self.glyphs(
-            text,
-            kind,
-            |gx, gy| ((x + gy).floor() as i32, (start - gx).floor() as i32),
-            0.0,
-            0.0,
-        );
+        self.glyphs(text, kind, |gx, gy| ((x + gy).floor() as i32, (start - gx).floor() as i32), 0.0, 0.0);
     }
 
     /// Rasterises a text; `to_pixel` maps a point relative to the start of the baseline to a pixel. The fractions
     /// are the sub-pixel position of that start.
-    fn glyphs(
-        &mut self,
-        text: &str,
-        kind: Type,
-        to_pixel: impl Fn(f32, f32) -> (i32, i32),
-        fx: f32,
-        fy: f32,
-    ) {
+    fn glyphs(&mut self, text: &str, kind: Type, to_pixel: impl Fn(f32, f32) -> (i32, i32), fx: f32, fy: f32) {
         let fonts = self.fonts;
         let font = fonts.get(kind.weight);
         let scale = em_scale(font, kind.size);
@@ -377,21 +332,9 @@ mod tests {
     #[test]
     fn overlapping_pieces_of_a_line_blend_once() {
         let fonts = Fonts::embedded();
-        let mut canvas = Canvas {
-            image: RgbImage::new(20, 20),
-            fonts: &fonts,
-            unit: 1.0,
-        };
-        canvas.polyline(
-            &[[2.0, 10.0], [10.0, 10.0], [18.0, 10.0]],
-            4.0,
-            [200; 3],
-            0.5,
-        );
-        assert_eq!(
-            canvas.image.get_pixel(10, 10),
-            canvas.image.get_pixel(5, 10)
-        );
+        let mut canvas = Canvas { image: RgbImage::new(20, 20), fonts: &fonts, unit: 1.0 };
+        canvas.polyline(&[[2.0, 10.0], [10.0, 10.0], [18.0, 10.0]], 4.0, [200; 3], 0.5);
+        assert_eq!(canvas.image.get_pixel(10, 10), canvas.image.get_pixel(5, 10));
         assert_eq!(canvas.image.get_pixel(10, 2).0, [0; 3]);
     }
 }

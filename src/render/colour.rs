@@ -55,11 +55,7 @@ impl ColourScale {
 
     /// Ends of the range, in the unit of the title; `None` for categories.
     pub fn shown_range(&self) -> Option<[f64; 2]> {
-        let factor = if self.by == ColourBy::PlasticStrain {
-            100.0
-        } else {
-            1.0
-        };
+        let factor = if self.by == ColourBy::PlasticStrain { 100.0 } else { 1.0 };
         self.map.map(|_| self.range.map(|v| f64::from(v) * factor))
     }
 
@@ -74,9 +70,7 @@ impl ColourScale {
 
     fn of_value(&self, value: f32) -> Rgb {
         let [low, high] = self.range;
-        self.at(f64::from(
-            (value - low) / (high - low).max(f32::MIN_POSITIVE),
-        ))
+        self.at(f64::from((value - low) / (high - low).max(f32::MIN_POSITIVE)))
     }
 
     /// Colour of layer or wire number `index`.
@@ -90,12 +84,8 @@ impl ColourScale {
         for (number, wire) in info.wires.iter().enumerate() {
             for i in wire.first..wire.first + wire.len {
                 colours[i] = match self.by {
-                    ColourBy::Stress => {
-                        self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i))
-                    }
-                    ColourBy::PlasticStrain => {
-                        self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i))
-                    }
+                    ColourBy::Stress => self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i)),
+                    ColourBy::PlasticStrain => self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i)),
                     ColourBy::Velocity => self.of_value(snapshot.speed[i]),
                     ColourBy::Layer => Self::category(wire.layer),
                     ColourBy::Wire => Self::category(number),
@@ -105,9 +95,7 @@ impl ColourScale {
         for i in info.wire_particles..snapshot.position.len() {
             colours[i] = match self.by {
                 ColourBy::Velocity => self.of_value(snapshot.speed[i]),
-                ColourBy::Wire | ColourBy::Layer => {
-                    Self::category(info.wires.len() + i - info.wire_particles)
-                }
+                ColourBy::Wire | ColourBy::Layer => Self::category(info.wires.len() + i - info.wire_particles),
                 _ => colours[i],
             };
         }
@@ -117,12 +105,7 @@ impl ColourScale {
 
 /// Mean over the bonds that hold particle `i` of a wire starting at `first`; 0 when none does.
 fn beside(snapshot: &Snapshot, values: &[f32], first: usize, i: usize) -> f32 {
-    let holds = |b: usize| {
-        matches!(
-            snapshot.bond_state[b],
-            BondState::Whole | BondState::Yielding
-        )
-    };
+    let holds = |b: usize| matches!(snapshot.bond_state[b], BondState::Whole | BondState::Yielding);
     let before = (i > first && holds(i - 1)).then(|| values[i - 1]);
     let after = holds(i).then(|| values[i]);
     match (before, after) {
@@ -144,11 +127,7 @@ pub fn desaturated(colour: Rgb) -> Rgb {
 /// sRGB byte to linear light (IEC 61966-2-1) [-].
 pub fn linear(byte: u8) -> f32 {
     let v = f32::from(byte) / 255.0;
-    if v <= 0.040_45 {
-        v / 12.92
-    } else {
-        ((v + 0.055) / 1.055).powf(2.4)
-    }
+    if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Linear RGB of a colour, with alpha 1.
@@ -166,10 +145,7 @@ mod tests {
     use super::*;
 
     fn distance(a: Rgb, b: Rgb) -> f64 {
-        (0..3)
-            .map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2))
-            .sum::<f64>()
-            .sqrt()
+        (0..3).map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2)).sum::<f64>().sqrt()
     }
 
     #[test]

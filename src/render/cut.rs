@@ -25,10 +25,7 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data, rest_z: f32) {
         let x = middle[0] + (x - data.body.axis.x) * scale;
         let y = middle[1] - (y - data.body.axis.y) * scale;
         let reach = area.inset(r, r, r, r);
-        let [x, y] = [
-            x.clamp(reach.x, reach.right()),
-            y.clamp(reach.y, reach.bottom()),
-        ];
+        let [x, y] = [x.clamp(reach.x, reach.right()), y.clamp(reach.y, reach.bottom())];
         let ink = if broken(data, wire) {
             let line = (0.22 * r).max(1.5 * u);
             canvas.ring(x, y, r - 0.5 * line, line, data.style.signal, 1.0);
@@ -39,12 +36,7 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data, rest_z: f32) {
         };
         if r > 7.0 * u {
             let size = (0.85 * r).min(13.0 * u);
-            let kind = Type {
-                size,
-                weight: Weight::Regular,
-                colour: ink,
-                align: Align::Centre,
-            };
+            let kind = Type { size, weight: Weight::Regular, colour: ink, align: Align::Centre };
             canvas.text(x, y + 0.36 * size, kind, &(number + 1).to_string());
         }
     }
@@ -59,17 +51,11 @@ fn broken(data: &Data, wire: &WireInfo) -> bool {
 /// The particle of a wire nearest to the cut.
 fn nearest(data: &Data, wire: &WireInfo, z: f32) -> usize {
     let distance = |i: usize| (data.snapshot.position[i][2] - z).abs();
-    (wire.first..wire.first + wire.len)
-        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
-        .unwrap_or(wire.first)
+    (wire.first..wire.first + wire.len).min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or(wire.first)
 }
 
 /// Black or white, whichever reads better on `colour`.
 fn ink_on(colour: Rgb) -> Rgb {
     let [r, g, b] = colour.map(f32::from);
-    if 0.299 * r + 0.587 * g + 0.114 * b > 120.0 {
-        [16, 18, 22]
-    } else {
-        [240, 242, 246]
-    }
+    if 0.299 * r + 0.587 * g + 0.114 * b > 120.0 { [16, 18, 22] } else { [240, 242, 246] }
 }

@@ -46,48 +46,24 @@ pub fn positions(data: &Data, lifts: &[f32], camera: &Camera) -> Vec<[f32; 3]> {
 }
 
 /// Camera on the section at `z` [mm] that holds the whole stack.
-pub fn camera(
-    body: &Body,
-    options: &CameraOptions,
-    panel: Rect,
-    unit: f32,
-    z: f32,
-    height: f32,
-) -> Camera {
+pub fn camera(body: &Body, options: &CameraOptions, panel: Rect, unit: f32, z: f32, height: f32) -> Camera {
     // The title needs room above.
     let room = panel.h - 24.0 * unit;
     let scale = options.zoom * room / height.max(1e-6);
     let rotation = Camera::orientation(0.0, options.elevation_deg);
-    let middle = Vec3::new(body.axis.x, body.axis.y, z)
-        + rotation.transpose() * Vec3::Y * (8.0 * unit / scale);
-    Camera {
-        rotation,
-        centre: middle,
-        panel,
-        scale,
-        depth: 10.0 * (body.high - body.low).length().max(body.radius),
-    }
+    let middle = Vec3::new(body.axis.x, body.axis.y, z) + rotation.transpose() * Vec3::Y * (8.0 * unit / scale);
+    Camera { rotation, centre: middle, panel, scale, depth: 10.0 * (body.high - body.low).length().max(body.radius) }
 }
 
 /// Names of the layers beside them.
 pub fn names(canvas: &mut Canvas, camera: &Camera, data: &Data, lifts: &[f32]) {
     let u = canvas.unit;
-    let kind = Type {
-        size: 11.0 * u,
-        weight: Weight::Bold,
-        colour: data.style.text,
-        align: Align::Left,
-    };
+    let kind = Type { size: 11.0 * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
     for (name, lift) in data.info.layers.iter().zip(lifts) {
         let [_, middle] = camera.project(data.body.axis);
         let y = middle - lift * camera.scale;
         let w = canvas.fonts.width(name, kind.size, kind.weight);
-        let r = Rect::new(
-            camera.panel.x + 8.0 * u,
-            y - 9.0 * u,
-            w + 10.0 * u,
-            18.0 * u,
-        );
+        let r = Rect::new(camera.panel.x + 8.0 * u, y - 9.0 * u, w + 10.0 * u, 18.0 * u);
         canvas.fill_rounded(r, 4.0 * u, data.style.page, 0.8);
         canvas.text(r.x + 5.0 * u, y + 4.0 * u, kind, name);
     }

@@ -28,54 +28,21 @@ type Block = (String, String, String);
 
 fn caption(data: &Data) -> Vec<Block> {
     let sample = &data.snapshot.sample;
-    let time = (
-        "time".into(),
-        time_text(sample.time),
-        format!("step {}", sample.step),
-    );
+    let time = ("time".into(), time_text(sample.time), format!("step {}", sample.step));
     if data.info.gauge.is_none() {
         return vec![time];
     }
-    let bonds: usize = data
-        .info
-        .wires
-        .iter()
-        .map(|w| w.len.saturating_sub(1))
-        .sum();
+    let bonds: usize = data.info.wires.iter().map(|w| w.len.saturating_sub(1)).sum();
     let mut blocks = vec![
-        (
-            "strain".into(),
-            format!("{} %", label(sample.strain * 100.0, 2)),
-            String::new(),
-        ),
-        (
-            "nominal stress".into(),
-            format!("{} MPa", label(sample.stress / 1e6, 1)),
-            String::new(),
-        ),
-        (
-            "wires broken".into(),
-            format!("{} / {}", sample.wires_broken, data.info.wires.len()),
-            String::new(),
-        ),
-        (
-            "bonds broken".into(),
-            format!("{}", sample.bonds_broken),
-            format!("of {bonds}"),
-        ),
+        ("strain".into(), format!("{} %", label(sample.strain * 100.0, 2)), String::new()),
+        ("nominal stress".into(), format!("{} MPa", label(sample.stress / 1e6, 1)), String::new()),
+        ("wires broken".into(), format!("{} / {}", sample.wires_broken, data.info.wires.len()), String::new()),
+        ("bonds broken".into(), format!("{}", sample.bonds_broken), format!("of {bonds}")),
     ];
     if let Some(first) = data.ruptures.first() {
         let layer = data.info.layers.get(first.layer).map_or("", String::as_str);
-        let value = format!(
-            "wire {} · {layer} · z {:.1} mm",
-            first.wire + 1,
-            first.rest_z * 1e3
-        );
-        let detail = format!(
-            "at {:.2} % and {:.1} MPa",
-            first.strain * 100.0,
-            first.body_stress / 1e6
-        );
+        let value = format!("wire {} · {layer} · z {:.1} mm", first.wire + 1, first.rest_z * 1e3);
+        let detail = format!("at {:.2} % and {:.1} MPa", first.strain * 100.0, first.body_stress / 1e6);
         blocks.push(("first break".into(), value, detail));
     }
     blocks
@@ -92,19 +59,9 @@ fn time_text(seconds: f64) -> String {
 fn name(canvas: &mut Canvas, area: Rect, data: &Data) -> f32 {
     let u = canvas.unit;
     let x = area.x + 18.0 * u;
-    let kind = Type {
-        size: 21.0 * u,
-        weight: Weight::Bold,
-        colour: data.style.text,
-        align: Align::Left,
-    };
+    let kind = Type { size: 21.0 * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
     let title = canvas.text(x, area.y + 29.0 * u, kind, &data.info.name);
-    let kind = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour: data.style.muted,
-        align: Align::Left,
-    };
+    let kind = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Left };
     let size = canvas.text(x, area.y + 46.0 * u, kind, &size_text(data.info));
     x + title.max(size) + 30.0 * u
 }
@@ -118,28 +75,11 @@ fn size_text(info: &RunInfo) -> String {
     }
 }
 
-fn block(
-    canvas: &mut Canvas,
-    x: f32,
-    y: f32,
-    data: &Data,
-    what: &str,
-    value: &str,
-    detail: &str,
-) -> f32 {
+fn block(canvas: &mut Canvas, x: f32, y: f32, data: &Data, what: &str, value: &str, detail: &str) -> f32 {
     let u = canvas.unit;
     let first = what == "first break";
-    let colour = if first {
-        data.style.signal
-    } else {
-        data.style.muted
-    };
-    let small = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour,
-        align: Align::Left,
-    };
+    let colour = if first { data.style.signal } else { data.style.muted };
+    let small = Type { size: 11.0 * u, weight: Weight::Regular, colour, align: Align::Left };
     let big = Type {
         size: if first { 14.0 } else { 17.0 } * u,
         weight: Weight::Bold,
@@ -148,15 +88,7 @@ fn block(
     };
     let a = canvas.text(x, y + 18.0 * u, small, what);
     let b = canvas.text(x, y + 37.0 * u, big, value);
-    let c = canvas.text(
-        x,
-        y + 51.0 * u,
-        Type {
-            colour: data.style.muted,
-            ..small
-        },
-        detail,
-    );
+    let c = canvas.text(x, y + 51.0 * u, Type { colour: data.style.muted, ..small }, detail);
     // The caption must not dance as figures come and go.
     a.max(b).max(c).max(74.0 * u)
 }
@@ -168,67 +100,32 @@ fn colour_bar(canvas: &mut Canvas, area: Rect, data: &Data, range: [f64; 2]) {
         let colour = data.scale.at((f64::from(k) + 0.5) / f64::from(bar.w));
         canvas.fill(Rect::new(bar.x + k as f32, bar.y, 1.0, bar.h), colour, 1.0);
     }
-    let small = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour: data.style.muted,
-        align: Align::Centre,
-    };
+    let small = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Centre };
     canvas.text(
         area.x,
         area.y + 18.0 * u,
-        Type {
-            align: Align::Left,
-            colour: data.style.text,
-            ..small
-        },
+        Type { align: Align::Left, colour: data.style.text, ..small },
         data.scale.title(),
     );
     let marks = ticks(range[0], range[1], 6);
     for value in marks.values {
         let x = bar.x + bar.w * ((value - range[0]) / (range[1] - range[0])) as f32;
-        canvas.fill(
-            Rect::new(x - 0.5 * u, bar.bottom(), u, 4.0 * u),
-            data.style.muted,
-            1.0,
-        );
-        canvas.text(
-            x,
-            bar.bottom() + 15.0 * u,
-            small,
-            &label(value, marks.decimals),
-        );
+        canvas.fill(Rect::new(x - 0.5 * u, bar.bottom(), u, 4.0 * u), data.style.muted, 1.0);
+        canvas.text(x, bar.bottom() + 15.0 * u, small, &label(value, marks.decimals));
     }
     let x = area.right();
-    let kind = Type {
-        align: Align::Right,
-        colour: data.style.signal,
-        ..small
-    };
+    let kind = Type { align: Align::Right, colour: data.style.signal, ..small };
     let width = canvas.text(x, area.y + 18.0 * u, kind, "broken");
-    canvas.fill(
-        Rect::new(x - width - 15.0 * u, area.y + 9.0 * u, 10.0 * u, 10.0 * u),
-        data.style.signal,
-        1.0,
-    );
+    canvas.fill(Rect::new(x - width - 15.0 * u, area.y + 9.0 * u, 10.0 * u, 10.0 * u), data.style.signal, 1.0);
 }
 
 fn legend(canvas: &mut Canvas, area: Rect, data: &Data) {
     let u = canvas.unit;
-    let kind = Type {
-        size: 12.0 * u,
-        weight: Weight::Regular,
-        colour: data.style.text,
-        align: Align::Left,
-    };
+    let kind = Type { size: 12.0 * u, weight: Weight::Regular, colour: data.style.text, align: Align::Left };
     let mut entries: Vec<(String, [u8; 3])> = match data.scale.by() {
-        ColourBy::Layer => data
-            .info
-            .layers
-            .iter()
-            .enumerate()
-            .map(|(k, name)| (name.clone(), ColourScale::category(k)))
-            .collect(),
+        ColourBy::Layer => {
+            data.info.layers.iter().enumerate().map(|(k, name)| (name.clone(), ColourScale::category(k))).collect()
+        }
         _ => vec![("coloured by wire".to_owned(), data.style.text)],
     };
     if !data.info.wires.is_empty() {

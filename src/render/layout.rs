@@ -22,28 +22,14 @@ pub const GAP: f32 = 6.0;
 /// Rows of a frame: which views, share of the height, shares of the width.
 const ROWS: [(&[(View, f32)], f32); 3] = [
     (&[(View::Overview, 1.0)], 0.15),
-    (
-        &[
-            (View::Midsection, 1.0),
-            (View::Exploded, 0.62),
-            (View::CrossSection, 0.29),
-            (View::Scene, 1.0),
-        ],
-        0.44,
-    ),
+    (&[(View::Midsection, 1.0), (View::Exploded, 0.62), (View::CrossSection, 0.29), (View::Scene, 1.0)], 0.44),
     (&[(View::Unrolled, 0.6), (View::Curve, 0.4)], 0.41),
 ];
 
 /// The default views: of a body between grips, or of free bodies.
 pub fn default_views(gripped: bool) -> Vec<View> {
     if gripped {
-        vec![
-            View::Overview,
-            View::Midsection,
-            View::CrossSection,
-            View::Unrolled,
-            View::Curve,
-        ]
+        vec![View::Overview, View::Midsection, View::CrossSection, View::Unrolled, View::Curve]
     } else {
         vec![View::Scene]
     }
@@ -58,15 +44,7 @@ pub fn layout(size: [u32; 2], views: &[View]) -> Layout {
     let body = Rect::new(gap, header.h, w - 2.0 * gap, h - header.h - gap);
     let rows: Vec<(Vec<(View, f32)>, f32)> = ROWS
         .iter()
-        .map(|(row, share)| {
-            (
-                row.iter()
-                    .copied()
-                    .filter(|(v, _)| views.contains(v))
-                    .collect::<Vec<_>>(),
-                *share,
-            )
-        })
+        .map(|(row, share)| (row.iter().copied().filter(|(v, _)| views.contains(v)).collect::<Vec<_>>(), *share))
         .filter(|(row, _)| !row.is_empty())
         .collect();
     let mut panels = Vec::new();
@@ -80,11 +58,7 @@ pub fn layout(size: [u32; 2], views: &[View]) -> Layout {
         }
         y += height + gap;
     }
-    Layout {
-        unit,
-        header,
-        panels,
-    }
+    Layout { unit, header, panels }
 }
 
 /// Divides `length` with gaps between by weights.
@@ -106,10 +80,7 @@ mod tests {
             assert_eq!(l.panels.len(), View::ALL.len());
             for (k, (_, a)) in l.panels.iter().enumerate() {
                 assert!(a.x >= 0.0 && a.y >= l.header.bottom() - 1.0, "{a:?}");
-                assert!(
-                    a.right() <= size[0] as f32 && a.bottom() <= size[1] as f32,
-                    "{a:?} in {size:?}"
-                );
+                assert!(a.right() <= size[0] as f32 && a.bottom() <= size[1] as f32, "{a:?} in {size:?}");
                 assert!(l.panels[k + 1..].iter().all(|(_, b)| !a.meets(b)));
             }
         }

@@ -64,11 +64,7 @@ impl Cells {
         let high = position.iter().map(|p| p[2]).fold(f32::MIN, f32::max);
         // At most a million slabs, also when a sphere has flown away.
         let slab = (REACH * 2.0 * widest).max((high - low) * 1e-6).max(1e-6);
-        let count = if position.is_empty() {
-            0
-        } else {
-            ((high - low) / slab) as usize + 1
-        };
+        let count = if position.is_empty() { 0 } else { ((high - low) / slab) as usize + 1 };
         let slab_of = |p: &[f32; 3]| (((p[2] - low) / slab) as usize).min(count.saturating_sub(1));
         let mut starts = vec![0; count + 1];
         for p in position {
@@ -84,12 +80,7 @@ impl Cells {
             order[next[k]] = i as u32;
             next[k] += 1;
         }
-        Self {
-            low,
-            slab,
-            starts,
-            order,
-        }
+        Self { low, slab, starts, order }
     }
 
     /// Particles within a slab's thickness of `z`, and some more.

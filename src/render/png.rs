@@ -13,18 +13,8 @@ use std::path::Path;
 pub fn encode(picture: &RgbImage) -> Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(picture.len() / 4);
     PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
-        .write_image(
-            picture,
-            picture.width(),
-            picture.height(),
-            ExtendedColorType::Rgb8,
-        )
-        .map_err(|e| {
-            Error::input(
-                format!("cannot encode a picture: {e}"),
-                "choose a size of at least 1 × 1 pixel",
-            )
-        })?;
+        .write_image(picture, picture.width(), picture.height(), ExtendedColorType::Rgb8)
+        .map_err(|e| Error::input(format!("cannot encode a picture: {e}"), "choose a size of at least 1 × 1 pixel"))?;
     Ok(bytes)
 }
 
@@ -35,11 +25,7 @@ pub fn encode(picture: &RgbImage) -> Result<Vec<u8>> {
 pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let io = |e| Error::io("cannot write", path, e);
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file = tempfile::Builder::new()
-        .prefix(".frame-")
-        .suffix(".tmp")
-        .tempfile_in(folder)
-        .map_err(io)?;
+    let mut file = tempfile::Builder::new().prefix(".frame-").suffix(".tmp").tempfile_in(folder).map_err(io)?;
     file.write_all(bytes).map_err(io)?;
     make_readable(file.as_file()).map_err(io)?;
     file.persist(path).map_err(|e| io(e.error))?;

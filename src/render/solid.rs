@@ -51,15 +51,9 @@ impl SolidPipeline {
         let internal = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let made = Self::compile(gpu);
-        let errors = [
-            pollster::block_on(validation.pop()),
-            pollster::block_on(internal.pop()),
-        ];
+        let errors = [pollster::block_on(validation.pop()), pollster::block_on(internal.pop())];
         match errors.into_iter().flatten().next() {
-            Some(e) => Err(failure(format!(
-                "the graphics adapter {} refused a shader: {e}",
-                gpu.name
-            ))),
+            Some(e) => Err(failure(format!("the graphics adapter {} refused a shader: {e}", gpu.name))),
             None => Ok(made),
         }
     }
@@ -87,13 +81,11 @@ impl SolidPipeline {
             4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4];
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("wires"),
-            layout: Some(
-                &device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                    label: None,
-                    bind_group_layouts: &[Some(&layout)],
-                    immediate_size: 0,
-                }),
-            ),
+            layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: None,
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            })),
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some("vs"),
@@ -104,10 +96,7 @@ impl SolidPipeline {
                     attributes: &attributes,
                 })],
             },
-            primitive: wgpu::PrimitiveState {
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                ..Default::default()
-            },
+            primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH,
                 depth_write_enabled: Some(true),
@@ -115,17 +104,10 @@ impl SolidPipeline {
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
-            multisample: wgpu::MultisampleState {
-                count: SAMPLES,
-                ..Default::default()
-            },
+            multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some(if gpu.sample_mask {
-                    "fs_masked"
-                } else {
-                    "fs_whole"
-                }),
+                entry_point: Some(if gpu.sample_mask { "fs_masked" } else { "fs_whole" }),
                 compilation_options: Default::default(),
                 targets: &[Some(wgpu::ColorTargetState {
                     format: COLOUR,
@@ -152,13 +134,11 @@ impl SolidPipeline {
         segments: &[Segment],
         drawings: &[Drawing],
     ) -> Result<()> {
-        let instances = gpu
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("segments"),
-                contents: bytemuck::cast_slice(segments),
-                usage: wgpu::BufferUsages::VERTEX,
-            });
+        let instances = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("segments"),
+            contents: bytemuck::cast_slice(segments),
+            usage: wgpu::BufferUsages::VERTEX,
+        });
         let views: Vec<_> = drawings.iter().map(|d| self.bind(gpu, d, style)).collect();
         target.draw(gpu, super::colour::linear4(style.panel), |pass| {
             pass.set_pipeline(&self.pipeline);
@@ -195,20 +175,15 @@ impl SolidPipeline {
             fade: [0.0, drawing.fade, 0.0, 0.0],
             signal: wires::signal(),
         };
-        let buffer = gpu
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("view"),
-                contents: bytemuck::bytes_of(&uniform),
-                usage: wgpu::BufferUsages::UNIFORM,
-            });
+        let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("view"),
+            contents: bytemuck::bytes_of(&uniform),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("view"),
             layout: &self.layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: buffer.as_entire_binding(),
-            }],
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
         })
     }
 }

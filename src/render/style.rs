@@ -50,12 +50,7 @@ pub struct CameraOptions {
 
 impl Default for CameraOptions {
     fn default() -> Self {
-        Self {
-            azimuth_deg: 0.0,
-            elevation_deg: 0.0,
-            zoom: 1.0,
-            focus_z_mm: None,
-        }
+        Self { azimuth_deg: 0.0, elevation_deg: 0.0, zoom: 1.0, focus_z_mm: None }
     }
 }
 
@@ -112,12 +107,7 @@ impl std::str::FromStr for View {
         View::ALL
             .into_iter()
             .find(|v| v.word() == word)
-            .ok_or_else(|| {
-                Error::input(
-                    format!("there is no view `{word}`"),
-                    format!("views are {words}"),
-                )
-            })
+            .ok_or_else(|| Error::input(format!("there is no view `{word}`"), format!("views are {words}")))
     }
 }
 
@@ -179,12 +169,7 @@ impl std::str::FromStr for Theme {
         Theme::ALL
             .into_iter()
             .find(|t| t.word() == word)
-            .ok_or_else(|| {
-                Error::input(
-                    format!("there is no theme `{word}`"),
-                    "themes are dark, light",
-                )
-            })
+            .ok_or_else(|| Error::input(format!("there is no theme `{word}`"), "themes are dark, light"))
     }
 }
 

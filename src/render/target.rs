@@ -26,11 +26,7 @@ pub struct Target {
 impl Target {
     /// A target of at least one pixel.
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
-        let size = wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        };
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = |format, sample_count, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("frame"),
@@ -55,27 +51,14 @@ impl Target {
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self {
-            width,
-            height,
-            resolved,
-            samples,
-            depth,
-            staging,
-            row_bytes,
-        }
+        Self { width, height, resolved, samples, depth, staging, row_bytes }
     }
 
     /// Clears to `background` (linear RGB), lets `draw` record, and waits until it is drawn.
     ///
     /// # Errors
     /// When the adapter is lost.
-    pub fn draw(
-        &self,
-        gpu: &Gpu,
-        background: [f32; 4],
-        draw: impl FnOnce(&mut wgpu::RenderPass),
-    ) -> Result<()> {
+    pub fn draw(&self, gpu: &Gpu, background: [f32; 4], draw: impl FnOnce(&mut wgpu::RenderPass)) -> Result<()> {
         let [r, g, b, a] = background.map(f64::from);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
@@ -93,10 +76,7 @@ impl Target {
                 })],
                 depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                     view: &self.depth,
-                    depth_ops: Some(wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(1.0),
-                        store: wgpu::StoreOp::Discard,
-                    }),
+                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
                     stencil_ops: None,
                 }),
                 ..Default::default()
@@ -127,17 +107,14 @@ impl Target {
         );
         gpu.queue.submit([encoder.finish()]);
         // A failed mapping shows as an error of `get_mapped_range` below.
-        self.staging
-            .slice(..)
-            .map_async(wgpu::MapMode::Read, |_| ());
+        self.staging.slice(..).map_async(wgpu::MapMode::Read, |_| ());
         wait(gpu)?;
         {
-            let bytes = self.staging.slice(..).get_mapped_range().map_err(|e| {
-                failure(format!(
-                    "cannot read the picture back from {}: {e}",
-                    gpu.name
-                ))
-            })?;
+            let bytes = self
+                .staging
+                .slice(..)
+                .get_mapped_range()
+                .map_err(|e| failure(format!("cannot read the picture back from {}: {e}", gpu.name)))?;
             for (y, padded) in bytes.chunks_exact(self.row_bytes as usize).enumerate() {
                 row(y as u32, &padded[..self.width as usize * 4]);
             }

@@ -17,11 +17,7 @@ pub struct Ticks {
 pub fn ticks(low: f64, high: f64, count: usize) -> Ticks {
     let span = high - low;
     if !span.is_finite() || span <= 0.0 {
-        return Ticks {
-            values: vec![low],
-            decimals: 0,
-            step: 1.0,
-        };
+        return Ticks { values: vec![low], decimals: 0, step: 1.0 };
     }
     let step = round_step(span / count.max(1) as f64);
     // A ten-thousandth of a step keeps a tick that rounding put just outside.
@@ -29,11 +25,7 @@ pub fn ticks(low: f64, high: f64, count: usize) -> Ticks {
     let last = (high / step + 1e-4).floor() as i64;
     let values = (first..=last).map(|k| k as f64 * step).collect();
     let decimals = (-step.log10() + 1e-9).ceil().max(0.0) as usize;
-    Ticks {
-        values,
-        decimals,
-        step,
-    }
+    Ticks { values, decimals, step }
 }
 
 /// The smallest of 1, 2, 5 × 10^k that is not below `raw`.
@@ -47,10 +39,7 @@ pub fn round_step(raw: f64) -> f64 {
 /// `value` with `decimals` decimals and a real minus sign; never "−0".
 pub fn label(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
-    let zero = text
-        .trim_start_matches('-')
-        .chars()
-        .all(|c| matches!(c, '0' | '.'));
+    let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
     match text.strip_prefix('-') {
         Some(rest) if zero => rest.to_owned(),
         Some(rest) => format!("−{rest}"),

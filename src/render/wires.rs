@@ -48,12 +48,7 @@ pub struct Looks {
 pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks) -> Vec<Segment> {
     let mut all = Vec::with_capacity(snapshot.position.len());
     for wire in &info.wires {
-        let chain = Chain {
-            info,
-            snapshot,
-            looks,
-            wire,
-        };
+        let chain = Chain { info, snapshot, looks, wire };
         chain.segments(&mut all);
     }
     for i in info.wire_particles..snapshot.position.len() {
@@ -64,10 +59,7 @@ pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks) -> Vec<Segme
 
 /// Whether bond slot `b` holds.
 pub fn holds(snapshot: &Snapshot, b: usize) -> bool {
-    matches!(
-        snapshot.bond_state[b],
-        BondState::Whole | BondState::Yielding
-    )
+    matches!(snapshot.bond_state[b], BondState::Whole | BondState::Yielding)
 }
 
 /// Whether a particle lies in a grip before loading.
@@ -115,9 +107,7 @@ impl Chain<'_> {
         let from = if self.holds_before(i) { i - 1 } else { i };
         let to = if self.holds_after(i) { i + 1 } else { i };
         let one = |a: usize, b: usize| (self.position(b) - self.position(a)).normalize_or_zero();
-        (one(from, i) + one(i, to))
-            .try_normalize()
-            .unwrap_or(Vec3::Z)
+        (one(from, i) + one(i, to)).try_normalize().unwrap_or(Vec3::Z)
     }
 
     /// Kind of the end that the wire has at `i`, seen from a bond on the other side of `i`.
@@ -148,18 +138,12 @@ impl Chain<'_> {
 
     fn colour(&self, i: usize) -> [f32; 4] {
         let colour = self.looks.colour[i];
-        linear4(if in_grip(self.info, i) {
-            desaturated(colour)
-        } else {
-            colour
-        })
+        linear4(if in_grip(self.info, i) { desaturated(colour) } else { colour })
     }
 }
 
 fn sphere(snapshot: &Snapshot, looks: &Looks, i: usize) -> Segment {
-    let point = Vec3::from(looks.position[i])
-        .extend(snapshot.radius[i])
-        .to_array();
+    let point = Vec3::from(looks.position[i]).extend(snapshot.radius[i]).to_array();
     let tangent = Vec3::Z.extend(END).to_array();
     let colour = linear4(looks.colour[i]);
     let occlusion = looks.occlusion[i];

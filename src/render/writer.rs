@@ -49,8 +49,7 @@ impl FrameWriter {
     /// When there is no adapter or when the folder cannot be made.
     pub fn new(folder: &Path, options: FrameOptions) -> Result<Self> {
         super::adapter::check()?;
-        std::fs::create_dir_all(folder)
-            .map_err(|e| Error::io("cannot make the folder", folder, e))?;
+        std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
         Ok(Self {
             folder: folder.to_owned(),
             options,
@@ -114,10 +113,7 @@ impl Observer for FrameWriter {
             ruptures: std::mem::take(&mut self.ruptures),
         };
         let Some(workers) = &self.workers else {
-            return Err(Error::input(
-                "a snapshot came before the run started",
-                "call `start` first",
-            ));
+            return Err(Error::input("a snapshot came before the run started", "call `start` first"));
         };
         if workers.jobs.send(job).is_err() {
             // The drawing thread has ended early: say why.
@@ -146,11 +142,7 @@ impl Drop for FrameWriter {
     }
 }
 
-fn draw_all(
-    mut renderer: Renderer,
-    jobs: &Receiver<Job>,
-    pictures: &SyncSender<(usize, RgbImage)>,
-) -> Result<Timings> {
+fn draw_all(mut renderer: Renderer, jobs: &Receiver<Job>, pictures: &SyncSender<(usize, RgbImage)>) -> Result<Timings> {
     let (mut curve, mut ruptures) = (Vec::new(), Vec::new());
     for (number, job) in jobs.iter().enumerate() {
         curve.extend(job.curve);

@@ -4,9 +4,7 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 use std::f32::consts::TAU;
-use strandsnap::engine::view::{
-    BondState, RunInfo, Rupture, RuptureCause, Sample, Snapshot, WireInfo,
-};
+use strandsnap::engine::view::{BondState, RunInfo, Rupture, RuptureCause, Sample, Snapshot, WireInfo};
 
 /// Wire diameter [mm].
 pub const DIAMETER: f32 = 0.39;
@@ -19,15 +17,8 @@ const PITCH: f32 = 39.0;
 const PARTICLES: usize = 312;
 
 /// What broke: wire from 0, and z before loading [mm], in the order of rupture.
-pub const BREAKS: [(usize, f32); 7] = [
-    (24, 64.0),
-    (25, 62.5),
-    (26, 66.0),
-    (31, 58.0),
-    (17, 70.0),
-    (12, 63.0),
-    (24, 69.0),
-];
+pub const BREAKS: [(usize, f32); 7] =
+    [(24, 64.0), (25, 62.5), (26, 66.0), (31, 58.0), (17, 70.0), (12, 63.0), (24, 69.0)];
 
 /// The strand before loading.
 pub fn ka4_like() -> RunInfo {
@@ -48,17 +39,11 @@ pub fn ka4_like() -> RunInfo {
     };
     for (layer, (count, lay_radius)) in LAYERS.into_iter().enumerate() {
         for k in 0..count {
-            info.wires.push(WireInfo {
-                layer,
-                first: info.rest_position.len(),
-                len: PARTICLES,
-                diameter: DIAMETER,
-            });
+            info.wires.push(WireInfo { layer, first: info.rest_position.len(), len: PARTICLES, diameter: DIAMETER });
             for i in 0..PARTICLES {
                 let z = LENGTH * i as f32 / (PARTICLES - 1) as f32;
                 let angle = TAU * (k as f32 / count as f32 + z / PITCH);
-                info.rest_position
-                    .push([lay_radius * angle.cos(), lay_radius * angle.sin(), z]);
+                info.rest_position.push([lay_radius * angle.cos(), lay_radius * angle.sin(), z]);
                 info.radius.push(0.5 * DIAMETER);
             }
         }
@@ -94,23 +79,11 @@ pub fn stretched(info: &RunInfo, strain: f32) -> Snapshot {
             s.radius.push(info.radius[wire.first + i] * squeeze);
             s.speed.push(2.0 * (z / (LENGTH * (1.0 + strain))));
             let last = i + 1 == wire.len;
-            s.bond_state.push(if last {
-                BondState::Absent
-            } else {
-                BondState::Yielding
-            });
+            s.bond_state.push(if last { BondState::Absent } else { BondState::Yielding });
             let ripple = 1.0 + 0.05 * (0.35 * p[2] + 1.7 * w as f32).sin();
-            let level = if free {
-                stress * ripple * (0.9 + 0.05 * wire.layer as f32)
-            } else {
-                0.25 * stress
-            };
+            let level = if free { stress * ripple * (0.9 + 0.05 * wire.layer as f32) } else { 0.25 * stress };
             s.bond_stress.push(if last { 0.0 } else { level });
-            s.plastic_strain.push(if last || !free {
-                0.0
-            } else {
-                (strain * ripple).max(0.0)
-            });
+            s.plastic_strain.push(if last || !free { 0.0 } else { (strain * ripple).max(0.0) });
         }
     }
     s
@@ -170,8 +143,7 @@ fn spring_back(info: &RunInfo, s: &mut Snapshot, w: usize, bond: usize) {
         s.bond_stress[i] *= 1.0 - 0.85 * near;
         if away < 40 {
             let side = if i <= bond { -1.0 } else { 1.0 };
-            let lift =
-                1.0 + 0.35 * (-(away as f32) / 4.0).exp() * if wire.layer == 2 { 1.0 } else { 0.0 };
+            let lift = 1.0 + 0.35 * (-(away as f32) / 4.0).exp() * if wire.layer == 2 { 1.0 } else { 0.0 };
             s.position[i][0] *= lift;
             s.position[i][1] *= lift;
             s.position[i][2] += side * 0.5 * (1.0 - away as f32 / 40.0);

@@ -29,12 +29,7 @@ pub trait NormalLaw: Copy + Send + Sync + 'static {
     type State: Copy + Default + Send + Sync + PartialEq + std::fmt::Debug + 'static;
 
     /// Response at overlap `overlap` [m] (> 0 or not: no force at ≤ 0) for reduced radius `reduced_radius` R* [m].
-    fn response(
-        &self,
-        state: &mut Self::State,
-        reduced_radius: f64,
-        overlap: f64,
-    ) -> NormalResponse;
+    fn response(&self, state: &mut Self::State, reduced_radius: f64, overlap: f64) -> NormalResponse;
 
     /// Energy that would come back on unloading from `overlap` [J].
     fn elastic_energy(&self, state: &Self::State, reduced_radius: f64, overlap: f64) -> f64;

@@ -132,7 +132,6 @@ fn ticks([low, high]: [f32; 2]) -> Vec<f32> {
 /// Extent of the particles along z before loading [mm].
 pub(super) fn extent(info: &RunInfo) -> [f32; 2] {
     let z = info.rest_position.iter().zip(&info.radius).map(|(p, r)| [p[2] - r, p[2] + r]);
-    let [low, high] =
-        z.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)]);
+    let [low, high] = z.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)]);
     if low < high { [low, high] } else { [0.0, 1.0] }
 }
