@@ -6,6 +6,7 @@ mod interrupt;
 mod plan;
 mod render;
 mod run;
+mod say;
 mod scene;
 mod values;
 
