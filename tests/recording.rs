@@ -61,7 +61,10 @@ fn every_rupture_is_marked_and_logged() {
     let ruptures = run.ruptures();
     assert_eq!(ruptures.len(), 6);
     assert_eq!(read.log.len(), 6);
-    assert_eq!(read.log[0], (234_000, "wire 24, outer layer, snapped at z = 76.9 mm, strain 23.4 %, 379 MPa".to_owned()));
+    assert_eq!(
+        read.log[0],
+        (234_000, "wire 24, outer layer, snapped at z = 76.9 mm, strain 23.4 %, 379 MPa".to_owned())
+    );
     for rupture in ruptures {
         let path = format!("/strand/{}/wire_{:02}/ruptures", run.info.layers[rupture.layer], rupture.wire + 1);
         let place = rupture.position.map(|x| (x * 1e3) as f32);
@@ -75,8 +78,7 @@ fn every_rupture_is_marked_and_logged() {
 fn the_curve_has_every_sample() {
     let (run, folder) = (Run::new(20), folder());
     let read = recorded(&run, &folder.path().join("recording.rrd"));
-    let expected: Vec<_> =
-        run.samples().iter().map(|s| ((s.strain * 1e6).round() as i64, s.stress * 1e-6)).collect();
+    let expected: Vec<_> = run.samples().iter().map(|s| ((s.strain * 1e6).round() as i64, s.stress * 1e-6)).collect();
     assert_eq!(read.nominal_stress, expected);
     for entity in ["/stress/layers", "/stress/wires/outer", "/broken", "/energy"] {
         assert_eq!(read.entities[entity].rows, 200, "{entity}");

@@ -48,7 +48,8 @@ use rerun::external::re_uri::ProxyUri;
 use rerun::log::ChunkBatcherConfig;
 use rerun::sink::{GrpcSink, LogSink, MultiSink};
 use rerun::{
-    AnnotationContext, DynamicArchetype, EntityPath, RecordingInfo, RecordingStreamBuilder, TextDocument, ViewCoordinates, components,
+    AnnotationContext, DynamicArchetype, EntityPath, RecordingInfo, RecordingStreamBuilder, TextDocument,
+    ViewCoordinates, components,
 };
 use sink::RecordingFile;
 use states::States;
@@ -123,7 +124,11 @@ impl Recording {
     fn run(&mut self) -> Result<&mut Run> {
         let path = &self.path;
         self.run.as_mut().ok_or_else(|| {
-            Error::io("cannot record to", path, std::io::Error::other("the run has not been announced to the recording"))
+            Error::io(
+                "cannot record to",
+                path,
+                std::io::Error::other("the run has not been announced to the recording"),
+            )
         })
     }
 
@@ -222,6 +227,7 @@ impl Run {
             self.map.send_colour_bar(&self.stream, &scale)?;
         }
         curve::send_names(&self.stream, &self.info)?;
+        grips::send_style(&self.stream)?;
         States::send_style(&self.stream, &self.info)?;
         self.send_sphere_radii()
     }

@@ -32,17 +32,22 @@ const FIELD_OF_VIEW: f32 = 0.96;
 ///
 /// # Errors
 /// [`crate::base::error::Error::Io`] when Rerun refuses it.
-pub(super) fn send(stream: &stream::Stream, application: &'static str, id: &str, info: &RunInfo, map: &Map) -> Result<()> {
+pub(super) fn send(
+    stream: &stream::Stream,
+    application: &'static str,
+    id: &str,
+    info: &RunInfo,
+    map: &Map,
+) -> Result<()> {
     let messages = stream.checked(messages(application, id, info, map))?;
     let store = messages.iter().find_map(|message| match message {
         LogMsg::SetStoreInfo(store) => Some(store.info.store_id.clone()),
         _ => None,
     });
     let blueprint_id = stream.checked(store.ok_or("the layout has no store"))?;
-    stream.rerun.send_blueprint(
-        messages,
-        BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true },
-    );
+    stream
+        .rerun
+        .send_blueprint(messages, BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true });
     Ok(())
 }
 
@@ -114,7 +119,8 @@ impl Layout {
     }
 
     fn map_view(&mut self, map: &Map) -> RecordingStreamResult<Item> {
-        let view = self.view("2D", "Unrolled: a row per wire, position before loading [mm]", names::MAP, &["/map/**"])?;
+        let view =
+            self.view("2D", "Unrolled: a row per wire, position before loading [mm]", names::MAP, &["/map/**"])?;
         let length = f64::from(map.z[1] - map.z[0]);
         let range = Range2D {
             x_range: [f64::from(map.z[0]) - 0.14 * length, f64::from(map.z[1]) + 0.03 * length].into(),
@@ -206,10 +212,12 @@ fn eye(info: &RunInfo, length: Option<f32>) -> blueprint::EyeControls3D {
     let middle = low + 0.5 * longest;
     let width = length.unwrap_or(1.04 * longest).min(1.04 * longest);
     let aspect = ASPECTS[usize::from(length.is_some())];
+    // Room for labels above.
+    let up = length.map_or(0.0, |length| 0.04 * length);
     let distance = 0.5 * width / aspect / (0.5 * FIELD_OF_VIEW).tan();
     blueprint::EyeControls3D::new()
         .with_kind(Eye3DKind::Orbital)
-        .with_position([-distance, 0.25 * distance, middle])
-        .with_look_target([0.0, 0.0, middle])
+        .with_position([-distance, up + 0.15 * distance, middle])
+        .with_look_target([0.0, up, middle])
         .with_eye_up([0.0, 1.0, 0.0])
 }

@@ -91,7 +91,7 @@ impl Map {
             .with_colors(scale.colours.iter().map(|c| Color::from_u32(*c)))
             .with_radii([Radius::new_scene_units(0.6 * self.row)]);
         stream.fixed(format!("{}/colour_bar", names::MAP), &bar)?;
-        let ends = Points2D::new([[at(-0.2), y - self.row], [at(1.1), y - self.row]])
+        let ends = Points2D::new([[at(-0.3), y - self.row], [at(1.16), y - self.row]])
             .with_labels(scale.ends.clone())
             .with_show_labels(true)
             .with_colors([Color::from_u32(NEUTRAL)])
@@ -132,7 +132,6 @@ fn ticks([low, high]: [f32; 2]) -> Vec<f32> {
 /// Extent of the particles along z before loading [mm].
 pub(super) fn extent(info: &RunInfo) -> [f32; 2] {
     let z = info.rest_position.iter().zip(&info.radius).map(|(p, r)| [p[2] - r, p[2] + r]);
-    let [low, high] =
-        z.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)]);
+    let [low, high] = z.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)]);
     if low < high { [low, high] } else { [0.0, 1.0] }
 }

@@ -82,9 +82,9 @@ impl Batch<'_> {
         let wires: Vec<_> = map::wires_of(self.info, layer).collect();
         let count = wires.iter().map(|(_, wire)| wire.len).sum();
         let paint = self.snapshots.iter().flat_map(|s| {
-            wires.iter().flat_map(move |(number, wire)| {
-                (0..wire.len).map(move |k| self.palette.particle(s, wire, *number, k))
-            })
+            wires
+                .iter()
+                .flat_map(move |(number, wire)| (0..wire.len).map(move |k| self.palette.particle(s, wire, *number, k)))
         });
         (colours(Points2D::descriptor_colors(), paint), vec![count; self.snapshots.len()])
     }

@@ -42,9 +42,11 @@ impl States {
     /// # Errors
     /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_style(stream: &Stream, info: &RunInfo) -> Result<()> {
-        let style = StateConfiguration::new()
-            .with_values(STATE_NAMES[..3].iter().copied())
-            .with_colors([0x3E6F8EFFu32, 0xD9A441FF, super::paint::BROKEN]);
+        let style = StateConfiguration::new().with_values(STATE_NAMES[..3].iter().copied()).with_colors([
+            0x3E6F8EFFu32,
+            0xD9A441FF,
+            super::paint::BROKEN,
+        ]);
         (0..info.wires.len()).try_for_each(|w| stream.fixed(names::wire(names::STATES, info, w), &style))
     }
 

@@ -141,16 +141,11 @@ pub(super) fn colours(descriptor: ComponentDescriptor, values: impl Iterator<Ite
 pub(super) fn classes(field: &'static str, values: impl Iterator<Item = u16>) -> SerializedComponentBatch {
     debug_assert_eq!(rerun::components::ClassId::arrow_datatype(), DataType::UInt16);
     let array: ArrayRef = Arc::new(UInt16Array::from_iter_values(values));
-    let descriptor =
-        bond_field(field).with_component_type(<rerun::components::ClassId as rerun::Component>::name());
+    let descriptor = bond_field(field).with_component_type(<rerun::components::ClassId as rerun::Component>::name());
     SerializedComponentBatch::new(array, descriptor)
 }
 
 /// The descriptor of a field of our own, shown under `Bond` in the viewer.
 pub(super) fn bond_field(field: &'static str) -> ComponentDescriptor {
-    ComponentDescriptor {
-        archetype: Some("strandsnap.Bond".into()),
-        component: field.into(),
-        component_type: None,
-    }
+    ComponentDescriptor { archetype: Some("strandsnap.Bond".into()), component: field.into(), component_type: None }
 }
