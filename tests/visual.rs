@@ -22,26 +22,17 @@ fn adapter(test: &str) -> bool {
     there
 }
 
-fn draw(
-    info: &RunInfo,
-    options: &FrameOptions,
-    snapshot: &Snapshot,
-    ruptures: &[Rupture],
-) -> RgbImage {
+fn draw(info: &RunInfo, options: &FrameOptions, snapshot: &Snapshot, ruptures: &[Rupture]) -> RgbImage {
     let mut renderer = Renderer::new(info, options).expect("the adapter opens");
     let points = curve(snapshot.sample.strain as f32);
-    renderer
-        .draw(snapshot, &points, ruptures)
-        .expect("the frame is drawn")
+    renderer.draw(snapshot, &points, ruptures).expect("the frame is drawn")
 }
 
 /// Keeps a picture for looking at, in the folder named by STRANDSNAP_KEEP_PICTURES.
 fn keep(name: &str, picture: &RgbImage) {
     if let Some(folder) = std::env::var_os("STRANDSNAP_KEEP_PICTURES") {
         let path = std::path::Path::new(&folder).join(format!("{name}.png"));
-        picture
-            .save(&path)
-            .expect("the folder of kept pictures can be written");
+        picture.save(&path).expect("the folder of kept pictures can be written");
     }
 }
 
@@ -58,26 +49,16 @@ fn near(a: [u8; 3], b: [u8; 3], tolerance: i32) -> bool {
 /// Signal-coloured pixels in a rectangle: red far above green and blue, also when shaded.
 fn signal_pixels(picture: &RgbImage, [x, y, w, h]: [u32; 4]) -> usize {
     let red = |p: &image::Rgb<u8>| p.0[0] > 110 && p.0[0] / 2 > p.0[1] && p.0[0] / 2 > p.0[2];
-    (y..y + h)
-        .flat_map(|y| (x..x + w).map(move |x| (x, y)))
-        .filter(|&(x, y)| red(picture.get_pixel(x, y)))
-        .count()
+    (y..y + h).flat_map(|y| (x..x + w).map(move |x| (x, y))).filter(|&(x, y)| red(picture.get_pixel(x, y))).count()
 }
 
 #[test]
 fn every_shader_is_valid() {
-    let module =
-        naga::front::wgsl::parse_str(strandsnap::render::solid::SHADER).expect("the shader parses");
-    let mut validator = naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    );
+    let module = naga::front::wgsl::parse_str(strandsnap::render::solid::SHADER).expect("the shader parses");
+    let mut validator =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
     validator.validate(&module).expect("the shader is valid");
-    let names: Vec<_> = module
-        .entry_points
-        .iter()
-        .map(|e| e.name.as_str())
-        .collect();
+    let names: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
     assert_eq!(names, ["vs", "fs_masked", "fs_whole"]);
 }
 
@@ -89,10 +70,7 @@ fn a_frame_has_the_size_asked_for() {
     let info = ka4_like();
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
     for size in [[1280, 720], [641, 363], [3840, 2160]] {
-        let options = FrameOptions {
-            size,
-            ..Default::default()
-        };
+        let options = FrameOptions { size, ..Default::default() };
         let picture = draw(&info, &options, &snapshot, &ruptures);
         keep(&format!("size-{}", size[0]), &picture);
         assert_eq!(picture.dimensions(), (size[0], size[1]));
@@ -101,14 +79,8 @@ fn a_frame_has_the_size_asked_for() {
 
 #[test]
 fn a_size_that_cannot_be_drawn_is_refused() {
-    let options = FrameOptions {
-        size: [40, 20],
-        ..Default::default()
-    };
-    let message = Renderer::new(&ka4_like(), &options)
-        .err()
-        .expect("40 × 20 is too small")
-        .to_string();
+    let options = FrameOptions { size: [40, 20], ..Default::default() };
+    let message = Renderer::new(&ka4_like(), &options).err().expect("40 × 20 is too small").to_string();
     assert!(message.contains("40 × 20"), "{message}");
 }
 
@@ -118,27 +90,17 @@ fn two_draws_of_one_snapshot_are_identical() {
         return;
     }
     let info = ka4_like();
-    let options = FrameOptions {
-        views: View::ALL[..6].to_vec(),
-        theme: Theme::Light,
-        ..Default::default()
-    };
+    let options = FrameOptions { views: View::ALL[..6].to_vec(), theme: Theme::Light, ..Default::default() };
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
     let mut renderer = Renderer::new(&info, &options).expect("the adapter opens");
     let points = curve(0.27);
     let first = renderer.draw(&snapshot, &points, &ruptures).expect("drawn");
     // Another snapshot in between must leave no trace.
-    renderer
-        .draw(&stretched(&info, 0.1), &points[..100], &[])
-        .expect("drawn");
+    renderer.draw(&stretched(&info, 0.1), &points[..100], &[]).expect("drawn");
     let again = renderer.draw(&snapshot, &points, &ruptures).expect("drawn");
     keep("all-light", &first);
     assert!(first == again, "the same data gave different pictures");
-    println!(
-        "{} on {}",
-        renderer.timings(),
-        renderer.adapter().unwrap_or("no adapter")
-    );
+    println!("{} on {}", renderer.timings(), renderer.adapter().unwrap_or("no adapter"));
 }
 
 /// A view of the break of outer wire 25 (number 24 from 0) from the side where it broke.
@@ -147,21 +109,8 @@ fn facing_the_break(info: &RunInfo) -> (FrameOptions, usize) {
     let [x, y, z] = info.rest_position[bond];
     // The eye at elevation 0 looks along +x from −x; at elevation e it sits at angle 180° − e.
     let elevation_deg = 180.0 - y.atan2(x).to_degrees();
-    let camera = CameraOptions {
-        elevation_deg,
-        focus_z_mm: Some(z),
-        zoom: 2.0,
-        azimuth_deg: 0.0,
-    };
-    (
-        FrameOptions {
-            views: vec![View::Midsection],
-            colour: ColourBy::Layer,
-            camera,
-            ..Default::default()
-        },
-        bond,
-    )
+    let camera = CameraOptions { elevation_deg, focus_z_mm: Some(z), zoom: 2.0, azimuth_deg: 0.0 };
+    (FrameOptions { views: vec![View::Midsection], colour: ColourBy::Layer, camera, ..Default::default() }, bond)
 }
 
 #[test]
@@ -182,23 +131,12 @@ fn a_broken_wire_shows_a_gap_between_two_marked_ends() {
     let (cx, cy) = (x + w / 2, y + h / 4);
     // By layer, the outer one is green and the one below it blue.
     let (seen, below) = (before.get_pixel(cx, cy).0, after.get_pixel(cx, cy).0);
-    assert!(
-        seen[1] > seen[2] && below[2] > below[1],
-        "before {seen:?}, after {below:?}"
-    );
-    assert_eq!(
-        signal_pixels(&before, front),
-        0,
-        "no break, no signal colour"
-    );
+    assert!(seen[1] > seen[2] && below[2] > below[1], "before {seen:?}, after {below:?}");
+    assert_eq!(signal_pixels(&before, front), 0, "no break, no signal colour");
     let (left, right) = ([x, y, w / 2, h / 2], [cx, y, w / 2, h / 2]);
     assert!(signal_pixels(&after, left) > 200, "left end marked");
     assert!(signal_pixels(&after, right) > 200, "right end marked");
-    assert_eq!(
-        signal_pixels(&after, [cx - 3, cy - 3, 7, 7]),
-        0,
-        "nothing of the wire in the gap"
-    );
+    assert_eq!(signal_pixels(&after, [cx - 3, cy - 3, 7, 7]), 0, "nothing of the wire in the gap");
     assert_eq!(ruptures[0].bond, bond);
 }
 
@@ -208,23 +146,13 @@ fn the_colour_bar_ends_in_the_colours_of_the_range() {
         return;
     }
     let info = ka4_like();
-    for (by, map) in [
-        (ColourBy::Stress, colorous::VIRIDIS),
-        (ColourBy::Velocity, colorous::CIVIDIS),
-    ] {
-        let options = FrameOptions {
-            colour: by,
-            views: vec![View::Unrolled],
-            ..Default::default()
-        };
+    for (by, map) in [(ColourBy::Stress, colorous::VIRIDIS), (ColourBy::Velocity, colorous::CIVIDIS)] {
+        let options = FrameOptions { colour: by, views: vec![View::Unrolled], ..Default::default() };
         let picture = draw(&info, &options, &stretched(&info, 0.1), &[]);
         for (x, fraction) in [(989, DARKEST), (1258, 1.0)] {
             let c = map.eval_continuous(fraction);
             let seen = picture.get_pixel(x, 29).0;
-            assert!(
-                near(seen, [c.r, c.g, c.b], 4),
-                "{by:?} {fraction}: {seen:?} {c:?}"
-            );
+            assert!(near(seen, [c.r, c.g, c.b], 4), "{by:?} {fraction}: {seen:?} {c:?}");
         }
     }
 }
@@ -232,10 +160,7 @@ fn the_colour_bar_ends_in_the_colours_of_the_range() {
 #[test]
 fn the_unrolled_map_marks_every_broken_bond_in_its_row() {
     let info = ka4_like();
-    let options = FrameOptions {
-        views: vec![View::Unrolled],
-        ..Default::default()
-    };
+    let options = FrameOptions { views: vec![View::Unrolled], ..Default::default() };
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
     let whole = draw(&info, &options, &stretched(&info, 0.27), &[]);
     let broken = draw(&info, &options, &snapshot, &ruptures);
@@ -250,10 +175,7 @@ fn the_unrolled_map_marks_every_broken_bond_in_its_row() {
 #[test]
 fn the_part_in_a_grip_is_grey() {
     let info = ka4_like();
-    let options = FrameOptions {
-        views: vec![View::Unrolled],
-        ..Default::default()
-    };
+    let options = FrameOptions { views: vec![View::Unrolled], ..Default::default() };
     let picture = draw(&info, &options, &stretched(&info, 0.2), &[]);
     let [x, y, w, h] = panel(&info, &options, View::Unrolled);
     let colourful = |px: u32| {
@@ -274,17 +196,11 @@ fn layers_apart_show_all_three_layers() {
         return;
     }
     let info = ka4_like();
-    let options = FrameOptions {
-        views: vec![View::Exploded],
-        colour: ColourBy::Layer,
-        ..Default::default()
-    };
+    let options = FrameOptions { views: vec![View::Exploded], colour: ColourBy::Layer, ..Default::default() };
     let picture = draw(&info, &options, &stretched(&info, 0.1), &[]);
     keep("exploded-layer", &picture);
     let [x, y, w, h] = panel(&info, &options, View::Exploded);
-    let column: Vec<[u8; 3]> = (y..y + h)
-        .map(|py| picture.get_pixel(x + w / 2, py).0)
-        .collect();
+    let column: Vec<[u8; 3]> = (y..y + h).map(|py| picture.get_pixel(x + w / 2, py).0).collect();
     let blue = |c: &&[u8; 3]| c[2] > 110 && c[2] > c[0] + 40;
     let green = |c: &&[u8; 3]| c[1] > 70 && c[1] > c[0] + 40 && c[1] > c[2] + 15;
     let orange = |c: &&[u8; 3]| c[0] > 110 && c[0] > c[2] + 60;
@@ -318,11 +234,7 @@ fn free_bodies_get_one_view_that_frames_everything() {
             assert_eq!(p.get_pixel(x + w - 2, py).0, ground);
         }
         let body = (y..y + h).flat_map(|py| (x..x + w).map(move |px| (px, py)));
-        assert!(
-            body.filter(|&(px, py)| p.get_pixel(px, py).0 != ground)
-                .count()
-                > 500
-        );
+        assert!(body.filter(|&(px, py)| p.get_pixel(px, py).0 != ground).count() > 500);
     }
 }
 
@@ -339,15 +251,10 @@ fn the_writer_leaves_a_numbered_sequence_of_whole_files() {
     for k in 0..6 {
         let strain = 0.045 * k as f32;
         let (snapshot, ruptures) = snapped(&info, strain, if k < 4 { 0 } else { 2 });
-        let sample = Sample {
-            strain: f64::from(strain),
-            ..Default::default()
-        };
+        let sample = Sample { strain: f64::from(strain), ..Default::default() };
         writer.sample(&sample).expect("sampled");
         if k == 4 {
-            ruptures
-                .iter()
-                .for_each(|r| writer.rupture(r).expect("ruptured"));
+            ruptures.iter().for_each(|r| writer.rupture(r).expect("ruptured"));
         }
         writer.snapshot(&Arc::new(snapshot)).expect("handed over");
     }
@@ -357,20 +264,9 @@ fn the_writer_leaves_a_numbered_sequence_of_whole_files() {
         .map(|e| e.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort();
-    assert_eq!(
-        names,
-        (0..6)
-            .map(|k| format!("frame_{k:04}.png"))
-            .collect::<Vec<_>>()
-    );
+    assert_eq!(names, (0..6).map(|k| format!("frame_{k:04}.png")).collect::<Vec<_>>());
     for name in names {
-        assert_eq!(
-            image::open(frames.join(name))
-                .expect("a whole PNG")
-                .to_rgb8()
-                .dimensions(),
-            (1280, 720)
-        );
+        assert_eq!(image::open(frames.join(name)).expect("a whole PNG").to_rgb8().dimensions(), (1280, 720));
     }
     assert_eq!(writer.timings().frames, 6);
     println!("{}", writer.timings());
@@ -384,10 +280,7 @@ fn a_folder_that_vanishes_is_reported_with_its_path() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let frames = folder.path().join("frames");
     let info = Arc::new(ka4_like());
-    let options = FrameOptions {
-        size: [320, 180],
-        ..Default::default()
-    };
+    let options = FrameOptions { size: [320, 180], ..Default::default() };
     let mut writer = FrameWriter::new(&frames, options).expect("the adapter opens");
     writer.start(&info).expect("started");
     std::fs::remove_dir(&frames).expect("removed");
@@ -407,9 +300,7 @@ fn time_of_a_frame() {
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
     let mut renderer = Renderer::new(&info, &FrameOptions::default()).expect("the adapter opens");
     for _ in 0..20 {
-        renderer
-            .draw(&snapshot, &curve(0.27), &ruptures)
-            .expect("drawn");
+        renderer.draw(&snapshot, &curve(0.27), &ruptures).expect("drawn");
     }
     println!("{}", renderer.timings());
 }
@@ -419,40 +310,14 @@ fn time_of_a_frame() {
 #[ignore = "for looking at"]
 fn gallery() {
     let info = ka4_like();
-    keep(
-        "start",
-        &draw(&info, &FrameOptions::default(), &stretched(&info, 0.0), &[]),
-    );
+    keep("start", &draw(&info, &FrameOptions::default(), &stretched(&info, 0.0), &[]));
     let (snapshot, ruptures) = common::all_snapped(&info, 0.28);
-    for colour in [
-        ColourBy::Stress,
-        ColourBy::PlasticStrain,
-        ColourBy::Layer,
-        ColourBy::Wire,
-        ColourBy::Velocity,
-    ] {
-        let options = FrameOptions {
-            colour,
-            ..Default::default()
-        };
-        keep(
-            &format!("all-{colour:?}"),
-            &draw(&info, &options, &snapshot, &ruptures),
-        );
+    for colour in [ColourBy::Stress, ColourBy::PlasticStrain, ColourBy::Layer, ColourBy::Wire, ColourBy::Velocity] {
+        let options = FrameOptions { colour, ..Default::default() };
+        keep(&format!("all-{colour:?}"), &draw(&info, &options, &snapshot, &ruptures));
     }
     let single = common::single_wire();
-    keep(
-        "single",
-        &draw(
-            &single,
-            &FrameOptions::default(),
-            &stretched(&single, 0.05),
-            &[],
-        ),
-    );
+    keep("single", &draw(&single, &FrameOptions::default(), &stretched(&single, 0.05), &[]));
     let (bent, snapshot) = common::bent_wire();
-    keep(
-        "bent",
-        &draw(&bent, &FrameOptions::default(), &snapshot, &[]),
-    );
+    keep("bent", &draw(&bent, &FrameOptions::default(), &snapshot, &[]));
 }

@@ -39,6 +39,8 @@ use view::{Energy, Rupture};
 
 /// Steps between two evaluations of the bound on the time step.
 const BOUND_INTERVAL: u64 = 64;
+/// Greatest growth of the step at one evaluation [-].
+const GROWTH: f64 = 2.0;
 /// A particle that moves further than this share of the least radius in one step has run away [-].
 const RUNAWAY: f64 = 0.1;
 
@@ -257,7 +259,8 @@ impl Engine {
             bonds.stiffness(&self.state, &mut self.stiffness);
         }
         if let Some(c) = &self.contacts {
-            c.stage.stiffness(&self.state, &mut self.stiffness);
+            let horizon = BOUND_INTERVAL as f64 * self.next_dt;
+            c.stage.stiffness(&self.state, horizon, &mut self.stiffness);
         }
         let hold = &self.state.hold;
         self.bound = self.stiffness.bound(&self.state, |p| hold[p] != 0);
@@ -270,6 +273,8 @@ impl Engine {
         if !wanted.is_finite() {
             return self.step_without_stiffness();
         }
+        // What is foreseen at one step may not hold for a much longer one.
+        let wanted = if self.next_dt > 0.0 { wanted.min(GROWTH * self.next_dt) } else { wanted };
         if self.next_dt == 0.0 || (wanted / self.next_dt - 1.0).abs() > 0.01 {
             self.next_dt = wanted;
         }

@@ -7,6 +7,10 @@
 //! is stable to Δt = (2/ω)(√(1+ξ²) − ξ).
 
 use super::state::State;
+
+/// A contact is stepped at least this finely: Δt √(k/m*) [-]. A half period, in which two bodies meet and part, then
+/// takes eight steps; what is only stable would let them gain energy.
+const RESOLVED: f64 = 0.4;
 use crate::law::bond::BondStiffness;
 
 /// One bond or contact as the bound sees it.
@@ -31,6 +35,14 @@ struct Element {
 impl Element {
     fn translation(&self) -> f64 {
         self.normal.max(self.across)
+    }
+
+    /// √(k/m*) of a contact on its own [1/s].
+    fn pair_frequency(&self, state: &State, held: &impl Fn(usize) -> bool) -> f64 {
+        let free = (0..3).filter(|k| self.weight[*k] > 0.0 && !held(self.nodes[*k] as usize));
+        let inverse_mass: f64 =
+            free.map(|k| self.weight[k] * self.weight[k] / state.mass[self.nodes[k] as usize]).sum();
+        (self.normal * inverse_mass).sqrt()
     }
 
     fn rotation(&self) -> f64 {
@@ -141,6 +153,12 @@ impl Stiffness {
             let omega = worst.sqrt();
             let xi = 0.5 * damping / omega;
             bound.step = 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi);
+        }
+        for e in self.elements.iter().filter(|e| !e.bond) {
+            let meeting = RESOLVED / e.pair_frequency(state, &held);
+            if meeting < bound.step {
+                bound = Bound { step: meeting, particle: e.nodes[0] as usize, bond: false, mode: "duration" };
+            }
         }
         bound
     }

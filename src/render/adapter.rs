@@ -63,9 +63,7 @@ fn request_adapter() -> Result<wgpu::Adapter> {
     })
 }
 
-fn request_from(
-    backends: wgpu::Backends,
-) -> std::result::Result<wgpu::Adapter, wgpu::RequestAdapterError> {
+fn request_from(backends: wgpu::Backends) -> std::result::Result<wgpu::Adapter, wgpu::RequestAdapterError> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
     let options = wgpu::RequestAdapterOptions {

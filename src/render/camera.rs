@@ -36,10 +36,7 @@ impl Camera {
     pub fn sees(&self, a: [f32; 4], b: [f32; 4]) -> bool {
         let reach = a[3].max(b[3]) + 2.0 / self.scale;
         let [a, b] = [a, b].map(|p| self.to_view(Vec3::new(p[0], p[1], p[2])));
-        let half = [
-            0.5 * self.panel.w / self.scale + reach,
-            0.5 * self.panel.h / self.scale + reach,
-        ];
+        let half = [0.5 * self.panel.w / self.scale + reach, 0.5 * self.panel.h / self.scale + reach];
         let inside = |a: f32, b: f32, half: f32| a.min(b) < half && a.max(b) > -half;
         inside(a.x, b.x, half[0]) && inside(a.y, b.y, half[1])
     }

@@ -58,11 +58,7 @@ impl ColourScale {
 
     /// Ends of the range, in the unit of the title; `None` for categories.
     pub fn shown_range(&self) -> Option<[f64; 2]> {
-        let factor = if self.by == ColourBy::PlasticStrain {
-            100.0
-        } else {
-            1.0
-        };
+        let factor = if self.by == ColourBy::PlasticStrain { 100.0 } else { 1.0 };
         self.map.map(|_| self.range.map(|v| f64::from(v) * factor))
     }
 
@@ -77,9 +73,7 @@ impl ColourScale {
 
     fn of_value(&self, value: f32) -> Rgb {
         let [low, high] = self.range;
-        self.at(f64::from(
-            (value - low) / (high - low).max(f32::MIN_POSITIVE),
-        ))
+        self.at(f64::from((value - low) / (high - low).max(f32::MIN_POSITIVE)))
     }
 
     /// Colour of layer or wire number `index`.
@@ -91,18 +85,11 @@ impl ColourScale {
     pub fn particles(&self, info: &RunInfo, snapshot: &Snapshot) -> Vec<Rgb> {
         let mut colours = vec![[150, 156, 166]; snapshot.position.len()];
         for (number, wire) in info.wires.iter().enumerate() {
-            for (k, colour) in colours[wire.first..wire.first + wire.len]
-                .iter_mut()
-                .enumerate()
-            {
+            for (k, colour) in colours[wire.first..wire.first + wire.len].iter_mut().enumerate() {
                 let i = wire.first + k;
                 *colour = match self.by {
-                    ColourBy::Stress => {
-                        self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i))
-                    }
-                    ColourBy::PlasticStrain => {
-                        self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i))
-                    }
+                    ColourBy::Stress => self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i)),
+                    ColourBy::PlasticStrain => self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i)),
                     ColourBy::Velocity => self.of_value(snapshot.speed[i]),
                     ColourBy::Layer => Self::category(wire.layer),
                     ColourBy::Wire => Self::category(number),
@@ -111,14 +98,10 @@ impl ColourScale {
         }
         for (k, colour) in colours.iter_mut().skip(info.wire_particles).enumerate() {
             match self.by {
-                ColourBy::Velocity => {
-                    *colour = self.of_value(snapshot.speed[info.wire_particles + k])
-                }
+                ColourBy::Velocity => *colour = self.of_value(snapshot.speed[info.wire_particles + k]),
                 ColourBy::Wire | ColourBy::Layer => *colour = Self::category(info.wires.len() + k),
                 // Spheres carry no axial stress: told apart when there is nothing else, grey beside wires.
-                ColourBy::Stress | ColourBy::PlasticStrain if info.wires.is_empty() => {
-                    *colour = Self::category(k)
-                }
+                ColourBy::Stress | ColourBy::PlasticStrain if info.wires.is_empty() => *colour = Self::category(k),
                 ColourBy::Stress | ColourBy::PlasticStrain => (),
             }
         }
@@ -128,12 +111,7 @@ impl ColourScale {
 
 /// Mean over the bonds that hold particle `i` of a wire starting at `first`; 0 when none does.
 fn beside(snapshot: &Snapshot, values: &[f32], first: usize, i: usize) -> f32 {
-    let holds = |b: usize| {
-        matches!(
-            snapshot.bond_state[b],
-            BondState::Whole | BondState::Yielding
-        )
-    };
+    let holds = |b: usize| matches!(snapshot.bond_state[b], BondState::Whole | BondState::Yielding);
     let before = (i > first && holds(i - 1)).then(|| values[i - 1]);
     let after = holds(i).then(|| values[i]);
     match (before, after) {
@@ -155,11 +133,7 @@ pub fn desaturated(colour: Rgb) -> Rgb {
 /// sRGB byte to linear light (IEC 61966-2-1) [-].
 pub fn linear(byte: u8) -> f32 {
     let v = f32::from(byte) / 255.0;
-    if v <= 0.040_45 {
-        v / 12.92
-    } else {
-        ((v + 0.055) / 1.055).powf(2.4)
-    }
+    if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Linear RGB of a colour, with alpha 1.
@@ -177,10 +151,7 @@ mod tests {
     use super::*;
 
     fn distance(a: Rgb, b: Rgb) -> f64 {
-        (0..3)
-            .map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2))
-            .sum::<f64>()
-            .sqrt()
+        (0..3).map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2)).sum::<f64>().sqrt()
     }
 
     #[test]

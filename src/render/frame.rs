@@ -42,11 +42,7 @@ pub struct Data<'a> {
 impl Data<'_> {
     /// Each wire's first rupture with its number in the order in which wires broke, from 1.
     pub fn first_breaks(&self) -> impl Iterator<Item = (usize, &Rupture)> {
-        self.ruptures
-            .iter()
-            .filter(|r| r.first_of_wire)
-            .enumerate()
-            .map(|(k, r)| (k + 1, r))
+        self.ruptures.iter().filter(|r| r.first_of_wire).enumerate().map(|(k, r)| (k + 1, r))
     }
 
     /// Where the broken bond is now, between its two particles [mm].
@@ -57,15 +53,12 @@ impl Data<'_> {
 
     /// z of the two grip faces now [mm].
     pub fn grip_faces(&self) -> Option<[f32; 2]> {
-        self.info
-            .gauge
-            .map(|faces| faces.map(|z| viewpoint::current_z(self.info, self.snapshot, z)))
+        self.info.gauge.map(|faces| faces.map(|z| viewpoint::current_z(self.info, self.snapshot, z)))
     }
 
     /// z of the body's two ends now [mm].
     pub fn ends(&self) -> [f32; 2] {
-        [self.body.low.z, self.body.high.z]
-            .map(|z| viewpoint::current_z(self.info, self.snapshot, z))
+        [self.body.low.z, self.body.high.z].map(|z| viewpoint::current_z(self.info, self.snapshot, z))
     }
 }
 
@@ -97,18 +90,11 @@ impl Renderer {
     /// When there is no adapter, when it cannot draw a picture of this size, when no panel would be larger than a
     /// few pixels.
     pub fn new(info: &RunInfo, options: &FrameOptions) -> Result<Self> {
-        let views = if options.views.is_empty() {
-            default_views(info.gauge.is_some())
-        } else {
-            options.views.clone()
-        };
+        let views = if options.views.is_empty() { default_views(info.gauge.is_some()) } else { options.views.clone() };
         let [w, h] = options.size;
         if !(160..=16384).contains(&w) || !(120..=16384).contains(&h) {
             let what = format!("frames of {w} × {h} pixels cannot be drawn");
-            return Err(Error::input(
-                what,
-                "sizes go from 160 × 120 to 16384 × 16384 pixels",
-            ));
+            return Err(Error::input(what, "sizes go from 160 × 120 to 16384 × 16384 pixels"));
         }
         let layout = layout(options.size, &views);
         Ok(Self {
@@ -136,11 +122,7 @@ impl Renderer {
 
     /// The panels of the frame and their places in pixels: x, y, width, height.
     pub fn panels(&self) -> Vec<(View, [u32; 4])> {
-        self.layout
-            .panels
-            .iter()
-            .map(|(v, r)| (*v, [r.x, r.y, r.w, r.h].map(|c| c as u32)))
-            .collect()
+        self.layout.panels.iter().map(|(v, r)| (*v, [r.x, r.y, r.w, r.h].map(|c| c as u32))).collect()
     }
 
     /// Draws one frame. `curve` holds strain [-] and nominal stress [Pa] up to the snapshot, `ruptures` what broke
@@ -148,12 +130,7 @@ impl Renderer {
     ///
     /// # Errors
     /// When the adapter is lost.
-    pub fn draw(
-        &mut self,
-        snapshot: &Snapshot,
-        curve: &[(f64, f64)],
-        ruptures: &[Rupture],
-    ) -> Result<RgbImage> {
+    pub fn draw(&mut self, snapshot: &Snapshot, curve: &[(f64, f64)], ruptures: &[Rupture]) -> Result<RgbImage> {
         let start = Instant::now();
         let colours = self.scale.particles(&self.info, snapshot);
         let data = Data {
@@ -177,11 +154,7 @@ impl Renderer {
             self.timings.read_back += start.elapsed();
         }
         let start = Instant::now();
-        let mut canvas = Canvas {
-            image: picture,
-            fonts: &self.fonts,
-            unit: self.layout.unit,
-        };
+        let mut canvas = Canvas { image: picture, fonts: &self.fonts, unit: self.layout.unit };
         overlay(&mut canvas, &data, &self.options, &self.layout, &shots);
         self.timings.overlay += start.elapsed();
         self.timings.frames += 1;
@@ -199,10 +172,7 @@ struct Shot {
 }
 
 fn is_solid(view: View) -> bool {
-    matches!(
-        view,
-        View::Overview | View::Midsection | View::Exploded | View::Scene
-    )
+    matches!(view, View::Overview | View::Midsection | View::Exploded | View::Scene)
 }
 
 fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
@@ -211,14 +181,7 @@ fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
     let z = viewpoint::current_z(data.info, data.snapshot, focus(data, options));
     let mut shots = Vec::new();
     for (view, panel) in &layout.panels {
-        let mut shot = |camera, caption, fade| {
-            shots.push(Shot {
-                view: *view,
-                camera,
-                caption,
-                fade,
-            })
-        };
+        let mut shot = |camera, caption, fade| shots.push(Shot { view: *view, camera, caption, fade });
         match view {
             View::Overview => {
                 let camera = viewpoint::overview(data.info, body, &options.camera, *panel, u);
@@ -229,20 +192,12 @@ fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
                 for (panel, caption, turn) in [(front, "front", 0.0), (back, "back", 180.0)] {
                     let camera = viewpoint::section(body, &options.camera, panel, z, turn);
                     let slant = options.camera.azimuth_deg.to_radians().sin().abs();
-                    shot(
-                        camera,
-                        caption,
-                        body.radius + slant * panel.w / camera.scale,
-                    );
+                    shot(camera, caption, body.radius + slant * panel.w / camera.scale);
                 }
             }
             View::Exploded => {
                 let (_, height) = exploded::lifts(data.info, body);
-                shot(
-                    exploded::camera(body, &options.camera, *panel, u, z, height),
-                    "layers apart",
-                    body.radius,
-                );
+                shot(exploded::camera(body, &options.camera, *panel, u, z, height), "layers apart", body.radius);
             }
             View::Scene => {
                 let camera = viewpoint::everything(body, data.snapshot, &options.camera, *panel);
@@ -258,50 +213,24 @@ fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
 fn halves(panel: Rect, gap: f32) -> (Rect, Rect) {
     if panel.w < 2.2 * panel.h {
         let h = (0.5 * (panel.h - gap)).floor();
-        (
-            Rect { h, ..panel },
-            Rect {
-                h,
-                y: panel.bottom() - h,
-                ..panel
-            },
-        )
+        (Rect { h, ..panel }, Rect { h, y: panel.bottom() - h, ..panel })
     } else {
         let w = (0.5 * (panel.w - gap)).floor();
-        (
-            Rect { w, ..panel },
-            Rect {
-                w,
-                x: panel.right() - w,
-                ..panel
-            },
-        )
+        (Rect { w, ..panel }, Rect { w, x: panel.right() - w, ..panel })
     }
 }
 
 /// z before loading [mm] of the section that close-ups follow.
 fn focus(data: &Data, options: &FrameOptions) -> f32 {
-    let [low, high] = data
-        .info
-        .gauge
-        .unwrap_or([data.body.low.z, data.body.high.z]);
+    let [low, high] = data.info.gauge.unwrap_or([data.body.low.z, data.body.high.z]);
     let first = data.ruptures.first().map(|r| r.rest_z as f32 * 1e3);
-    options
-        .camera
-        .focus_z_mm
-        .or(first)
-        .unwrap_or(0.5 * (low + high))
+    options.camera.focus_z_mm.or(first).unwrap_or(0.5 * (low + high))
 }
 
 /// How wires look with their particles at `position` [mm] and each wire in its shade [-].
 fn looks(data: &Data, position: Vec<[f32; 3]>, shade: Vec<f32>) -> Looks {
     let occlusion = occlusion(data.info, &position, &data.snapshot.radius);
-    Looks {
-        position,
-        colour: data.colours.to_vec(),
-        occlusion,
-        shade,
-    }
+    Looks { position, colour: data.colours.to_vec(), occlusion, shade }
 }
 
 /// Bonds that make up about eight pixels.
@@ -312,32 +241,19 @@ fn stride(data: &Data, camera: &Camera) -> usize {
 
 impl Solid {
     fn open(layout: &Layout) -> Result<Option<Self>> {
-        let panels: Vec<Rect> = layout
-            .panels
-            .iter()
-            .filter(|(v, _)| is_solid(*v))
-            .map(|(_, r)| *r)
-            .collect();
+        let panels: Vec<Rect> = layout.panels.iter().filter(|(v, _)| is_solid(*v)).map(|(_, r)| *r).collect();
         let Some(area) = panels.iter().copied().reduce(around) else {
             return Ok(None);
         };
         let gpu = Gpu::open()?;
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if area.w as u32 > limit || area.h as u32 > limit {
-            let what = format!(
-                "the graphics adapter {} draws at most {limit} pixels across",
-                gpu.name
-            );
+            let what = format!("the graphics adapter {} draws at most {limit} pixels across", gpu.name);
             return Err(Error::input(what, "choose a smaller frame size"));
         }
         let pipeline = SolidPipeline::new(&gpu)?;
         let target = Target::new(&gpu, area.w as u32, area.h as u32);
-        Ok(Some(Self {
-            gpu,
-            pipeline,
-            target,
-            area,
-        }))
+        Ok(Some(Self { gpu, pipeline, target, area }))
     }
 
     fn draw(&self, data: &Data, shots: &[Shot]) -> Result<()> {
@@ -358,15 +274,10 @@ impl Solid {
             };
             all.extend(segments.into_iter().filter(|s| shot.camera.sees(s.a, s.b)));
             let instances = start..all.len() as u32;
-            drawings.push(Drawing {
-                camera: shot.camera,
-                instances,
-                fade: shot.fade,
-            });
+            drawings.push(Drawing { camera: shot.camera, instances, fade: shot.fade });
         }
         let origin = [self.area.x, self.area.y];
-        self.pipeline
-            .draw(&self.gpu, &self.target, origin, data.style, &all, &drawings)
+        self.pipeline.draw(&self.gpu, &self.target, origin, data.style, &all, &drawings)
     }
 
     /// Copies the panels, and nothing between them, into the picture.
@@ -391,21 +302,10 @@ impl Solid {
 
 fn around(a: Rect, b: Rect) -> Rect {
     let (x, y) = (a.x.min(b.x), a.y.min(b.y));
-    Rect::new(
-        x,
-        y,
-        a.right().max(b.right()) - x,
-        a.bottom().max(b.bottom()) - y,
-    )
+    Rect::new(x, y, a.right().max(b.right()) - x, a.bottom().max(b.bottom()) - y)
 }
 
-fn overlay(
-    canvas: &mut Canvas,
-    data: &Data,
-    options: &FrameOptions,
-    layout: &Layout,
-    shots: &[Shot],
-) {
+fn overlay(canvas: &mut Canvas, data: &Data, options: &FrameOptions, layout: &Layout, shots: &[Shot]) {
     let focus = focus(data, options);
     header::draw(canvas, layout.header, data);
     let window = shots.iter().find(|s| s.view == View::Midsection).map(|s| {

@@ -43,69 +43,28 @@ struct Block {
 
 impl Block {
     fn new(what: &'static str, value: String, detail: String) -> Self {
-        Self {
-            what,
-            value,
-            detail,
-            size: 17.0,
-        }
+        Self { what, value, detail, size: 17.0 }
     }
 }
 
 fn caption(data: &Data) -> Vec<Block> {
     let sample = &data.snapshot.sample;
     if data.info.gauge.is_none() {
-        return vec![Block::new(
-            "time",
-            time_text(sample.time),
-            format!("step {}", sample.step),
-        )];
+        return vec![Block::new("time", time_text(sample.time), format!("step {}", sample.step))];
     }
-    let bonds: usize = data
-        .info
-        .wires
-        .iter()
-        .map(|w| w.len.saturating_sub(1))
-        .sum();
+    let bonds: usize = data.info.wires.iter().map(|w| w.len.saturating_sub(1)).sum();
     let none = String::new;
     let mut blocks = vec![
-        Block::new(
-            "strain",
-            format!("{} %", label(sample.strain * 100.0, 2)),
-            none(),
-        ),
-        Block::new(
-            "nominal stress",
-            format!("{} MPa", label(sample.stress / 1e6, 1)),
-            none(),
-        ),
-        Block::new(
-            "wires broken",
-            format!("{} / {}", sample.wires_broken, data.info.wires.len()),
-            none(),
-        ),
-        Block::new(
-            "bonds broken",
-            sample.bonds_broken.to_string(),
-            format!("of {bonds}"),
-        ),
+        Block::new("strain", format!("{} %", label(sample.strain * 100.0, 2)), none()),
+        Block::new("nominal stress", format!("{} MPa", label(sample.stress / 1e6, 1)), none()),
+        Block::new("wires broken", format!("{} / {}", sample.wires_broken, data.info.wires.len()), none()),
+        Block::new("bonds broken", sample.bonds_broken.to_string(), format!("of {bonds}")),
     ];
     if let Some(first) = data.ruptures.first() {
         let layer = data.info.layers.get(first.layer).map_or("", String::as_str);
-        let value = format!(
-            "wire {} · {layer} · z {:.1} mm",
-            first.wire + 1,
-            first.rest_z * 1e3
-        );
-        let detail = format!(
-            "at {:.2} % and {:.1} MPa",
-            first.strain * 100.0,
-            first.body_stress / 1e6
-        );
-        blocks.push(Block {
-            size: 14.0,
-            ..Block::new(FIRST_BREAK, value, detail)
-        });
+        let value = format!("wire {} · {layer} · z {:.1} mm", first.wire + 1, first.rest_z * 1e3);
+        let detail = format!("at {:.2} % and {:.1} MPa", first.strain * 100.0, first.body_stress / 1e6);
+        blocks.push(Block { size: 14.0, ..Block::new(FIRST_BREAK, value, detail) });
     }
     blocks
 }
@@ -121,19 +80,9 @@ fn time_text(seconds: f64) -> String {
 fn name(canvas: &mut Canvas, area: Rect, data: &Data) -> f32 {
     let u = canvas.unit;
     let x = area.x + 18.0 * u;
-    let kind = Type {
-        size: 21.0 * u,
-        weight: Weight::Bold,
-        colour: data.style.text,
-        align: Align::Left,
-    };
+    let kind = Type { size: 21.0 * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
     let title = canvas.text(x, area.y + 29.0 * u, kind, &data.info.name);
-    let kind = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour: data.style.muted,
-        align: Align::Left,
-    };
+    let kind = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Left };
     let size = canvas.text(x, area.y + 46.0 * u, kind, &size_text(data.info));
     x + title.max(size) + 30.0 * u
 }
@@ -151,45 +100,18 @@ fn size_text(info: &RunInfo) -> String {
 fn block_width(canvas: &Canvas, block: &Block) -> f32 {
     let u = canvas.unit;
     let small = |t: &str| canvas.fonts.width(t, 11.0 * u, Weight::Regular);
-    let value = canvas
-        .fonts
-        .width(&block.value, block.size * u, Weight::Bold);
-    small(block.what)
-        .max(value)
-        .max(small(&block.detail))
-        .max(74.0 * u)
+    let value = canvas.fonts.width(&block.value, block.size * u, Weight::Bold);
+    small(block.what).max(value).max(small(&block.detail)).max(74.0 * u)
 }
 
 fn draw_block(canvas: &mut Canvas, x: f32, y: f32, data: &Data, block: &Block) {
     let u = canvas.unit;
-    let colour = if block.what == FIRST_BREAK {
-        data.style.signal
-    } else {
-        data.style.muted
-    };
-    let small = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour,
-        align: Align::Left,
-    };
-    let big = Type {
-        size: block.size * u,
-        weight: Weight::Bold,
-        colour: data.style.text,
-        align: Align::Left,
-    };
+    let colour = if block.what == FIRST_BREAK { data.style.signal } else { data.style.muted };
+    let small = Type { size: 11.0 * u, weight: Weight::Regular, colour, align: Align::Left };
+    let big = Type { size: block.size * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
     canvas.text(x, y + 18.0 * u, small, block.what);
     canvas.text(x, y + 37.0 * u, big, &block.value);
-    canvas.text(
-        x,
-        y + 51.0 * u,
-        Type {
-            colour: data.style.muted,
-            ..small
-        },
-        &block.detail,
-    );
+    canvas.text(x, y + 51.0 * u, Type { colour: data.style.muted, ..small }, &block.detail);
 }
 
 fn colour_bar(canvas: &mut Canvas, area: Rect, data: &Data, range: [f64; 2]) {
@@ -199,70 +121,35 @@ fn colour_bar(canvas: &mut Canvas, area: Rect, data: &Data, range: [f64; 2]) {
         let colour = data.scale.at((f64::from(k) + 0.5) / f64::from(bar.w));
         canvas.fill(Rect::new(bar.x + k as f32, bar.y, 1.0, bar.h), colour, 1.0);
     }
-    let small = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour: data.style.muted,
-        align: Align::Centre,
-    };
+    let small = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Centre };
     canvas.text(
         area.x,
         area.y + 18.0 * u,
-        Type {
-            align: Align::Left,
-            colour: data.style.text,
-            ..small
-        },
+        Type { align: Align::Left, colour: data.style.text, ..small },
         data.scale.title(),
     );
     let marks = ticks(range[0], range[1], 6);
     for value in marks.values {
         let x = bar.x + bar.w * ((value - range[0]) / (range[1] - range[0])) as f32;
-        canvas.fill(
-            Rect::new(x - 0.5 * u, bar.bottom(), u, 4.0 * u),
-            data.style.muted,
-            1.0,
-        );
-        canvas.text(
-            x,
-            bar.bottom() + 15.0 * u,
-            small,
-            &label(value, marks.decimals),
-        );
+        canvas.fill(Rect::new(x - 0.5 * u, bar.bottom(), u, 4.0 * u), data.style.muted, 1.0);
+        canvas.text(x, bar.bottom() + 15.0 * u, small, &label(value, marks.decimals));
     }
     if data.info.wires.is_empty() {
         return;
     }
     let x = area.right();
-    let kind = Type {
-        align: Align::Right,
-        colour: data.style.signal,
-        ..small
-    };
+    let kind = Type { align: Align::Right, colour: data.style.signal, ..small };
     let width = canvas.text(x, area.y + 18.0 * u, kind, "broken");
-    canvas.fill(
-        Rect::new(x - width - 15.0 * u, area.y + 9.0 * u, 10.0 * u, 10.0 * u),
-        data.style.signal,
-        1.0,
-    );
+    canvas.fill(Rect::new(x - width - 15.0 * u, area.y + 9.0 * u, 10.0 * u, 10.0 * u), data.style.signal, 1.0);
 }
 
 fn legend(canvas: &mut Canvas, area: Rect, data: &Data) {
     let u = canvas.unit;
-    let kind = Type {
-        size: 12.0 * u,
-        weight: Weight::Regular,
-        colour: data.style.text,
-        align: Align::Left,
-    };
+    let kind = Type { size: 12.0 * u, weight: Weight::Regular, colour: data.style.text, align: Align::Left };
     let mut entries: Vec<(String, [u8; 3])> = match data.scale.by() {
-        ColourBy::Layer => data
-            .info
-            .layers
-            .iter()
-            .enumerate()
-            .map(|(k, name)| (name.clone(), ColourScale::category(k)))
-            .collect(),
+        ColourBy::Layer => {
+            data.info.layers.iter().enumerate().map(|(k, name)| (name.clone(), ColourScale::category(k))).collect()
+        }
         _ => vec![("coloured by wire".to_owned(), data.style.text)],
     };
     if !data.info.wires.is_empty() {

@@ -10,12 +10,7 @@ use glam::Vec3;
 /// Title in the panel's top left corner; returns where it ends [px].
 pub fn title(canvas: &mut Canvas, panel: Rect, data: &Data, text: &str) -> f32 {
     let u = canvas.unit;
-    let kind = Type {
-        size: 12.0 * u,
-        weight: Weight::Bold,
-        colour: data.style.text,
-        align: Align::Left,
-    };
+    let kind = Type { size: 12.0 * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
     let x = panel.x + 12.0 * u;
     x + canvas.text(x, panel.y + 18.0 * u, kind, text)
 }
@@ -23,12 +18,7 @@ pub fn title(canvas: &mut Canvas, panel: Rect, data: &Data, text: &str) -> f32 {
 /// A remark after the title.
 pub fn subtitle(canvas: &mut Canvas, x: f32, panel: Rect, data: &Data, text: &str) {
     let u = canvas.unit;
-    let kind = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour: data.style.muted,
-        align: Align::Left,
-    };
+    let kind = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Left };
     canvas.text(x + 9.0 * u, panel.y + 18.0 * u, kind, text);
 }
 
@@ -53,42 +43,22 @@ pub fn scale_bar(canvas: &mut Canvas, camera: &Camera, data: &Data) {
     let u = canvas.unit;
     // The largest of 1, 2, 5 × 10^k that is at most about 120 units long.
     let longest = f64::from(120.0 * u / camera.scale);
-    let length = [0.5, 0.4, 0.2, 0.1]
-        .map(|f| round_step(longest * f))
-        .into_iter()
-        .find(|l| *l <= longest);
+    let length = [0.5, 0.4, 0.2, 0.1].map(|f| round_step(longest * f)).into_iter().find(|l| *l <= longest);
     let length = length.unwrap_or(longest);
     let width = length as f32 * camera.scale;
-    let (right, y) = (
-        camera.panel.right() - 14.0 * u,
-        camera.panel.bottom() - 12.0 * u,
-    );
+    let (right, y) = (camera.panel.right() - 14.0 * u, camera.panel.bottom() - 12.0 * u);
     let left = right - width;
     let colour = data.style.text;
-    let decimals = if length < 1.0 {
-        (-length.log10()).ceil() as usize
-    } else {
-        0
-    };
+    let decimals = if length < 1.0 { (-length.log10()).ceil() as usize } else { 0 };
     let text = format!("{} mm", label(length, decimals));
     let text_width = canvas.fonts.width(&text, 11.0 * u, Weight::Regular);
-    let ground = Rect::new(
-        left - text_width - 12.0 * u,
-        y - 9.0 * u,
-        width + text_width + 18.0 * u,
-        18.0 * u,
-    );
+    let ground = Rect::new(left - text_width - 12.0 * u, y - 9.0 * u, width + text_width + 18.0 * u, 18.0 * u);
     canvas.fill_rounded(ground, 4.0 * u, data.style.panel, 0.8);
     canvas.fill(Rect::new(left, y - u, width, 2.0 * u), colour, 1.0);
     for x in [left, right - 1.5 * u] {
         canvas.fill(Rect::new(x, y - 4.0 * u, 1.5 * u, 8.0 * u), colour, 1.0);
     }
-    let kind = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour,
-        align: Align::Right,
-    };
+    let kind = Type { size: 11.0 * u, weight: Weight::Regular, colour, align: Align::Right };
     canvas.text(left - 6.0 * u, y + 4.0 * u, kind, &text);
 }
 
@@ -102,12 +72,7 @@ pub fn overview(canvas: &mut Canvas, camera: &Camera, data: &Data, window: Optio
         let ends = data.ends();
         for [from, to] in [[ends[0], faces[0]], [faces[1], ends[1]]] {
             let (x0, x1) = (x_of(from), x_of(to));
-            canvas.fill_rounded(
-                Rect::new(x0, middle - half, x1 - x0, 2.0 * half),
-                3.0 * u,
-                data.style.muted,
-                0.35,
-            );
+            canvas.fill_rounded(Rect::new(x0, middle - half, x1 - x0, 2.0 * half), 3.0 * u, data.style.muted, 0.35);
         }
     }
     if let Some([from, to]) = window {
@@ -151,29 +116,16 @@ pub fn break_numbers(canvas: &mut Canvas, camera: &Camera, data: &Data) {
         let v = camera.to_view(place);
         let [x, y] = camera.project(place);
         let margin = radius + 2.0 * u;
-        if v.z < 0.0
-            || !outermost(data, rupture)
-            || x < panel.x + margin
-            || x > panel.right() - margin
-        {
+        if v.z < 0.0 || !outermost(data, rupture) || x < panel.x + margin || x > panel.right() - margin {
             continue;
         }
         // Above the strand for breaks in its upper half, below it for the others.
         let upper = y < panel.y + 0.5 * panel.h;
-        let level = if upper {
-            panel.y + 36.0 * u
-        } else {
-            panel.bottom() - 30.0 * u
-        };
+        let level = if upper { panel.y + 36.0 * u } else { panel.bottom() - 30.0 * u };
         let Some(at) = free_place(&taken, x, level, radius, panel) else {
             continue;
         };
-        taken.push(Rect::new(
-            at - radius,
-            level - radius,
-            2.0 * radius,
-            2.0 * radius,
-        ));
+        taken.push(Rect::new(at - radius, level - radius, 2.0 * radius, 2.0 * radius));
         canvas.line([at, level], [x, y], 1.2 * u, data.style.text, 0.75);
         badge(canvas, at, level, radius, data, number);
     }
@@ -200,11 +152,6 @@ pub fn badge(canvas: &mut Canvas, x: f32, y: f32, radius: f32, data: &Data, numb
     let text = number.to_string();
     let size = radius * if text.len() > 1 { 1.15 } else { 1.35 };
     canvas.disc(x, y, radius, data.style.signal, 1.0);
-    let kind = Type {
-        size,
-        weight: Weight::Bold,
-        colour: [255; 3],
-        align: Align::Centre,
-    };
+    let kind = Type { size, weight: Weight::Bold, colour: [255; 3], align: Align::Centre };
     canvas.text(x, y + 0.36 * size, kind, &text);
 }

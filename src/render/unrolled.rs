@@ -56,48 +56,25 @@ fn rows(area: Rect, data: &Data, unit: f32) -> Rows {
         y += 1.2 * height;
     }
     // Few wires do not fill the panel: the axis then follows the last row.
-    let area = Rect {
-        h: (y - 1.2 * height - area.y).min(area.h),
-        ..area
-    };
-    Rows {
-        area,
-        range: [data.body.low.z, data.body.high.z],
-        top,
-        height,
-    }
+    let area = Rect { h: (y - 1.2 * height - area.y).min(area.h), ..area };
+    Rows { area, range: [data.body.low.z, data.body.high.z], top, height }
 }
 
 fn row(canvas: &mut Canvas, rows: &Rows, top: f32, wire: &WireInfo, data: &Data) {
     let shown = |i: usize| {
-        if in_grip(data.info, i) {
-            desaturated(data.colours[i])
-        } else {
-            data.colours[i]
-        }
+        if in_grip(data.info, i) { desaturated(data.colours[i]) } else { data.colours[i] }
     };
-    let gap = if rows.height >= 4.0 * canvas.unit {
-        0.16 * rows.height
-    } else {
-        0.0
-    };
+    let gap = if rows.height >= 4.0 * canvas.unit { 0.16 * rows.height } else { 0.0 };
     for i in wire.first..wire.first + wire.len.saturating_sub(1) {
         if !holds(data.snapshot, i) {
             continue;
         }
-        let (z0, z1) = (
-            data.info.rest_position[i][2],
-            data.info.rest_position[i + 1][2],
-        );
+        let (z0, z1) = (data.info.rest_position[i][2], data.info.rest_position[i + 1][2]);
         let (x0, x1) = (rows.x(z0.min(z1)), rows.x(z0.max(z1)));
         let colour = mixed(shown(i), shown(i + 1));
         // Whole columns, each of exactly one bond: no seams between neighbours.
         let (from, to) = (x0.round(), x1.round());
-        canvas.fill(
-            Rect::new(from, top, to - from, rows.height - gap),
-            colour,
-            1.0,
-        );
+        canvas.fill(Rect::new(from, top, to - from, rows.height - gap), colour, 1.0);
     }
 }
 
@@ -107,90 +84,41 @@ fn mixed(a: Rgb, b: Rgb) -> Rgb {
 
 fn layers(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
     let u = canvas.unit;
-    let name = Type {
-        size: 12.0 * u,
-        weight: Weight::Bold,
-        colour: data.style.text,
-        align: Align::Left,
-    };
-    let detail = Type {
-        size: 10.5 * u,
-        weight: Weight::Regular,
-        colour: data.style.muted,
-        align: Align::Left,
-    };
+    let name = Type { size: 12.0 * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
+    let detail = Type { size: 10.5 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Left };
     for (layer, text) in data.info.layers.iter().enumerate() {
-        let members: Vec<usize> = (0..rows.top.len())
-            .filter(|w| data.info.wires[*w].layer == layer)
-            .collect();
+        let members: Vec<usize> = (0..rows.top.len()).filter(|w| data.info.wires[*w].layer == layer).collect();
         let (Some(first), Some(last)) = (members.first(), members.last()) else {
             continue;
         };
         let middle = 0.5 * (rows.top[*first] + rows.top[*last] + rows.height);
         let x = panel.x + 12.0 * u;
         canvas.text(x, middle - u, name, text);
-        let span = if first == last {
-            format!("{}", first + 1)
-        } else {
-            format!("{}–{}", first + 1, last + 1)
-        };
+        let span = if first == last { format!("{}", first + 1) } else { format!("{}–{}", first + 1, last + 1) };
         canvas.text(x, middle + 12.0 * u, detail, &span);
     }
 }
 
 fn axis(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     let u = canvas.unit;
-    let small = Type {
-        size: 11.0 * u,
-        weight: Weight::Regular,
-        colour: data.style.muted,
-        align: Align::Centre,
-    };
+    let small = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Centre };
     let marks = ticks(f64::from(rows.range[0]), f64::from(rows.range[1]), 8);
     let bottom = rows.area.bottom();
     for value in marks.values {
         let x = rows.x(value as f32);
-        canvas.fill(
-            Rect::new((x - 0.5 * u).round(), bottom, u.max(1.0), 4.0 * u),
-            data.style.muted,
-            1.0,
-        );
+        canvas.fill(Rect::new((x - 0.5 * u).round(), bottom, u.max(1.0), 4.0 * u), data.style.muted, 1.0);
         canvas.text(x, bottom + 16.0 * u, small, &label(value, marks.decimals));
     }
-    let kind = Type {
-        align: Align::Right,
-        colour: data.style.text,
-        ..small
-    };
-    canvas.text(
-        rows.area.right(),
-        bottom + 31.0 * u,
-        kind,
-        "axial position before loading (mm)",
-    );
+    let kind = Type { align: Align::Right, colour: data.style.text, ..small };
+    canvas.text(rows.area.right(), bottom + 31.0 * u, kind, "axial position before loading (mm)");
     if let Some(faces) = data.info.gauge {
         for z in faces {
             let x = rows.x(z);
-            canvas.fill(
-                Rect::new(x - 0.5 * u, rows.area.y - 4.0 * u, u, rows.area.h + 4.0 * u),
-                data.style.text,
-                0.5,
-            );
+            canvas.fill(Rect::new(x - 0.5 * u, rows.area.y - 4.0 * u, u, rows.area.h + 4.0 * u), data.style.text, 0.5);
         }
         let middle = |a: f32, b: f32| 0.5 * (rows.x(a) + rows.x(b));
-        for x in [
-            middle(rows.range[0], faces[0]),
-            middle(faces[1], rows.range[1]),
-        ] {
-            canvas.text(
-                x,
-                rows.area.y - 5.0 * u,
-                Type {
-                    size: 10.0 * u,
-                    ..small
-                },
-                "grip",
-            );
+        for x in [middle(rows.range[0], faces[0]), middle(faces[1], rows.range[1])] {
+            canvas.text(x, rows.area.y - 5.0 * u, Type { size: 10.0 * u, ..small }, "grip");
         }
     }
 }
@@ -217,14 +145,7 @@ fn numbers(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     let size = 11.0 * u;
     let mut taken: Vec<Rect> = data
         .first_breaks()
-        .map(|(_, r)| {
-            Rect::new(
-                rows.x(r.rest_z as f32 * 1e3) - 4.0 * u,
-                rows.top[r.wire],
-                8.0 * u,
-                rows.height,
-            )
-        })
+        .map(|(_, r)| Rect::new(rows.x(r.rest_z as f32 * 1e3) - 4.0 * u, rows.top[r.wire], 8.0 * u, rows.height))
         .collect();
     for (number, rupture) in data.first_breaks() {
         let text = number.to_string();
@@ -239,12 +160,7 @@ fn numbers(canvas: &mut Canvas, rows: &Rows, data: &Data) {
         let near = if r.x > x { r.x } else { r.right() };
         canvas.line([x, y], [near, r.y + 0.5 * h], 1.0 * u, data.style.text, 0.8);
         canvas.fill_rounded(r, 3.0 * u, data.style.page, 0.88);
-        let kind = Type {
-            size,
-            weight: Weight::Bold,
-            colour: data.style.text,
-            align: Align::Centre,
-        };
+        let kind = Type { size, weight: Weight::Bold, colour: data.style.text, align: Align::Centre };
         canvas.text(r.x + 0.5 * w, r.y + 0.5 * h + 0.36 * size, kind, &text);
     }
 }
@@ -255,16 +171,10 @@ fn beside(taken: &[Rect], x: f32, y: f32, w: f32, h: f32, u: f32, area: Rect) ->
         for shift in [0.0, -0.5, 0.5, -1.0, 1.0] {
             for right in [true, false] {
                 let distance = 7.0 * u + 0.8 * out as f32 * w;
-                let left = if right {
-                    x + distance
-                } else {
-                    x - distance - w
-                };
+                let left = if right { x + distance } else { x - distance - w };
                 let r = Rect::new(left, y - 0.5 * h + shift * h, w, h);
-                let inside = r.x > area.x
-                    && r.right() < area.right()
-                    && r.y > area.y - h
-                    && r.bottom() < area.bottom() + h;
+                let inside =
+                    r.x > area.x && r.right() < area.right() && r.y > area.y - h && r.bottom() < area.bottom() + h;
                 if inside && !taken.iter().any(|t| t.meets(&r)) {
                     return Some(r);
                 }

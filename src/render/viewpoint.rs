@@ -45,40 +45,23 @@ impl Body {
             .map(|(p, r)| (p[0] - axis.x).hypot(p[1] - axis.y) + r)
             .fold(1e-6, f32::max);
         let depth = wire_depth(info, axis);
-        Self {
-            low,
-            high,
-            axis,
-            radius,
-            depth,
-        }
+        Self { low, high, axis, radius, depth }
     }
 }
 
 fn wire_depth(info: &RunInfo, axis: Vec3) -> Vec<f32> {
     let distance = |wire: &crate::engine::view::WireInfo| {
         let points = &info.rest_position[wire.first..wire.first + wire.len];
-        let sum: f32 = points
-            .iter()
-            .map(|p| (p[0] - axis.x).hypot(p[1] - axis.y))
-            .sum();
+        let sum: f32 = points.iter().map(|p| (p[0] - axis.x).hypot(p[1] - axis.y)).sum();
         sum / wire.len.max(1) as f32
     };
     let all: Vec<f32> = info.wires.iter().map(distance).collect();
     let greatest = all.iter().copied().fold(0.0, f32::max);
-    all.iter()
-        .map(|d| if greatest > 1e-6 { d / greatest } else { 1.0 })
-        .collect()
+    all.iter().map(|d| if greatest > 1e-6 { d / greatest } else { 1.0 }).collect()
 }
 
 /// Camera of the overview: the whole body with room for its stretch, always at the same scale.
-pub fn overview(
-    info: &RunInfo,
-    body: &Body,
-    options: &CameraOptions,
-    panel: Rect,
-    unit: f32,
-) -> Camera {
+pub fn overview(info: &RunInfo, body: &Body, options: &CameraOptions, panel: Rect, unit: f32) -> Camera {
     let length = body.high.z - body.low.z;
     let gauge = info.gauge.map_or(length, |[low, high]| high - low);
     let stretched = length + gauge * info.strain_end.unwrap_or(UNKNOWN_STRAIN) as f32;
@@ -87,13 +70,7 @@ pub fn overview(
     let scale = (view.w / stretched).min(view.h / (2.0 * body.radius));
     let centre = Vec3::new(body.axis.x, body.axis.y, body.low.z + 0.5 * stretched);
     let reach = stretched + 10.0 * body.radius;
-    Camera {
-        rotation: Camera::orientation(0.0, options.elevation_deg),
-        centre,
-        panel,
-        scale,
-        depth: reach,
-    }
+    Camera { rotation: Camera::orientation(0.0, options.elevation_deg), centre, panel, scale, depth: reach }
 }
 
 /// Camera of a close-up on the section at `z` [mm]; `turn_deg` is added to the elevation.
@@ -110,12 +87,7 @@ pub fn section(body: &Body, options: &CameraOptions, panel: Rect, z: f32, turn_d
 }
 
 /// Camera that shows everything from an angle. Its field grows by fixed factors when something leaves it.
-pub fn everything(
-    body: &Body,
-    snapshot: &Snapshot,
-    options: &CameraOptions,
-    panel: Rect,
-) -> Camera {
+pub fn everything(body: &Body, snapshot: &Snapshot, options: &CameraOptions, panel: Rect) -> Camera {
     let rotation = Camera::orientation(options.azimuth_deg - 28.0, options.elevation_deg + 22.0);
     let centre = 0.5 * (body.low + body.high);
     let reach = |points: &mut dyn Iterator<Item = (Vec3, f32)>| {
@@ -134,11 +106,7 @@ pub fn everything(
         (p, 0.0)
     });
     let [rest_x, rest_y] = reach(&mut corners.into_iter());
-    let now = snapshot
-        .position
-        .iter()
-        .zip(&snapshot.radius)
-        .map(|(p, r)| (Vec3::from(*p), *r));
+    let now = snapshot.position.iter().zip(&snapshot.radius).map(|(p, r)| (Vec3::from(*p), *r));
     let [now_x, now_y] = reach(&mut now.into_iter());
     let fit = |x: f32, y: f32| (0.5 * panel.w / x).min(0.5 * panel.h / y);
     let mut scale = fit(rest_x, rest_y) / 1.3;
@@ -147,13 +115,7 @@ pub fn everything(
         scale /= 1.5;
     }
     let depth = 4.0 * (body.high - body.low).length() * (fit(rest_x, rest_y) / scale);
-    Camera {
-        rotation,
-        centre,
-        panel,
-        scale: scale * options.zoom,
-        depth,
-    }
+    Camera { rotation, centre, panel, scale: scale * options.zoom, depth }
 }
 
 /// Where the material section that was at `rest_z` is now [mm]: the median over wires, which a wire that sprang

@@ -51,13 +51,7 @@ pub struct Looks {
 pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks, stride: usize) -> Vec<Segment> {
     let mut all = Vec::with_capacity(snapshot.position.len());
     for (wire, shade) in info.wires.iter().zip(&looks.shade) {
-        let chain = Chain {
-            info,
-            snapshot,
-            looks,
-            wire,
-            shade: *shade,
-        };
+        let chain = Chain { info, snapshot, looks, wire, shade: *shade };
         chain.segments(stride, &mut all);
     }
     for i in info.wire_particles..snapshot.position.len() {
@@ -68,10 +62,7 @@ pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks, stride: usiz
 
 /// Whether bond slot `b` holds.
 pub fn holds(snapshot: &Snapshot, b: usize) -> bool {
-    matches!(
-        snapshot.bond_state[b],
-        BondState::Whole | BondState::Yielding
-    )
+    matches!(snapshot.bond_state[b], BondState::Whole | BondState::Yielding)
 }
 
 /// Whether a particle lies in a grip before loading.
@@ -95,11 +86,7 @@ impl Chain<'_> {
         while i < last {
             let mut j = i + 1;
             if holds(self.snapshot, i) {
-                while j < last
-                    && j - i < stride
-                    && holds(self.snapshot, j)
-                    && self.straight(i, j + 1)
-                {
+                while j < last && j - i < stride && holds(self.snapshot, j) && self.straight(i, j + 1) {
                     j += 1;
                 }
                 all.push(self.between(i, j));
@@ -135,9 +122,7 @@ impl Chain<'_> {
         let from = if self.holds_before(i) { i - 1 } else { i };
         let to = if self.holds_after(i) { i + 1 } else { i };
         let one = |a: usize, b: usize| (self.position(b) - self.position(a)).normalize_or_zero();
-        (one(from, i) + one(i, to))
-            .try_normalize()
-            .unwrap_or(Vec3::Z)
+        (one(from, i) + one(i, to)).try_normalize().unwrap_or(Vec3::Z)
     }
 
     /// Kind of the end that the wire has at `i`, seen from a bond on the other side of `i`.
@@ -168,20 +153,14 @@ impl Chain<'_> {
 
     fn colour(&self, i: usize) -> [f32; 4] {
         let colour = self.looks.colour[i];
-        let shown = if in_grip(self.info, i) {
-            desaturated(colour)
-        } else {
-            colour
-        };
+        let shown = if in_grip(self.info, i) { desaturated(colour) } else { colour };
         let [r, g, b, _] = linear4(shown);
         [r, g, b, self.shade]
     }
 }
 
 fn sphere(snapshot: &Snapshot, looks: &Looks, i: usize) -> Segment {
-    let point = Vec3::from(looks.position[i])
-        .extend(snapshot.radius[i])
-        .to_array();
+    let point = Vec3::from(looks.position[i]).extend(snapshot.radius[i]).to_array();
     let tangent = Vec3::Z.extend(END).to_array();
     let colour = linear4(looks.colour[i]);
     let occlusion = looks.occlusion[i];

@@ -110,10 +110,7 @@ pub fn snapped(info: &RunInfo, strain: f32, count: usize) -> (Snapshot, Vec<Rupt
 /// Every wire broken, most of them near the middle.
 pub fn all_snapped(info: &RunInfo, strain: f32) -> (Snapshot, Vec<Rupture>) {
     let place = |w: usize| 60.0 + 14.0 * (2.7 * w as f32).sin();
-    let breaks: Vec<_> = (0..info.wires.len())
-        .map(|k| (k * 23) % info.wires.len())
-        .map(|w| (w, place(w)))
-        .collect();
+    let breaks: Vec<_> = (0..info.wires.len()).map(|k| (k * 23) % info.wires.len()).map(|w| (w, place(w))).collect();
     broken(info, strain, &breaks)
 }
 
@@ -217,13 +214,7 @@ pub fn bent_wire() -> (RunInfo, Snapshot) {
     let mut info = single_wire();
     info.name = "cantilever-like".into();
     info.gauge = None;
-    let mut snapshot = stretched(
-        &RunInfo {
-            gauge: Some([0.0, LENGTH]),
-            ..info.clone()
-        },
-        0.0,
-    );
+    let mut snapshot = stretched(&RunInfo { gauge: Some([0.0, LENGTH]), ..info.clone() }, 0.0);
     let bend = LENGTH * 2.0 / std::f32::consts::PI;
     for (k, p) in snapshot.position.iter_mut().enumerate() {
         let angle = p[2] / bend;
