@@ -182,15 +182,15 @@ impl Stiffness {
     fn element(&self, e: &Element, state: &State, held: &impl Fn(usize) -> bool) -> (f64, &'static str) {
         let (ke, qe) = (e.translation(), e.rotation());
         let (mut mass, mut levers, mut turn) = (0.0, 0.0, [0.0; 3]);
-        for k in 0..3 {
+        for (k, turn) in turn.iter_mut().enumerate() {
             let node = e.nodes[k] as usize;
             if e.weight[k] == 0.0 || held(node) {
                 continue;
             }
             mass += e.weight[k] * self.translation[node] / state.mass[node];
             if qe > 0.0 {
-                turn[k] = e.weight[k] * self.rotation[node] / (state.inertia[node] * qe);
-                levers += e.arm[k] * e.arm[k] * turn[k];
+                *turn = e.weight[k] * self.rotation[node] / (state.inertia[node] * qe);
+                levers += e.arm[k] * e.arm[k] * *turn;
             }
         }
         let normal = if ke > 0.0 { e.normal / ke * mass } else { 0.0 };
