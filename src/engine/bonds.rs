@@ -213,10 +213,21 @@ fn axial<L: BondLaw>(
     let mut axial = record.force.axial;
     if let Some(c) = shared.viscosity.get(slot) {
         let rate = (m.v.get(slot + 1) - m.v.get(slot)).dot(n);
-        axial += c[0] * rate;
-        partial.damping += c[0] * rate * rate * shared.dt;
+        axial += axial_dashpot(c[0], rate, shared.dt, partial);
     }
     BondAction { pull: n * axial, ..Default::default() }
+}
+
+/// Force of the axial dashpot at an elongation rate [m/s]; one formula for both kinds of bond, so that they agree to
+/// the bit. The first evaluation, before any step (`dt` = 0), has none: its work would go unbooked.
+#[inline(always)]
+fn axial_dashpot(coefficient: f64, rate: f64, dt: f64, partial: &mut Partial) -> f64 {
+    if dt == 0.0 {
+        return 0.0;
+    }
+    let force = coefficient * rate;
+    partial.damping += force * rate * dt;
+    force
 }
 
 /// A bond in all modes.
@@ -263,12 +274,12 @@ fn turning<L: BondLaw>(
     if let Some(c) = shared.viscosity.get(slot)
         && dt > 0.0
     {
+        f.axial += axial_dashpot(c[0], dv.dot(n), dt, partial);
         let per = 1.0 / dt;
         let mut viscous = |f: &mut f64, c: f64, increment: f64| {
             *f += c * increment * per;
             partial.damping += c * increment * increment * per;
         };
-        viscous(&mut f.axial, c[0], dv.dot(n) * dt);
         viscous(&mut f.twist, c[3], step.twist);
         for axis in 0..2 {
             viscous(&mut f.shear[axis], c[1], step.shear[axis]);

@@ -6,7 +6,7 @@
 //! A free sphere against a wire, or two free spheres, carry the whole force.
 
 use super::contacts::{ContactPoint, Contacts};
-use super::neighbours::PairList;
+use super::neighbours::{PairList, apart};
 use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, part, touch};
 use super::state::{CHUNK, Partial, State};
 use super::time_step::Stiffness;
@@ -39,10 +39,38 @@ struct Contact<N, T> {
     arm: [f64; 2],
 }
 
+/// Which particles are joined to which.
+struct Chains {
+    wire_of: Vec<u32>,
+    /// Per wire, the number of bonds within which it cannot touch itself.
+    apart: Vec<u32>,
+}
+
+impl Chains {
+    fn one_wire(&self, a: u32, b: u32) -> bool {
+        let wire = self.wire_of[a as usize];
+        wire != u32::MAX && wire == self.wire_of[b as usize]
+    }
+
+    /// Whether two particles belong to one wire and all bonds between them hold.
+    fn one_piece(&self, a: u32, b: u32, state: &State) -> bool {
+        let (first, last) = (a.min(b) as usize, a.max(b) as usize);
+        self.one_wire(a, b) && state.whole[first..last].iter().all(|w| *w)
+    }
+
+    /// Whether segment `k` of the wire of particle `i` belongs to its own surroundings, which it never touches. A
+    /// contact of a wire with itself would otherwise walk home along the wire.
+    fn beside(&self, i: usize, k: usize, state: &State) -> bool {
+        let apart = self.apart[self.wire_of[i] as usize] as usize;
+        let between = if k < i { k + 1..i } else { i..k };
+        between.len() < apart && state.whole[between].iter().all(|w| *w)
+    }
+}
+
 /// Contacts between smooth wires with normal law `N` and tangential law `T`.
 pub struct CapsuleContacts<N: NormalLaw, T: TangentialLaw> {
     laws: Laws<N, T>,
-    wire_of: Vec<u32>,
+    chains: Chains,
     contacts: Vec<Contact<N::State, T::State>>,
     old: Vec<Contact<N::State, T::State>>,
     partial: Vec<Partial>,
@@ -55,7 +83,7 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
     pub fn new(laws: Laws<N, T>, assembly: &Assembly) -> Self {
         Self {
             laws,
-            wire_of: assembly.wire_of.clone(),
+            chains: Chains { wire_of: assembly.wire_of.clone(), apart: apart(assembly) },
             contacts: Vec::new(),
             old: Vec::new(),
             partial: Vec::new(),
@@ -64,7 +92,7 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
     }
 
     fn free(&self, p: u32) -> bool {
-        self.wire_of[p as usize] == u32::MAX
+        self.chains.wire_of[p as usize] == u32::MAX
     }
 
     /// Both directions of every pair; a wire's particle never rests on a free sphere (the sphere rests on the wire).
@@ -88,7 +116,7 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             // Sphere on a cylinder: geometric mean of the two principal relative radii.
             radius = (radius * a).sqrt();
         }
-        Contact {
+        let mut contact = Contact {
             i,
             j,
             t: 0.0,
@@ -98,22 +126,24 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             action: PairForce::default(),
             twist: DVec3::ZERO,
             arm: [0.0; 2],
+        };
+        // During a run a new pair was beyond reach until now, or a bond has just broken.
+        if state.step > 0 {
+            let (d, reach) = across(state, &self.chains, &mut contact);
+            contact.history.offset = (reach - d.length()).max(0.0);
         }
+        contact
     }
 
-    /// One contact per particle and stretch of the other body: the nearest particle of each run of candidates.
+    /// One contact per particle and stretch of the other body: the nearest particle of each run of candidates. A run
+    /// ends where the other wire is broken, for its two ends touch by themselves.
     fn runs(&mut self, state: &State) -> Vec<(u32, u32)> {
         let mut out: Vec<(u32, u32)> = Vec::with_capacity(self.directed.len() / 3);
         let mut last: Option<(u32, u32, f64)> = None;
         for (i, j) in self.directed.iter().copied() {
             let d = (state.x.get(i as usize) - state.x.get(j as usize)).length_squared();
             match &mut last {
-                Some((li, lj, ld))
-                    if *li == i
-                        && self.wire_of[*lj as usize] == self.wire_of[j as usize]
-                        && !self.free(j)
-                        && j - *lj <= 2 =>
-                {
+                Some((li, lj, ld)) if *li == i && j - *lj <= 2 && self.chains.one_piece(*lj, j, state) => {
                     // Same run: the last entry stands for the nearest so far.
                     if d < *ld {
                         *ld = d;
@@ -167,8 +197,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
                 from += 1;
             }
             let same = |c: &Contact<N::State, T::State>| {
-                c.j == j
-                    || (self.wire_of[c.j as usize] == self.wire_of[j as usize] && !self.free(j) && c.j.abs_diff(j) <= 3)
+                c.j == j || (c.j.abs_diff(j) <= 3 && self.chains.one_piece(c.j, j, state))
             };
             let kept = (from..self.old.len())
                 .take_while(|k| self.old[*k].i == i)
@@ -188,7 +217,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
         }
         for c in self.old.iter_mut().filter(|c| c.share > 0.0) {
             let mut gone = Partial::default();
-            part::<N, T>(&self.laws, &mut c.history, &mut gone);
+            part::<N, T>(&self.laws, &mut c.history, 0.0, &mut gone);
             lost.add(&gone.scaled(c.share));
         }
         self.partial.clear();
@@ -197,13 +226,13 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
     }
 
     fn compute(&mut self, state: &mut State) -> Partial {
-        let (laws, shared, wire_of) = (&self.laws, &*state, &self.wire_of);
+        let (laws, shared, chains) = (&self.laws, &*state, &self.chains);
         (self.contacts.par_chunks_mut(CHUNK), self.partial.par_iter_mut()).into_par_iter().for_each(
             |(contacts, partial)| {
                 *partial = Partial::default();
                 for c in contacts {
                     let mut own = Partial::default();
-                    capsule_pair(laws, shared, wire_of, c, &mut own);
+                    capsule_pair(laws, shared, chains, c, &mut own);
                     partial.add(&own.scaled(c.share));
                 }
             },
@@ -237,14 +266,14 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
         for c in &self.contacts {
             let mut c = *c;
-            let point = walk(state, &self.wire_of, &mut c);
+            let point = walk(state, &self.chains, &mut c);
             let (i, j) = (c.i as usize, c.j as usize);
             let next = if c.segment { j + 1 } else { j };
             let d = point - state.x.get(i);
             let distance = d.length();
             let approach = (state.v.get(i) - state.v.get(j).lerp(state.v.get(next), c.t)).dot(d) / distance;
             let radius = state.radius[j] * (1.0 - c.t) + state.radius[next] * c.t;
-            let overlap = state.radius[i] + radius - distance;
+            let overlap = state.radius[i] + radius - c.history.offset - distance;
             let Some(k) = foreseen_stiffness(&self.laws, &c.history, overlap, approach, horizon) else { continue };
             let viscosity = viscous_coefficient(self.laws.damping, reduced_mass(state, &c), k[0]) * c.share;
             let weight = [1.0, 1.0 - c.t, c.t];
@@ -263,12 +292,12 @@ fn reduced_mass<N, S>(state: &State, c: &Contact<N, S>) -> f64 {
 /// point. Where two segments meet on the outside of a bend the particle between them is nearest; at the end of a piece
 /// its last particle is.
 #[inline(always)]
-fn walk<N, S>(state: &State, wire_of: &[u32], c: &mut Contact<N, S>) -> DVec3 {
+fn walk<N, S>(state: &State, chains: &Chains, c: &mut Contact<N, S>) -> DVec3 {
     let p = state.x.get(c.i as usize);
-    let wire = wire_of[c.j as usize];
+    let (i, own) = (c.i as usize, chains.one_wire(c.i, c.j));
     let segment = |k: usize| {
-        let joined = wire != u32::MAX && wire_of[k] == wire && state.whole[k];
-        joined.then(|| closest_on_segment(p, state.x.get(k), state.x.get(k + 1)))
+        let exists = state.whole.get(k).is_some_and(|whole| *whole) && !(own && chains.beside(i, k, state));
+        exists.then(|| closest_on_segment(p, state.x.get(k), state.x.get(k + 1)))
     };
     // A step moves a contact by far less than a segment; after a search it may be two away.
     for _ in 0..4 {
@@ -306,31 +335,40 @@ fn walk<N, S>(state: &State, wire_of: &[u32], c: &mut Contact<N, S>) -> DVec3 {
     }
 }
 
+/// Vector from the particle to the nearest point of the other body, and the distance at which they touch [m].
+#[inline(always)]
+fn across<N, S>(state: &State, chains: &Chains, c: &mut Contact<N, S>) -> (DVec3, f64) {
+    let point = walk(state, chains, c);
+    let (i, j) = (c.i as usize, c.j as usize);
+    let next = if c.segment { j + 1 } else { j };
+    let radius = state.radius[j] * (1.0 - c.t) + state.radius[next] * c.t;
+    (point - state.x.get(i), state.radius[i] + radius)
+}
+
 /// Kinematics and response of one contact.
 #[inline(always)]
 fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
     laws: &Laws<N, T>,
     state: &State,
-    wire_of: &[u32],
+    chains: &Chains,
     c: &mut Contact<N::State, T::State>,
     partial: &mut Partial,
 ) {
-    let point = walk(state, wire_of, c);
+    let (d, touching) = across(state, chains, c);
     let (i, j) = (c.i as usize, c.j as usize);
-    let blend = |a: f64, b: f64| a * (1.0 - c.t) + b * c.t;
     let next = if c.segment { j + 1 } else { j };
-    let d = point - state.x.get(i);
-    let radius = blend(state.radius[j], state.radius[next]);
-    let reach = state.radius[i] + radius;
+    let reach = touching - c.history.offset;
     let distance2 = d.length_squared();
     if distance2 >= reach * reach {
-        part::<N, T>(laws, &mut c.history, partial);
+        part::<N, T>(laws, &mut c.history, touching - distance2.sqrt(), partial);
         return;
     }
     let distance = distance2.sqrt();
     let normal = d * (1.0 / distance);
     let overlap = reach - distance;
-    c.arm = [state.radius[i] - 0.5 * overlap, radius - 0.5 * overlap];
+    // The arms meet where the surfaces do, so that they add up to the distance.
+    let arm = state.radius[i] - 0.5 * (touching - distance);
+    c.arm = [arm, distance - arm];
     let mut velocity = state.v.get(j).lerp(state.v.get(next), c.t) - state.v.get(i);
     if T::ACTIVE {
         let spin = state.w.get(j).lerp(state.w.get(next), c.t);

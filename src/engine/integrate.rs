@@ -38,7 +38,7 @@ pub fn gather(state: &mut State, turn: bool, contacts: bool) {
                     }
                     (tx[k], ty[k], tz[k]) = torque.into();
                 }
-                if contacts && let Some(factor) = mean_thinning(whole, thinning, p) {
+                if let Some(factor) = mean_thinning(whole, thinning, p) {
                     radius[k] = radius0[p] * factor;
                 }
             }

@@ -64,23 +64,23 @@ struct Cells {
     shape: [usize; 3],
 }
 
+/// Per wire, the number of bonds below which its particles cannot touch: a bent chain cannot touch itself within a
+/// quarter turn of the tightest bend, a circle of the wire's diameter.
+pub fn apart(assembly: &Assembly) -> Vec<u32> {
+    let bonds = |diameter: f64, spacing: f64| {
+        if spacing > 0.0 { (1.6 * diameter / spacing).ceil().max(2.0) as u32 } else { 2 }
+    };
+    assembly.wires.iter().map(|w| bonds(w.diameter, assembly.rest_length[w.first])).collect()
+}
+
 impl Neighbours {
     /// For `assembly`; `skin` and `margin` in m.
     pub fn new(assembly: &Assembly, skin: f64, margin: f64) -> Self {
-        // A bent chain cannot touch itself within a quarter turn of the tightest bend, a circle of the wire's diameter.
-        let apart = assembly
-            .wires
-            .iter()
-            .map(|w| {
-                let spacing = assembly.rest_length[w.first];
-                if spacing > 0.0 { (1.6 * w.diameter / spacing).ceil().max(2.0) as u32 } else { 2 }
-            })
-            .collect();
         Self {
             skin,
             margin,
             largest: assembly.radius.iter().copied().fold(0.0, f64::max),
-            apart,
+            apart: apart(assembly),
             wire_of: assembly.wire_of.clone(),
             reference: Vectors::default(),
             stretch: Stretch::default(),
@@ -153,7 +153,11 @@ impl Neighbours {
             return false;
         }
         if state.hold[i] != 0 && state.hold[i] == state.hold[j] {
-            return false;
+            // Points between particles move where one of the two is free, so particles at the edge of a hold count.
+            let edge = self.margin > 0.0 && (on_edge(state, i) || on_edge(state, j));
+            if !edge {
+                return false;
+            }
         }
         let wire = self.wire_of[i];
         if wire != u32::MAX && wire == self.wire_of[j] {
@@ -162,6 +166,12 @@ impl Neighbours {
         }
         true
     }
+}
+
+/// Whether a particle is bonded to one that is not in the same hold.
+fn on_edge(state: &State, p: usize) -> bool {
+    let leaves = |slot: usize| state.whole[slot] && state.hold[slot] != state.hold[slot + 1];
+    leaves(p) || p > 0 && leaves(p - 1)
 }
 
 /// Number of broken slots before each particle; two particles of a wire are in one piece when theirs agree.

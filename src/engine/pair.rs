@@ -43,6 +43,9 @@ pub struct History<N, T> {
     pub normal: N,
     /// Tangential law's state.
     pub tangential: T,
+    /// Overlap that does not count [m]: two parts of a wire that a bond held until it broke may overlap, or two ends
+    /// lie under one particle. It shrinks as they part, and is 0 for everything else.
+    pub offset: f64,
     /// Whether the surfaces touched at the last step.
     pub touching: bool,
     /// Overlap [m], sum of radii [m] and elastic normal force [N] at the last step.
@@ -60,6 +63,7 @@ impl<N: Default, T: Default> History<N, T> {
             reduced_radius,
             normal: N::default(),
             tangential: T::default(),
+            offset: 0.0,
             touching: false,
             overlap: 0.0,
             reach: 0.0,
@@ -148,13 +152,17 @@ pub fn foreseen_stiffness<N: NormalLaw, T: TangentialLaw>(
     Some([stiffness.max(history.stiffness[0]), across.max(history.stiffness[1])])
 }
 
-/// The surfaces have parted: what friction had stored is lost.
+/// The surfaces are apart: what friction had stored is lost. `overlap` is the geometrical one, negative over a gap [m].
 #[inline(always)]
 pub fn part<N: NormalLaw, T: TangentialLaw>(
     laws: &Laws<N, T>,
     history: &mut History<N::State, T::State>,
+    overlap: f64,
     partial: &mut Partial,
 ) {
+    if history.offset > 0.0 {
+        history.offset = history.offset.min(overlap.max(0.0));
+    }
     if !history.touching {
         return;
     }

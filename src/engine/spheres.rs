@@ -94,7 +94,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
                         if c.history.touching {
                             let sign = if entry & 1 == 0 { 1.0 } else { -1.0 };
                             force += c.action.force * sign;
-                            torque += c.twist * (radius[p] - 0.5 * c.history.overlap);
+                            torque += c.twist * (radius[p] - 0.5 * sunk(&c.history));
                         }
                     }
                     (fx[k], fy[k], fz[k]) = force.into();
@@ -112,25 +112,18 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         let mut k = 0;
         for (i, j) in list.pairs.iter().copied() {
             while k < self.old.len() && (self.old[k].i, self.old[k].j) < (i, j) {
-                part::<N, T>(&self.laws, &mut self.old[k].history, &mut lost);
+                part::<N, T>(&self.laws, &mut self.old[k].history, 0.0, &mut lost);
                 k += 1;
             }
             if k < self.old.len() && (self.old[k].i, self.old[k].j) == (i, j) {
                 self.contacts.push(self.old[k]);
                 k += 1;
             } else {
-                let r = reduced_radius(state.radius0[i as usize], state.radius0[j as usize]);
-                self.contacts.push(Contact {
-                    i,
-                    j,
-                    history: History::new(r),
-                    action: PairForce::default(),
-                    twist: DVec3::ZERO,
-                });
+                self.contacts.push(fresh(i, j, state));
             }
         }
         for c in &mut self.old[k..] {
-            part::<N, T>(&self.laws, &mut c.history, &mut lost);
+            part::<N, T>(&self.laws, &mut c.history, 0.0, &mut lost);
         }
         self.partial.clear();
         self.partial.resize(self.contacts.len().div_ceil(CHUNK), Partial::default());
@@ -179,13 +172,29 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             let d = state.x.get(j) - state.x.get(i);
             let distance = d.length();
             let approach = (state.v.get(i) - state.v.get(j)).dot(d) / distance;
-            let overlap = state.radius[i] + state.radius[j] - distance;
+            let overlap = state.radius[i] + state.radius[j] - c.history.offset - distance;
             let Some(k) = foreseen_stiffness(&self.laws, &c.history, overlap, approach, horizon) else { continue };
             let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);
             let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
             out.contact([c.i, c.j, 0], [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], viscosity);
         }
     }
+}
+
+/// A pair that is new in the list. During a run it was beyond reach until now, or a bond has just broken.
+fn fresh<N: Default, S: Default>(i: u32, j: u32, state: &State) -> Contact<N, S> {
+    let (a, b) = (i as usize, j as usize);
+    let mut history = History::new(reduced_radius(state.radius0[a], state.radius0[b]));
+    if state.step > 0 {
+        let distance = (state.x.get(b) - state.x.get(a)).length();
+        history.offset = (state.radius[a] + state.radius[b] - distance).max(0.0);
+    }
+    Contact { i, j, history, action: PairForce::default(), twist: DVec3::ZERO }
+}
+
+/// Geometrical overlap [m]; the lever arms of friction end in its middle, so that they add up to the distance.
+fn sunk<N, S>(history: &History<N, S>) -> f64 {
+    history.overlap + history.offset
 }
 
 /// Kinematics and response of one candidate pair.
@@ -198,10 +207,11 @@ fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
 ) {
     let (i, j) = (c.i as usize, c.j as usize);
     let d = state.x.get(j) - state.x.get(i);
-    let reach = state.radius[i] + state.radius[j];
+    let touching = state.radius[i] + state.radius[j];
+    let reach = touching - c.history.offset;
     let distance2 = d.length_squared();
     if distance2 >= reach * reach {
-        part::<N, T>(laws, &mut c.history, partial);
+        part::<N, T>(laws, &mut c.history, touching - distance2.sqrt(), partial);
         return;
     }
     let distance = distance2.sqrt();
@@ -209,8 +219,8 @@ fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
     let overlap = reach - distance;
     let mut velocity = state.v.get(j) - state.v.get(i);
     if T::ACTIVE {
-        let arms =
-            state.w.get(i) * (state.radius[i] - 0.5 * overlap) + state.w.get(j) * (state.radius[j] - 0.5 * overlap);
+        let half = 0.5 * (overlap + c.history.offset);
+        let arms = state.w.get(i) * (state.radius[i] - half) + state.w.get(j) * (state.radius[j] - half);
         velocity -= arms.cross(normal);
     }
     let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);

@@ -96,7 +96,8 @@ pub struct Sample {
 /// The energy ledger [J]; every term is cumulative except `kinetic` and the two elastic ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Energy {
-    /// Work done by grips, holds and applied loads, plus the kinetic energy that the run started with.
+    /// Work done by grips, holds and applied loads, plus the energy that the run started with: of motion, and of
+    /// bodies that overlap from the start.
     pub work: f64,
     /// Kinetic, translation and rotation.
     pub kinetic: f64,

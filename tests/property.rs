@@ -1,0 +1,14 @@
+//! Properties that hold whatever the numbers: conservation, invariance, one result however it is computed.
+
+#[path = "property/bits.rs"]
+mod bits;
+#[path = "property/capsules.rs"]
+mod capsules;
+#[path = "property/conservation.rs"]
+mod conservation;
+#[path = "common/drive.rs"]
+mod drive;
+#[path = "property/ledger.rs"]
+mod ledger;
+#[path = "property/time.rs"]
+mod time;

@@ -1,0 +1,181 @@
+//! One result, however it is computed: threads, plan, skin of the neighbour list, order of the wires.
+
+use crate::drive::*;
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    // Long enough for several chunks of particles and of contacts.
+    let set = ["strand.length=60 mm", "grip.speed=50 m/s", "bond.rupture.strain=2 %"];
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut engine = engine(STRAND, &set);
+            run_steps(&mut engine, 800);
+            Outcome::of(&mut engine)
+        })
+    };
+    let one = run(1);
+    assert!(one.position.len() > 1024, "{} particles are too few chunks", one.position.len());
+    assert!(one.ruptures.len() > 3, "{} ruptures", one.ruptures.len());
+    for threads in [2, 3] {
+        run(threads).assert_same(&one, &format!("{threads} threads"));
+    }
+}
+
+const WIRE: &str = r#"
+about = "One wire pulled to fracture."
+[bond]
+law = "elasto-plastic"
+damping = 0.02
+hardening = { form = "voce", yield_stress = "100 MPa", saturation = "180 MPa", rate = 12, linear = "550 MPa" }
+rupture = { criterion = "plastic-strain", strain = "3 %", weibull_modulus = 20 }
+[contact]
+normal = "thornton"
+friction = 0.2
+hardness_strain = "8 %"
+damping = 0.1
+[[wire]]
+diameter = "0.39 mm"
+from = ["0 mm", "0 mm", "0 mm"]
+to = ["0 mm", "0 mm", "20 mm"]
+[grip]
+length = "2 mm"
+speed = "10 m/s"
+[stop]
+strain = "20 %"
+"#;
+
+/// Runs a scene under both plans and asserts that they agree. The step is fixed: modes that a special plan leaves out
+/// do not limit its step, so the two would choose different ones.
+fn special_is_general(set: &[&str], steps: u64) -> (Outcome, String) {
+    let set = [set, &["time.step=6e-8 s"]].concat();
+    let mut special = engine(WIRE, &set);
+    let mut general = engine(WIRE, &[&set[..], &["plan=general"]].concat());
+    assert!(general.plan().rotations && !special.plan().rotations);
+    assert!(special.time_step_bound() >= general.time_step_bound() && general.time_step_bound() > 6e-8);
+    let plan = special.plan().to_string();
+    for _ in 0..steps / 100 {
+        run_steps(&mut special, 100);
+        run_steps(&mut general, 100);
+        let a = Outcome { ruptures: Vec::new(), ..Outcome::of(&mut special) };
+        let b = Outcome { ruptures: Vec::new(), ..Outcome::of(&mut general) };
+        a.assert_same(&b, &format!("step {}", special.steps()));
+    }
+    (Outcome::of(&mut special), plan)
+}
+
+#[test]
+fn a_wire_pulled_to_fracture_needs_no_rotations_and_no_contacts() {
+    let (end, _) = special_is_general(&[], 3000);
+    assert!(end.whole.iter().filter(|w| !**w).count() > 1, "a bond must break, besides the slot that has none");
+    assert!(end.energy.plastic_bonds > 0.0);
+}
+
+#[test]
+fn an_elastic_bar_needs_no_rotations() {
+    let (end, plan) = special_is_general(&["bond.law=elastic", "bond.hardening=", "bond.rupture=", "contact="], 1000);
+    assert!(plan.contains("nothing turns"), "{plan}");
+    assert!(end.energy.elastic_bonds > 0.0);
+}
+
+/// The search finds every pair before it touches, whatever the skin: forces are the same to the bit. Hertz, because a
+/// pair that leaves the list forgets its dent, and how far it must part for that is the skin's business.
+#[test]
+fn a_skin_changes_nothing_but_the_number_of_searches() {
+    for shape in ["sphere", "capsule"] {
+        let run = |skin: &str| {
+            let (skin, shape) = (format!("contact.skin={skin}"), format!("contact.shape={shape}"));
+            let mut engine = engine(STRAND, &[&skin, &shape, "contact.normal=hertz", "contact.hardness_strain="]);
+            run_steps(&mut engine, 2500);
+            let searches = engine.contact_counts().0;
+            (Outcome::of(&mut engine), searches)
+        };
+        let (thin, often) = run("0.002");
+        let (thick, seldom) = run("0.4");
+        println!("{shape}: {often} and {seldom} searches, {} ruptures", thin.ruptures.len());
+        assert!(often > 10 * seldom, "{often} searches are not many more than {seldom}");
+        assert!(!thin.ruptures.is_empty() && thin.energy.friction > 0.0);
+        thin.assert_same_motion(&thick, shape);
+        // Energies are summed over chunks of the list, whose borders differ.
+        assert!((thin.energy.friction / thick.energy.friction - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_order_of_wires_changes_results_by_rounding_only() {
+    // Turning the phase by one wire renumbers the outer layer; the strand is the same.
+    let run = |phase: f64| {
+        let phase = format!("strand.layer.1.phase={phase} deg");
+        let mut engine = engine(STRAND, &[&phase, "bond.rupture.weibull_modulus=", "bond.rupture.strain=50 %"]);
+        run_steps(&mut engine, 600);
+        let len = engine.assembly().wires[1].len;
+        let outcome = Outcome::of(&mut engine);
+        (outcome, len)
+    };
+    let (first, len) = run(0.0);
+    let (second, _) = run(60.0);
+    let core = first.position.len() - 6 * len;
+    // Wire k of the second is wire k + 1 of the first.
+    let mut renumbered = first.position[..core].to_vec();
+    for k in 0..6 {
+        let from = core + (k + 1) % 6 * len;
+        renumbered.extend_from_slice(&first.position[from..from + len]);
+    }
+    let apart = distance(&renumbered, &second.position);
+    println!("renumbered: {apart:e}");
+    // A strand in contact is chaotic in the end; over this run, rounding of 1e-19 m grows by less than 1e5.
+    assert!(apart < 1e-14, "{apart:e} m");
+    assert!(apart > 0.0, "the order of summation must differ, or this test compares one run with itself");
+}
+
+#[test]
+fn a_bond_that_breaks_at_the_start_is_no_bond() {
+    const FREE_WIRE: &str = r#"
+about = "One wire that is thrown apart."
+[bond]
+law = "elastic"
+damping = 0.02
+rupture = { criterion = "fibre-strain", strain = "10 %" }
+[contact]
+normal = "hertz"
+[[wire]]
+diameter = "0.39 mm"
+from = ["0 mm", "0 mm", "0 mm"]
+to = ["0 mm", "0 mm", "6 mm"]
+spin = ["300 rad/s", "0 rad/s", "0 rad/s"]
+[stop]
+time = "1 ms"
+"#;
+    let set = ["plan=general"];
+    let slot = 7;
+    // The two halves bounce: the upper one flies down.
+    let throw = |a: &mut strandsnap::strand::assembly::Assembly| {
+        for p in slot + 1..a.len() {
+            a.velocity.add(p, glam::DVec3::new(0.3, 0.1, -2.0));
+        }
+    };
+    let mut broken = edited(FREE_WIRE, &set, |a| {
+        throw(a);
+        // This bond is too long from the start.
+        a.rest_length[slot] *= 0.8;
+    });
+    let mut never = edited(FREE_WIRE, &set, |a| {
+        throw(a);
+        a.rest_length[slot] = 0.0;
+        let whole = a.wires[0];
+        a.wires[0].len = slot + 1;
+        a.wires.push(strandsnap::strand::assembly::Wire { first: slot + 1, len: whole.len - slot - 1, ..whole });
+        (slot + 1..a.len()).for_each(|p| a.wire_of[p] = 1);
+    });
+    assert!(!broken.state().whole[slot]);
+    assert_eq!(broken.take_ruptures().len(), 1);
+    let mut touched = false;
+    for _ in 0..20 {
+        run_steps(&mut broken, 100);
+        run_steps(&mut never, 100);
+        touched |= broken.contact_counts().2 > 0;
+        let (a, b) = (Outcome::of(&mut broken), Outcome::of(&mut never));
+        a.assert_same_motion(&b, "broken at the start");
+    }
+    assert!(touched, "the halves must meet");
+}
