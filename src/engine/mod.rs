@@ -166,8 +166,8 @@ impl Engine {
         self.state.dt = self.next_dt;
         self.holds.apply(&mut self.state, kicked);
         let stretch = self.holds.stretch;
-        let list = self.contacts.as_ref().map(|c| (&c.neighbours, c.neighbours.moved(&stretch)));
-        let drifted = integrate::drift(&mut self.state, list);
+        let reference = self.contacts.as_ref().and_then(|c| c.neighbours.reference(&stretch));
+        let drifted = integrate::drift(&mut self.state, reference.as_ref());
         self.state.step += 1;
         self.state.time += self.state.dt;
         self.measures.grip(&self.holds.reaction, self.state.dt);

@@ -48,6 +48,10 @@ pub struct State {
     pub mass: Vec<f64>,
     /// Rotational inertias [kg m²].
     pub inertia: Vec<f64>,
+    /// Their inverses [1/kg], [1/(kg m²)]: multiplying is cheaper than dividing.
+    pub inverse_mass: Vec<f64>,
+    /// See `inverse_mass`.
+    pub inverse_inertia: Vec<f64>,
     /// Hold that each particle belongs to, from 1; 0 when free. Two particles of one hold never need a contact.
     pub hold: Vec<u16>,
     /// Prescribed components of each particle, bits 0–2 for translation, 3–5 for rotation.
@@ -79,6 +83,8 @@ impl State {
             radius0: a.radius.clone(),
             mass: a.mass.clone(),
             inertia: a.inertia.clone(),
+            inverse_mass: a.mass.iter().map(|m| 1.0 / m).collect(),
+            inverse_inertia: a.inertia.iter().map(|j| 1.0 / j).collect(),
             hold: vec![0; n],
             fixed: vec![0; n],
             step: 0,
