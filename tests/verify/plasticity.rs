@@ -1,0 +1,95 @@
+//! One wire pulled past yield, one bond bent and twisted past yield.
+
+use crate::support::{alone, case, near, set};
+use strandsnap::engine::hardening;
+use strandsnap::reference::plasticity::{Section, tension_at};
+use strandsnap::scene::spec::BondLawSpec;
+
+/// Engineering curve at the grips, true curve in the bonds, Young's modulus from the first slope.
+#[test]
+fn one_wire_pulled_follows_the_hardening_law() {
+    alone(|| {
+        let mut case = case("pull", &[]);
+        let BondLawSpec::ElastoPlastic(law) = &case.spec.bond.law else { panic!("the scene is plastic") };
+        let (law, young) = (hardening(law), case.spec.material.young);
+        let exact = |strain: f64| tension_at(strain, |p| law.stress(p), young);
+        let (mut elastic, mut marks) = (Vec::new(), vec![0.01, 0.03, 0.1, 0.15, 0.199]);
+        marks.reverse();
+        case.run(|engine| {
+            let strain = engine.strain();
+            if (2e-4..7e-4).contains(&strain) {
+                elastic.push([strain, engine.stress()]);
+            }
+            if marks.last().is_some_and(|mark| strain >= *mark) {
+                marks.pop();
+                let point = exact(strain);
+                near(&format!("engineering stress at {strain:.3}"), engine.stress(), point.engineering_stress, 5e-3);
+                let shot = engine.snapshot();
+                let middle = engine.assembly().wires[0].len / 2;
+                near("plastic strain", f64::from(shot.plastic_strain[middle]), point.plastic_strain, 1e-2);
+                let p = f64::from(shot.plastic_strain[middle]);
+                near("true stress", f64::from(shot.bond_stress[middle]) * 1e6, law.stress(p), 1e-3);
+            }
+        });
+        assert!(marks.is_empty(), "not all strains were reached: {marks:?}");
+        let (first, last) = (elastic[0], elastic[elastic.len() - 1]);
+        let slope = (last[1] - first[1]) / (last[0] - first[0]);
+        near("Young's modulus", slope, young, 5e-3);
+        case.check_ledger();
+    });
+}
+
+/// Moment or torque of the only bond over the angle: elastic, then the plastic limit, then hardening: with
+/// σ_y = σ₀ + H p and dp = dW_p/(σ_y A l) the limit grows linearly with the plastic angle.
+fn limit(name: &str, hardens: bool, elastic_slope: f64, plastic: impl Fn(&Section) -> f64) {
+    let yield_stress = 100e6;
+    let linear = if hardens { 2e9 } else { 0.0 };
+    let options = [set("bond.hardening.linear", format!("{linear:e} Pa"))];
+    let mut case = case(name, &options);
+    let bar = case.bar();
+    let section = Section { radius: 0.5 * bar.diameter, yield_stress };
+    let limit = plastic(&section);
+    let rate = 100.0;
+    let mut checked = [false; 2];
+    case.run(|engine| {
+        let angle = rate * engine.time();
+        let moment = engine.state().bond[0].moment.length();
+        if !checked[0] && angle > 0.5 * limit / elastic_slope {
+            checked[0] = true;
+            near(&format!("{name}, elastic"), moment, elastic_slope * angle, 1e-6);
+        }
+        if !checked[1] && angle > 0.09 {
+            checked[1] = true;
+            // p grows with the plastic angle by m = (∂/∂σ_y of the limit)/(A l).
+            let per_angle = limit / yield_stress / (bar.area() * bar.length);
+            let growth = linear * per_angle / yield_stress;
+            // moment = limit (1 + growth θ_p) with θ_p = angle − moment/elastic_slope.
+            let exact = limit * (1.0 + growth * angle) / (1.0 + limit * growth / elastic_slope);
+            near(&format!("{name}, plastic, H = {linear:e}"), moment, exact, 1e-4);
+        }
+    });
+    assert_eq!(checked, [true; 2]);
+    case.check_ledger();
+}
+
+#[test]
+fn one_bond_bent_past_yield() {
+    alone(|| {
+        let bar = case("bond-bent", &[]).bar();
+        let slope = bar.young * bar.second_moment() / bar.length;
+        for hardens in [false, true] {
+            limit("bond-bent", hardens, slope, Section::plastic_moment);
+        }
+    });
+}
+
+#[test]
+fn one_bond_twisted_past_yield() {
+    alone(|| {
+        let bar = case("bond-twisted", &[]).bar();
+        let slope = bar.shear_modulus() * bar.polar_moment() / bar.length;
+        for hardens in [false, true] {
+            limit("bond-twisted", hardens, slope, Section::plastic_torque);
+        }
+    });
+}
