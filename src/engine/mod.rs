@@ -119,6 +119,8 @@ impl Engine {
             engine.add_contacts();
         }
         engine.forces();
+        // Bodies may start pressed together: what that stores and dissipates was there before the first step.
+        engine.holds.work += engine.energy().internal();
         engine.choose_step()?;
         Ok(engine)
     }

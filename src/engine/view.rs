@@ -96,7 +96,7 @@ pub struct Sample {
 /// The energy ledger [J]; every term is cumulative except `kinetic` and the two elastic ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Energy {
-    /// Work done by grips, holds and applied loads, plus the kinetic energy that the run started with.
+    /// Work done by grips, holds and applied loads, plus the energy, kinetic and stored, that the run started with.
     pub work: f64,
     /// Kinetic, translation and rotation.
     pub kinetic: f64,

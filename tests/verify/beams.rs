@@ -34,8 +34,11 @@ fn cantilever_under_a_tip_force_is_exact_at_any_spacing() {
 #[test]
 fn shear_of_a_stocky_cantilever() {
     alone(|| {
-        let options =
-            [set("wire.0.to", r#"["0 mm", "0 mm", "1.6 mm"]"#), set("hold.1.ramp", "100 us"), set("stop.time", "400 us")];
+        let options = [
+            set("wire.0.to", r#"["0 mm", "0 mm", "1.6 mm"]"#),
+            set("hold.1.ramp", "100 us"),
+            set("stop.time", "400 us"),
+        ];
         let (case, deflection) = settled_tip("tip-load", &options);
         let bar = case.bar();
         let exact = bar.cantilever_tip(6e-3);

@@ -134,8 +134,7 @@ fn a_sliding_sphere_ends_up_rolling() {
             let reduced = radius * floor / (radius + floor);
             let depth = (0.75 * force / (modulus * f64::sqrt(reduced))).powf(2.0 / 3.0);
             let height = format!(r#"["0 m", "0 m", "{:.17e} m"]"#, radius - depth);
-            let mut case =
-                case("rolling", &[set("sphere.1.position", height), set("contact.tangential", law)]);
+            let mut case = case("rolling", &[set("sphere.1.position", height), set("contact.tangential", law)]);
             let mass = case.engine.assembly().mass[1];
             let start = sliding::rolling_start(speed, friction, force / mass);
             let (mut rolls, mut sum, mut count) = (None, 0.0, 0);
