@@ -13,7 +13,7 @@ fn measured(name: &str, options: &[String], steps: usize) -> (f64, f64) {
     };
     let (mut low, mut high) = (0.5 * bound, 2.0 * bound);
     assert!(!explodes(low) && explodes(high), "{name}: no edge between {low:e} and {high:e} s");
-    while high / low > 1.0005 {
+    while high / low > 1.00005 {
         let middle = 0.5 * (low + high);
         if explodes(middle) { high = middle } else { low = middle }
     }
@@ -37,7 +37,7 @@ fn axial_chain_between_walls() {
         let spacing = a.rest_length[0];
         let exact = critical_step(Ends::FixedFixed, moving, bar.young * bar.area() / spacing, a.mass[1]);
         let (edge, bound) = measured("chain", &[], 4000);
-        near("critical step", edge, exact, 2e-3);
+        near("critical step", edge, exact, 5e-4);
         check_bound("axial chain", bound, exact);
     });
 }
@@ -60,7 +60,9 @@ fn cantilever_in_all_modes() {
 fn free_wire_in_all_modes() {
     alone(|| {
         for spacing in [1.0, 2.0] {
-            let (edge, bound) = measured("free-wire", &[set("spacing", spacing)], 4000);
+            // A gentle throw: turning fast, the wire would be pulled stiffer than the bound knows at the start.
+            let options = [set("spacing", spacing), set("wire.0.spin", r#"["2 rad/s", "1 rad/s", "-1 rad/s"]"#)];
+            let (edge, bound) = measured("free-wire", &options, 4000);
             check_bound(&format!("free wire, spacing {spacing}"), bound, edge);
         }
     });

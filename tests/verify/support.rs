@@ -1,6 +1,5 @@
 //! What all cases share: scenes, engines, averages, orders of convergence, the ledger.
 
-use glam::DVec3;
 use std::path::{Path, PathBuf};
 use strandsnap::base::error::Error;
 use strandsnap::engine::Engine;
@@ -120,11 +119,6 @@ pub fn alone<T: Send>(work: impl FnOnce() -> T + Send) -> T {
 /// An option `key=value`.
 pub fn set(key: &str, value: impl std::fmt::Display) -> String {
     format!("{key}={value}")
-}
-
-/// A vector option in one unit.
-pub fn vector(v: DVec3, unit: &str) -> String {
-    format!("[\"{:e} {unit}\", \"{:e} {unit}\", \"{:e} {unit}\"]", v.x, v.y, v.z)
 }
 
 /// Asserts `value` within `tolerance` of `expected`, relative.

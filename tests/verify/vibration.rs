@@ -31,13 +31,14 @@ fn bending_frequency(case: &mut Case, time: f64) -> f64 {
 }
 
 /// The first mode of a chain is a sine, so its projection swings with one frequency: that of the lumped chain in
-/// leapfrog, 2/Δt asin(ω Δt/2) with ω = 2√(k/m) sin(π/4n), and with order 2 that of the bar.
+/// leapfrog, 2/Δt asin(ω Δt/2) with ω = 2√(k/m) sin(π/4n), and with order 2 that of the bar. The throw excites all modes
+/// evenly; a fine step keeps leapfrog's ripple in the energy of the highest, (ω Δt)²/4, out of the ledger.
 #[test]
 fn axial_wave_speed() {
     alone(|| {
         let mut errors = Vec::new();
         for spacing in [8.0, 4.0, 2.0, 1.0] {
-            let mut case = case("axial-wave", &[set("spacing", spacing)]);
+            let mut case = case("axial-wave", &[set("spacing", spacing), set("time.safety", 0.2)]);
             let bar = case.bar();
             let n = case.engine.assembly().wires[0].len - 1;
             let mut crossings = Crossings::default();
