@@ -269,8 +269,8 @@ impl Engine {
             return Ok(());
         }
         let wanted = self.spec.time.safety * self.bound.step;
-        if !wanted.is_finite() {
-            return self.step_without_stiffness();
+        if !wanted.is_finite() || self.bonds.is_none() {
+            return self.step_without_bonds(wanted);
         }
         if self.next_dt == 0.0 || (wanted / self.next_dt - 1.0).abs() > 0.01 {
             self.next_dt = wanted;
@@ -278,17 +278,17 @@ impl Engine {
         Ok(())
     }
 
-    /// Free flight: nothing limits the step but how finely the scene wants to be seen.
-    fn step_without_stiffness(&mut self) -> Result<()> {
+    /// Free bodies. In flight nothing limits the step, and a contact is soft when it begins: by the time that its
+    /// stiffness shows, a step from the bound could have passed through it. So the step is also as fine as the scene
+    /// wants to be seen.
+    fn step_without_bonds(&mut self, wanted: f64) -> Result<()> {
         let Some(time) = self.spec.stop.time else {
             return Err(Error::input(
-                "nothing in this scene is stiff, so there is no bound on the time step",
+                "this scene has no bonds, so there is no bound on the time step before bodies touch",
                 "state time.step, e.g. step = \"1e-7 s\", or stop.time",
             ));
         };
-        if self.next_dt == 0.0 {
-            self.next_dt = time / 10_000.0;
-        }
+        self.next_dt = wanted.min(time / 10_000.0);
         Ok(())
     }
 
