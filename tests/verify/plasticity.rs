@@ -1,6 +1,6 @@
 //! One wire pulled past yield, one bond bent and twisted past yield.
 
-use crate::support::{alone, case, near, set};
+use crate::support::{alone, builtin, case, near, set};
 use strandsnap::engine::hardening;
 use strandsnap::reference::plasticity::{Section, tension_at};
 use strandsnap::scene::spec::BondLawSpec;
@@ -101,5 +101,30 @@ fn one_bond_twisted_past_yield() {
         for hardens in [false, true] {
             limit("bond-twisted", hardens, slope, Section::plastic_torque);
         }
+    });
+}
+
+/// The built-in scene `torsion`: every bond turns alike, and the grip feels T = (2π/3)(σ_y(p)/√3) r³ with
+/// p = T φ_p/(σ_y A l), φ_p the angle less its elastic part T l/(G J).
+#[test]
+fn torque_at_the_grip_of_a_wire_twisted_past_yield() {
+    alone(|| {
+        let mut case = builtin("torsion");
+        let BondLawSpec::ElastoPlastic(law) = &case.spec.bond.law else { panic!("the scene is plastic") };
+        let (law, bar) = (hardening(law), case.bar());
+        let per_stress = Section { radius: 0.5 * bar.diameter, yield_stress: 1.0 }.plastic_torque();
+        let rate = case.spec.grip.as_ref().unwrap().rotation_rate;
+        case.run(|_| {});
+        let sample = case.engine.sample();
+        let torque_at = |p: f64| per_stress * law.stress(p);
+        let angle_at = |p: f64| p * bar.area() * bar.length / per_stress + bar.twist(torque_at(p));
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..100 {
+            let p = 0.5 * (low + high);
+            if angle_at(p) < rate * sample.time { low = p } else { high = p }
+        }
+        assert!(low > 1e-3, "it has not yielded: p = {low}");
+        near("torque", sample.torque, torque_at(low), 5e-3);
+        case.check_ledger();
     });
 }

@@ -35,7 +35,16 @@ pub struct Case {
 
 /// The scene of this name with `key=value` options, set up.
 pub fn case(name: &str, options: &[String]) -> Case {
-    let spec = spec(name, options);
+    set_up(spec(name, options))
+}
+
+/// A scene that comes with the program, set up.
+pub fn builtin(name: &str) -> Case {
+    set_up(scene::load(name, &[]).unwrap_or_else(|error| panic!("{error:?}")).spec)
+}
+
+fn set_up(spec: Spec) -> Case {
+    let name = spec.name.clone();
     let assembly = strand::build(&spec).unwrap_or_else(|error| panic!("{name}: {error:?}"));
     let engine = Engine::new(&spec, assembly).unwrap_or_else(|error| panic!("{name}: {error:?}"));
     Case { spec, engine }
