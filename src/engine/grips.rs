@@ -5,6 +5,7 @@ use super::state::State;
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
 use crate::strand::assembly::Assembly;
 use glam::{DMat2, DVec2, DVec3};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Time over which a jaw's clamp pressure rises [s]; short against a pull, long against a wire's ringing.
@@ -83,7 +84,7 @@ impl Holds {
         }
         holds.mark(state);
         holds.start_velocities(state);
-        holds.work = state.kinetic();
+        holds.work = holds.kinetic(state);
         holds
     }
 
@@ -259,8 +260,7 @@ impl Holds {
 
     /// Components held one by one, and loads.
     fn components(&mut self, group: &Group, hold: &HoldSpec, state: &mut State, kicked: f64) {
-        let share = if hold.ramp > 0.0 { smooth(state.time / hold.ramp) } else { 1.0 } / group.particles.len() as f64;
-        let (force, moment) = (hold.force * share, hold.moment * share);
+        let [force, moment] = Self::load(hold, group.particles.len(), state.time);
         for p in &group.particles {
             let p = *p as usize;
             let (kick, spin_kick) = (kicked / state.mass[p], kicked / state.inertia[p]);
@@ -276,20 +276,35 @@ impl Holds {
         }
     }
 
+    /// Force [N] and moment [N m] that a hold applies to each of its particles at `time` [s].
+    fn load(hold: &HoldSpec, particles: usize, time: f64) -> [DVec3; 2] {
+        let share = if hold.ramp > 0.0 { smooth(time / hold.ramp) } else { 1.0 } / particles as f64;
+        [hold.force * share, hold.moment * share]
+    }
+
+    /// Kinetic energy at the instant of the positions [J], applied loads counted.
+    pub fn kinetic(&self, state: &State) -> f64 {
+        let mut loads: BTreeMap<usize, [DVec3; 2]> = BTreeMap::new();
+        for group in &self.groups {
+            let Kind::Components(hold) = &group.kind else { continue };
+            let [force, moment] = Self::load(hold, group.particles.len(), state.time);
+            for p in &group.particles {
+                let sum = loads.entry(*p as usize).or_default();
+                sum[0] += force;
+                sum[1] += moment;
+            }
+        }
+        state.kinetic(|p| loads.get(&p).copied().unwrap_or_default())
+    }
+
     /// Work up to the instant of the positions [J]: `work` lags by half a step.
     pub fn work_now(&self, state: &State) -> f64 {
         let half = 0.5 * state.dt;
         let mut sum = self.work;
         for group in &self.groups {
-            let (force, moment) = match &group.kind {
-                Kind::Components(h) => {
-                    let share = if h.ramp > 0.0 { smooth(state.time / h.ramp) } else { 1.0 };
-                    (
-                        h.force * (share / group.particles.len() as f64),
-                        h.moment * (share / group.particles.len() as f64),
-                    )
-                }
-                _ => (DVec3::ZERO, DVec3::ZERO),
+            let [force, moment] = match &group.kind {
+                Kind::Components(hold) => Self::load(hold, group.particles.len(), state.time),
+                _ => [DVec3::ZERO; 2],
             };
             for p in &group.particles {
                 let p = *p as usize;

@@ -103,12 +103,14 @@ impl State {
         self.mass.is_empty()
     }
 
-    /// Kinetic energy at the instant of the positions [J]: free components are carried half a step on by the forces.
-    pub fn kinetic(&self) -> f64 {
+    /// Kinetic energy at the instant of the positions [J]: free components are carried half a step on by the forces and
+    /// by the applied `load` on each particle, force [N] and moment [N m].
+    pub fn kinetic(&self, load: impl Fn(usize) -> [DVec3; 2]) -> f64 {
         (0..self.len())
             .map(|i| {
-                let v = self.carried(self.v.get(i), self.force.get(i), self.mass[i], self.fixed[i]);
-                let w = self.carried(self.w.get(i), self.torque.get(i), self.inertia[i], self.fixed[i] >> 3);
+                let [push, turn] = load(i);
+                let v = self.carried(self.v.get(i), self.force.get(i) + push, self.mass[i], self.fixed[i]);
+                let w = self.carried(self.w.get(i), self.torque.get(i) + turn, self.inertia[i], self.fixed[i] >> 3);
                 0.5 * (self.mass[i] * v.length_squared() + self.inertia[i] * w.length_squared())
             })
             .sum()
