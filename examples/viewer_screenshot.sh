@@ -66,7 +66,8 @@ before = None
 while time.monotonic() < deadline:
     client.save_screenshot(last)
     now = pathlib.Path(last).read_bytes()
-    if now == before:
+    # The viewer may still be writing it.
+    if now and now == before:
         pathlib.Path(picture).write_bytes(now)
         sys.exit(0)
     before = now

@@ -11,3 +11,4 @@ pub mod render;
 pub mod run;
 pub mod scene;
 pub mod strand;
+pub mod study;

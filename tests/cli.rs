@@ -272,14 +272,96 @@ fn ctrl_c_keeps_the_results() {
     let growing = folder.path().join("out/curve.csv.partial");
     let begin = Instant::now();
     let has_rows = || fs::read_to_string(&growing).is_ok_and(|text| text.lines().count() > 2);
-    while !has_rows() && begin.elapsed() < Duration::from_secs(120) {
+    while !has_rows() && child.try_wait().unwrap().is_none() && begin.elapsed() < Duration::from_secs(120) {
         std::thread::sleep(Duration::from_millis(50));
     }
+    assert!(has_rows(), "the run must get as far as a few rows");
     kill_process(Pid::from_child(&child), Signal::INT).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let out = folder.path().join("out");
     assert!(rows(&out.join("curve.csv")).len() >= 2);
     assert_eq!(summary(&out)["stopped_because"], "interrupted");
+}
+
+#[test]
+fn a_run_away_stops_with_its_results_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    // Forty times the stable step.
+    let unstable = ["run", "single-wire", "--set", "time.step=4 us", "--no-frames", "--no-recording"];
+    let output = strandsnap(folder.path(), &unstable);
+    assert_code(&output, 4);
+    let message = plain(&stderr(&output));
+    assert!(message.contains("stopped at step"), "{message}");
+    assert!(message.contains("out/single-wire"), "it says where the results are: {message}");
+    let out = folder.path().join("out/single-wire");
+    assert!(!rows(&out.join("curve.csv")).is_empty());
+    let summary = summary(&out);
+    assert_eq!(summary["stopped_because"], "trouble");
+    assert!(summary["warnings"][0].as_str().unwrap().contains("stopped at step"), "{}", summary["warnings"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_who_has_gone_is_no_trouble() {
+    let program = env!("CARGO_BIN_EXE_strandsnap");
+    let script = format!("'{program}' scene show ka4 | true; exit ${{PIPESTATUS[0]}}");
+    let output = Command::new("bash").args(["-c", &script]).output().expect("bash starts");
+    assert_code(&output, 0);
+    assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
+}
+
+/// Whether frames can be drawn here; else says which test did not run.
+fn has_adapter(test: &str) -> bool {
+    #[cfg(feature = "render")]
+    let there = strandsnap::render::check().is_ok();
+    #[cfg(not(feature = "render"))]
+    let there = false;
+    if !there {
+        println!("SKIPPED (no frames: no graphics adapter, or built without them): {test}");
+    }
+    there
+}
+
+fn pictures(folder: &Path) -> usize {
+    let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    entries.filter(|e| e.as_ref().unwrap().path().extension().is_some_and(|x| x == "png")).count()
+}
+
+#[test]
+fn frames_are_drawn_and_drawn_again() {
+    if !has_adapter("frames_are_drawn_and_drawn_again") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let small = ["--set", "output.frame_size=[320, 240]", "--no-recording"];
+    assert_code(&short_run(folder.path(), &small), 0);
+    let out = folder.path().join("out/single-wire");
+    // Four planned snapshots and the first state.
+    assert_eq!(pictures(&out.join("frames")), 5);
+    let again = ["render", "out/single-wire", "--size", "200x150", "--every", "2", "--colour", "plastic-strain"];
+    let output = strandsnap(folder.path(), &again);
+    assert_code(&output, 0);
+    assert_eq!(pictures(&out.join("render")), 3);
+    assert_code(&strandsnap(folder.path(), &again), 2);
+    assert_code(&strandsnap(folder.path(), &[&again[..], &["--overwrite"]].concat()), 0);
+    let nothing = ["render", "out/single-wire", "--size", "200x150", "--strain-range", "90..95", "--out", "none"];
+    assert_code(&strandsnap(folder.path(), &nothing), 2);
+    let view = ["render", "out/single-wire", "--views", "sideways", "--out", "none"];
+    assert_code(&strandsnap(folder.path(), &view), 2);
+}
+
+#[test]
+fn the_recording_passes_the_check_of_reruns_own_tool() {
+    let test = "the_recording_passes_the_check_of_reruns_own_tool";
+    let Some(tool) = std::env::var_os("RERUN_CLI").filter(|_| cfg!(feature = "record")) else {
+        println!("SKIPPED (RERUN_CLI does not name Rerun's tool, or built without recordings): {test}");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    assert_code(&short_run(folder.path(), &["--no-frames"]), 0);
+    let file = folder.path().join("out/single-wire/recording.rrd");
+    let check = Command::new(tool).args(["rrd", "verify"]).arg(&file).output().expect("Rerun's tool starts");
+    assert!(check.status.success(), "{}{}", stdout(&check), stderr(&check));
 }
 
 /// Rows of a CSV file by column name.

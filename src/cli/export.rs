@@ -1,5 +1,6 @@
 //! `strandsnap export`.
 
+use super::say::say;
 use super::values::SceneArgs;
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
@@ -26,6 +27,6 @@ pub fn export(args: &Args) -> Result<()> {
         return Err(Error::input(format!("{} exists", args.file.display()), "give --overwrite to replace it"));
     }
     write_whole(&args.file, &centrelines::export(&assembly))?;
-    println!("{} wires written to {}", assembly.wires.len(), args.file.display());
+    say!("{} wires written to {}", assembly.wires.len(), args.file.display());
     Ok(())
 }

@@ -1,10 +1,12 @@
 //! Floor 9: the command line. One file per subcommand; each turns arguments into a call below and prints the answer.
 
+mod calibrate;
 mod export;
 mod interrupt;
 mod plan;
 mod render;
 mod run;
+mod say;
 mod scene;
 mod values;
 
@@ -31,6 +33,8 @@ enum Command {
     Scene(scene::Command),
     /// Write the wires' centre lines of a scene to a text file
     Export(export::Args),
+    /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
+    Calibrate(calibrate::Args),
     /// Draw the frames of a finished run again, without simulating
     Render(render::Args),
 }
@@ -62,6 +66,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Plan(args) => plan::plan(&args).map(|()| Ended::Well),
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
+        Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
         Command::Render(args) => render::render(args),
     }
 }

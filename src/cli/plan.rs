@@ -1,5 +1,6 @@
 //! `strandsnap plan`.
 
+use super::say::say;
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run;
@@ -16,11 +17,11 @@ pub struct Args {
 
 pub fn plan(args: &Args) -> Result<()> {
     let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
-    println!("{}: {}\n", scene.spec.name, scene.spec.about);
-    println!("{}", Plan::new(&scene.spec));
+    say!("{}: {}\n", scene.spec.name, scene.spec.about);
+    say!("{}", Plan::new(&scene.spec));
     let assembly = run::assemble(&scene)?;
     let threads = args.threads.map(usize::from);
     let estimate = run::in_pool(threads, || run::estimate::estimate(&scene.spec, assembly))??;
-    println!("{estimate}");
+    say!("{estimate}");
     Ok(())
 }

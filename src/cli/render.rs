@@ -55,6 +55,7 @@ pub fn render(_args: Args) -> Result<Ended> {
 
 #[cfg(feature = "render")]
 pub fn render(args: Args) -> Result<Ended> {
+    use super::say::say;
     use crate::render as drawing;
     use crate::run::{folder::OutFolder, replay};
     use std::sync::atomic::Ordering;
@@ -81,6 +82,6 @@ pub fn render(args: Args) -> Result<Ended> {
     let mut writer = drawing::FrameWriter::new(&out, options)?;
     let stop = super::interrupt::install()?;
     let shown = replay::replay(&args.run, &selection, &mut writer, stop)?;
-    println!("{shown} pictures are in {}", out.display());
+    say!("{shown} pictures are in {}", out.display());
     Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
 }

@@ -1,5 +1,6 @@
 //! `strandsnap run`.
 
+use super::say::say;
 use super::values::SceneArgs;
 use super::{Ended, interrupt};
 use crate::base::error::Result;
@@ -70,21 +71,24 @@ fn note_what_was_not_built(args: &Args) {
 
 fn print(summary: &RunSummary, options: &RunOptions) {
     if options.quiet {
-        println!("{}", one_line(summary));
+        say!("{}", one_line(summary));
     } else {
-        println!("{}\n{}", summary.scene, report(summary));
+        say!("{}\n{}", summary.scene, report(summary));
     }
     for warning in &summary.warnings {
         eprintln!("WARNING: {warning}");
     }
     if !options.quiet {
-        println!("Results are in {}:", options.out.display());
-        println!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
+        say!("Results are in {}:", options.out.display());
+        say!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
         if options.frames {
-            println!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
+            say!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
+        }
+        if outputs::HAS_RENDER {
+            say!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());
         }
         if options.recording {
-            println!("Open the recording with: rerun {}", options.out.join(RECORDING).display());
+            say!("Open the recording with: rerun {}", options.out.join(RECORDING).display());
         }
     }
 }

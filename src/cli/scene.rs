@@ -1,5 +1,6 @@
 //! `strandsnap scene list|show|check`.
 
+use super::say::{self, say};
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run;
@@ -30,20 +31,20 @@ fn list() -> Result<()> {
     let width = builtin::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     for (name, _) in builtin::list() {
         let about = builtin::about(name)?;
-        println!("{name:width$}  {}", about.lines().collect::<Vec<_>>().join(" "));
+        say!("{name:width$}  {}", about.lines().collect::<Vec<_>>().join(" "));
     }
     Ok(())
 }
 
 fn show(name: &str) -> Result<()> {
-    print!("{}", builtin::find(name)?);
+    say::print(format_args!("{}", builtin::find(name)?));
     Ok(())
 }
 
 fn check(args: &SceneArgs) -> Result<()> {
     let scene = scene::load(&args.scene, &args.overrides())?;
     let assembly = run::assemble(&scene)?;
-    println!(
+    say!(
         "{} is fine: {} wires, {} particles, {} bonds",
         args.scene,
         assembly.wires.len(),

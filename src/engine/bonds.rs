@@ -58,8 +58,7 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
     /// All bonds of the assembly; `damping` is the fraction of critical per mode [-].
     pub fn new(law: L, assembly: &Assembly, damping: [f64; 4], rupture: Option<RuptureCheck>) -> Self {
         let n = assembly.len();
-        let shape: Vec<_> =
-            (0..n).map(|i| BondShape { rest_length: assembly.rest_length[i], radius: assembly.radius[i] }).collect();
+        let shape: Vec<_> = (0..n).map(|i| BondShape::new(assembly.rest_length[i], assembly.radius[i])).collect();
         let records = (0..n)
             .map(|i| {
                 let axis = if assembly.is_bond(i) {
@@ -112,8 +111,15 @@ struct Shared<'a, L> {
     law: &'a L,
     shape: &'a [BondShape],
     viscosity: &'a [[f64; 4]],
-    state: &'a Motion<'a>,
     dt: f64,
+}
+
+/// A particle as its bonds see it.
+#[derive(Clone, Copy)]
+struct Node {
+    x: DVec3,
+    v: DVec3,
+    w: DVec3,
 }
 
 /// The parts of the state that bonds read.
@@ -123,11 +129,17 @@ struct Motion<'a> {
     w: &'a crate::base::vectors::Vectors,
 }
 
+impl Motion<'_> {
+    #[inline(always)]
+    fn node<const TURN: bool>(&self, p: usize) -> Node {
+        Node { x: self.x.get(p), v: self.v.get(p), w: if TURN { self.w.get(p) } else { DVec3::ZERO } }
+    }
+}
+
 impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     fn compute(&mut self, state: &mut State) -> Partial {
         let motion = Motion { x: &state.x, v: &state.v, w: &state.w };
-        let shared =
-            Shared { law: &self.law, shape: &self.shape, viscosity: &self.viscosity, state: &motion, dt: state.dt };
+        let shared = Shared { law: &self.law, shape: &self.shape, viscosity: &self.viscosity, dt: state.dt };
         let whole = &state.whole;
         (
             self.records.par_chunks_mut(CHUNK),
@@ -139,16 +151,23 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
             .enumerate()
             .for_each(|(chunk, (records, actions, thinning, partial))| {
                 *partial = Partial::default();
-                for k in 0..records.len() {
-                    let slot = chunk * CHUNK + k;
+                let first = chunk * CHUNK;
+                let mut here = motion.node::<TURN>(first);
+                let outputs = actions.iter_mut().zip(thinning);
+                for ((k, record), (action, thinning)) in records.iter_mut().enumerate().zip(outputs) {
+                    // The last particle has no successor, and its slot no bond.
+                    let slot = first + k;
+                    let next = if slot + 1 < whole.len() { motion.node::<TURN>(slot + 1) } else { here };
                     if whole[slot] {
-                        actions[k] = if TURN {
-                            turning(&shared, slot, &mut records[k], partial)
+                        let ends = [here, next];
+                        *action = if TURN {
+                            turning(&shared, slot, &ends, record, partial)
                         } else {
-                            axial(&shared, slot, &mut records[k], partial)
+                            axial(&shared, slot, &ends, record, partial)
                         };
-                        thinning[k] = shared.law.thinning(&records[k].state);
+                        *thinning = shared.law.thinning(&record.state);
                     }
+                    here = next;
                 }
             });
         let mut sum = Partial::default();
@@ -217,19 +236,19 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
 fn axial<L: BondLaw>(
     shared: &Shared<L>,
     slot: usize,
+    [a, b]: &[Node; 2],
     record: &mut Record<L::State>,
     partial: &mut Partial,
 ) -> BondAction {
-    let m = shared.state;
-    let d = m.x.get(slot + 1) - m.x.get(slot);
+    let d = b.x - a.x;
     let shape = &shared.shape[slot];
     let length = d.length();
-    let n = d / length;
-    let step = BondIncrement { log_strain: (length / shape.rest_length).ln(), length, ..Default::default() };
+    let n = d * (1.0 / length);
+    let step = BondIncrement { log_strain: (length * shape.inverse_length).ln(), length, ..Default::default() };
     partial.plastic += shared.law.axial_response(shape, &mut record.force, &mut record.state, &step);
     let mut axial = record.force.axial;
     if let Some(c) = shared.viscosity.get(slot) {
-        let rate = (m.v.get(slot + 1) - m.v.get(slot)).dot(n);
+        let rate = (b.v - a.v).dot(n);
         axial += axial_dashpot(c[0], rate, shared.dt, &mut record.dashpot, partial);
     }
     BondAction { pull: n * axial, ..Default::default() }
@@ -256,22 +275,21 @@ fn axial_dashpot(coefficient: f64, rate: f64, dt: f64, last: &mut f64, partial: 
 fn turning<L: BondLaw>(
     shared: &Shared<L>,
     slot: usize,
+    [a, b]: &[Node; 2],
     record: &mut Record<L::State>,
     partial: &mut Partial,
 ) -> BondAction {
-    let (m, dt) = (shared.state, shared.dt);
-    let d = m.x.get(slot + 1) - m.x.get(slot);
-    let dv = m.v.get(slot + 1) - m.v.get(slot);
-    let (wa, wb) = (m.w.get(slot), m.w.get(slot + 1));
+    let dt = shared.dt;
+    let (d, dv) = (b.x - a.x, b.v - a.v);
     let shape = &shared.shape[slot];
     let length = d.length();
-    let n = d / length;
+    let n = d * (1.0 / length);
 
     // Mid-step geometry.
     let middle = d - dv * (0.5 * dt);
     let inv_middle = 1.0 / middle.length();
     let n_mid = middle * inv_middle;
-    let spin = (wa + wb) * 0.5;
+    let spin = (a.w + b.w) * 0.5;
     // The frame turns with the bond's direction and with the mean spin about it.
     let turn = n_mid.cross(dv) * (dt * inv_middle) + n_mid * (spin.dot(n_mid) * dt);
     let e1_old = record.e1;
@@ -282,9 +300,9 @@ fn turning<L: BondLaw>(
     let e2_mid = n_mid.cross(e1_mid);
 
     let slide = (dv - spin.cross(middle)) * dt;
-    let rotation = (wb - wa) * dt;
+    let rotation = (b.w - a.w) * dt;
     let step = BondIncrement {
-        log_strain: (length / shape.rest_length).ln(),
+        log_strain: (length * shape.inverse_length).ln(),
         length,
         shear: [slide.dot(e1_mid), slide.dot(e2_mid)],
         bend: [rotation.dot(e1_mid), rotation.dot(e2_mid)],

@@ -7,7 +7,7 @@
 
 use super::contacts::{ContactPoint, Contacts};
 use super::neighbours::{PairList, apart};
-use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, normal_energy, part, touch};
+use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, normal_energy, part, touch};
 use super::state::{CHUNK, Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
@@ -265,14 +265,22 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
         })
     }
 
-    fn stiffness(&self, state: &State, out: &mut Stiffness) {
-        for c in self.contacts.iter().filter(|c| c.history.touching) {
-            let mass = reduced_mass(state, c);
-            let k = c.history.stiffness.map(|k| k * c.share);
-            let damping = viscous_coefficient(self.laws.damping, mass, c.history.stiffness[0]) * c.share;
-            let next = if c.segment { c.j + 1 } else { c.j };
-            let t = if c.segment { c.t } else { 0.0 };
-            out.contact([c.i, c.j, next], [1.0, 1.0 - t, t], k, [c.arm[0], c.arm[1], c.arm[1]], damping);
+    fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
+        for c in &self.contacts {
+            let mut c = *c;
+            let point = walk(state, &self.chains, &mut c);
+            let (i, j) = (c.i as usize, c.j as usize);
+            let next = if c.segment { j + 1 } else { j };
+            let d = point - state.x.get(i);
+            let distance = d.length();
+            let approach = (state.v.get(i) - state.v.get(j).lerp(state.v.get(next), c.t)).dot(d) / distance;
+            let radius = state.radius[j] * (1.0 - c.t) + state.radius[next] * c.t;
+            let overlap = state.radius[i] + radius - c.history.offset - distance;
+            let Some(k) = foreseen_stiffness(&self.laws, &c.history, overlap, approach, horizon) else { continue };
+            let viscosity = viscous_coefficient(self.laws.damping, reduced_mass(state, &c), k[0]) * c.share;
+            let weight = [1.0, 1.0 - c.t, c.t];
+            let arm = [state.radius[i], radius, radius];
+            out.contact([c.i, c.j, next as u32], weight, k.map(|k| k * c.share), arm, viscosity);
         }
     }
 }
@@ -366,7 +374,7 @@ fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
         return;
     }
     let distance = distance2.sqrt();
-    let normal = d / distance;
+    let normal = d * (1.0 / distance);
     let overlap = reach - distance;
     // The arms meet where the surfaces do, so that they add up to the distance.
     let arm = state.radius[i] - 0.5 * (touching - distance);

@@ -6,6 +6,7 @@ use crate::base::error::{Error, Result};
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
 use crate::strand::assembly::Assembly;
 use glam::{DMat2, DVec2, DVec3};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Time over which a jaw's clamp pressure rises [s]; short against a pull, long against a wire's ringing.
@@ -87,7 +88,7 @@ impl Holds {
         }
         holds.mark(state);
         holds.start_velocities(state);
-        holds.work = state.kinetic();
+        holds.work = holds.kinetic(state);
         Ok(holds)
     }
 
@@ -267,8 +268,7 @@ impl Holds {
 
     /// Components held one by one, and loads.
     fn components(&mut self, group: &Group, hold: &HoldSpec, state: &mut State, kicked: f64) {
-        let share = if hold.ramp > 0.0 { smooth(state.time / hold.ramp) } else { 1.0 } / group.particles.len() as f64;
-        let (force, moment) = (hold.force * share, hold.moment * share);
+        let [force, moment] = Self::load(hold, group.particles.len(), state.time);
         for p in &group.particles {
             let p = *p as usize;
             let (kick, spin_kick) = (kicked / state.mass[p], kicked / state.inertia[p]);
@@ -284,10 +284,44 @@ impl Holds {
         }
     }
 
-    /// Work up to the instant of the positions [J]: `work` lags by half a step. Loads on free components lag here as
-    /// they do in [`State::kinetic`].
+    /// Force [N] and moment [N m] that a hold applies to each of its particles at `time` [s].
+    fn load(hold: &HoldSpec, particles: usize, time: f64) -> [DVec3; 2] {
+        let share = if hold.ramp > 0.0 { smooth(time / hold.ramp) } else { 1.0 } / particles as f64;
+        [hold.force * share, hold.moment * share]
+    }
+
+    /// Applied force [N] and moment [N m] of each loaded particle.
+    fn loads(&self, time: f64) -> BTreeMap<usize, [DVec3; 2]> {
+        let mut loads: BTreeMap<usize, [DVec3; 2]> = BTreeMap::new();
+        for group in &self.groups {
+            let Kind::Components(hold) = &group.kind else { continue };
+            let [force, moment] = Self::load(hold, group.particles.len(), time);
+            for p in &group.particles {
+                let sum = loads.entry(*p as usize).or_default();
+                sum[0] += force;
+                sum[1] += moment;
+            }
+        }
+        loads
+    }
+
+    /// Kinetic energy at the instant of the positions [J], applied loads counted.
+    pub fn kinetic(&self, state: &State) -> f64 {
+        let loads = self.loads(state.time);
+        state.kinetic(|p| loads.get(&p).copied().unwrap_or_default())
+    }
+
+    /// Work up to the instant of the positions [J]: `work` lags by half a step.
     pub fn work_now(&self, state: &State) -> f64 {
-        self.work - 0.5 * state.dt * state.held_power()
+        let loads = self.loads(state.time);
+        let applied: f64 = loads
+            .iter()
+            .map(|(p, [force, moment])| {
+                let (force, moment) = (state.free_part(*p, 0, *force), state.free_part(*p, 3, *moment));
+                force.dot(state.v.get(*p)) + moment.dot(state.w.get(*p))
+            })
+            .sum();
+        self.work + 0.5 * state.dt * (applied - state.held_power())
     }
 }
 

@@ -1,7 +1,8 @@
 //! Leapfrog: forces gathered per particle in a fixed order, velocities kicked, positions drifted.
 
-use super::neighbours::Neighbours;
-use super::state::{CHUNK, State};
+use super::neighbours::Reference;
+use super::state::{BondAction, CHUNK, State};
+use crate::base::vectors::Vectors;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -23,9 +24,11 @@ pub fn gather(state: &mut State, turn: bool, contacts: bool) {
         .into_par_iter()
         .enumerate()
         .for_each(|(chunk, (fx, fy, fz, tx, ty, tz, radius))| {
-            for k in 0..fx.len() {
-                let p = chunk * CHUNK + k;
-                let (next, last) = (bond[p], if p > 0 { bond[p - 1] } else { Default::default() });
+            let first = chunk * CHUNK;
+            let mut last = if first > 0 { bond[first - 1] } else { BondAction::default() };
+            let slots = bond[first..first + fx.len()].iter().zip(radius.iter_mut());
+            for (k, (next, radius)) in slots.enumerate() {
+                let p = first + k;
                 let mut force = next.pull - last.pull;
                 if contacts {
                     force += cf.get(p);
@@ -39,8 +42,9 @@ pub fn gather(state: &mut State, turn: bool, contacts: bool) {
                     (tx[k], ty[k], tz[k]) = torque.into();
                 }
                 if let Some(factor) = mean_thinning(whole, thinning, p) {
-                    radius[k] = radius0[p] * factor;
+                    *radius = radius0[p] * factor;
                 }
+                last = *next;
             }
         });
 }
@@ -58,26 +62,26 @@ fn mean_thinning(whole: &[bool], thinning: &[f64], p: usize) -> Option<f64> {
 
 /// Velocities and spins over `dt` [s].
 pub fn kick(state: &mut State, dt: f64, turn: bool) {
-    let (mass, inertia) = (&state.mass, &state.inertia);
-    let (f, t) = (&state.force, &state.torque);
-    let accelerate = |v: &mut crate::base::vectors::Vectors, f: &crate::base::vectors::Vectors, m: &[f64]| {
-        (v.x.par_chunks_mut(CHUNK), v.y.par_chunks_mut(CHUNK), v.z.par_chunks_mut(CHUNK))
-            .into_par_iter()
-            .enumerate()
-            .for_each(|(chunk, (vx, vy, vz))| {
-                for k in 0..vx.len() {
-                    let p = chunk * CHUNK + k;
-                    let per_mass = dt / m[p];
-                    vx[k] += f.x[p] * per_mass;
-                    vy[k] += f.y[p] * per_mass;
-                    vz[k] += f.z[p] * per_mass;
-                }
-            });
-    };
-    accelerate(&mut state.v, f, mass);
+    accelerate(&mut state.v, &state.force, &state.inverse_mass, dt);
     if turn {
-        accelerate(&mut state.w, t, inertia);
+        accelerate(&mut state.w, &state.torque, &state.inverse_inertia, dt);
     }
+}
+
+/// v += F/m dt, one stream per axis.
+fn accelerate(v: &mut Vectors, f: &Vectors, inverse_mass: &[f64], dt: f64) {
+    (v.x.par_chunks_mut(CHUNK), v.y.par_chunks_mut(CHUNK), v.z.par_chunks_mut(CHUNK))
+        .into_par_iter()
+        .enumerate()
+        .for_each(|(chunk, (vx, vy, vz))| {
+            let here = chunk * CHUNK..chunk * CHUNK + vx.len();
+            let per_mass = &inverse_mass[here.clone()];
+            for (v, f) in [(vx, &f.x), (vy, &f.y), (vz, &f.z)] {
+                for ((v, f), per_mass) in v.iter_mut().zip(&f[here.clone()]).zip(per_mass) {
+                    *v += f * (dt * per_mass);
+                }
+            }
+        });
 }
 
 /// What a drift saw.
@@ -89,38 +93,40 @@ pub struct Drifted {
     pub residual2: f64,
 }
 
+impl Drifted {
+    const NOTHING: Self = Self { largest2: 0.0, residual2: 0.0 };
+
+    fn with(self, other: Self) -> Self {
+        Self { largest2: larger(self.largest2, other.largest2), residual2: larger(self.residual2, other.residual2) }
+    }
+}
+
 /// Positions over `state.dt`.
-pub fn drift(state: &mut State, neighbours: Option<(&Neighbours, f64)>) -> Drifted {
+pub fn drift(state: &mut State, neighbours: Option<&Reference>) -> Drifted {
     let dt = state.dt;
     let (v, x) = (&state.v, &mut state.x);
-    let none = Drifted { largest2: 0.0, residual2: 0.0 };
     (x.x.par_chunks_mut(CHUNK), x.y.par_chunks_mut(CHUNK), x.z.par_chunks_mut(CHUNK))
         .into_par_iter()
         .enumerate()
         .map(|(chunk, (px, py, pz))| {
-            let mut seen = none;
+            let here = chunk * CHUNK..chunk * CHUNK + px.len();
+            let (vx, vy, vz) = (&v.x[here.clone()], &v.y[here.clone()], &v.z[here.clone()]);
+            let mut largest2 = 0.0;
             for k in 0..px.len() {
-                let p = chunk * CHUNK + k;
-                let step = v.get(p) * dt;
+                let step = DVec3::new(vx[k], vy[k], vz[k]) * dt;
                 px[k] += step.x;
                 py[k] += step.y;
                 pz[k] += step.z;
-                seen.largest2 = larger(seen.largest2, step.length_squared());
-                if let Some((list, moved)) = neighbours {
-                    let residual = list.residual2(p, DVec3::new(px[k], py[k], pz[k]), moved);
-                    seen.residual2 = larger(seen.residual2, residual);
-                }
+                largest2 = larger(largest2, step.length_squared());
             }
-            seen
+            let residual2 = neighbours.map_or(0.0, |r| r.residual2(here.start, px, py, pz));
+            Drifted { largest2, residual2 }
         })
-        .reduce(
-            || none,
-            |a, b| Drifted { largest2: larger(a.largest2, b.largest2), residual2: larger(a.residual2, b.residual2) },
-        )
+        .reduce(|| Drifted::NOTHING, Drifted::with)
 }
 
 /// The larger of two numbers; NaN wins, so that it is seen.
 #[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }

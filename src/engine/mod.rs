@@ -40,6 +40,8 @@ use view::{Energy, Rupture};
 
 /// Steps between two evaluations of the bound on the time step.
 const BOUND_INTERVAL: u64 = 64;
+/// Greatest growth of the step at one evaluation [-].
+const GROWTH: f64 = 2.0;
 /// Steps of free flight until the end of the run [-].
 const FLIGHT_STEPS: f64 = 10_000.0;
 /// Least number of steps of an impact [-]; leapfrog is then good for (π/100)²/24 of its time, 4e-5.
@@ -164,8 +166,8 @@ impl Engine {
         self.state.dt = self.next_dt;
         self.holds.apply(&mut self.state, kicked);
         let stretch = self.holds.stretch;
-        let list = self.contacts.as_ref().map(|c| (&c.neighbours, c.neighbours.moved(&stretch)));
-        let drifted = integrate::drift(&mut self.state, list);
+        let reference = self.contacts.as_ref().and_then(|c| c.neighbours.reference(&stretch));
+        let drifted = integrate::drift(&mut self.state, reference.as_ref());
         self.state.step += 1;
         self.state.time += self.state.dt;
         self.measures.grip(&self.holds.reaction, self.state.dt);
@@ -265,7 +267,8 @@ impl Engine {
             bonds.stiffness(&self.state, &mut self.stiffness);
         }
         if let Some(c) = &self.contacts {
-            c.stage.stiffness(&self.state, &mut self.stiffness);
+            let horizon = BOUND_INTERVAL as f64 * self.next_dt;
+            c.stage.stiffness(&self.state, horizon, &mut self.stiffness);
         }
         let hold = &self.state.hold;
         self.bound = self.stiffness.bound(&self.state, |p| hold[p] != 0);
@@ -282,6 +285,8 @@ impl Engine {
                 "state time.step, e.g. step = \"1e-7 s\", or stop.time",
             ));
         }
+        // What is foreseen at one step may not hold for a much longer one.
+        let wanted = if self.next_dt > 0.0 { wanted.min(GROWTH * self.next_dt) } else { wanted };
         if wanted.is_finite() && (self.next_dt == 0.0 || (wanted / self.next_dt - 1.0).abs() > 0.01) {
             self.next_dt = wanted;
         }

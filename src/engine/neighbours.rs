@@ -3,6 +3,7 @@
 //! The whole strand stretches by a third, so displacements are measured against the affine stretch of the gauge: a
 //! pair stays covered while 2 max|u − u_affine| + Δε (reach + skin) < skin.
 
+use super::integrate::larger;
 use super::state::{CHUNK, State};
 use crate::base::vectors::Vectors;
 use crate::strand::assembly::Assembly;
@@ -25,11 +26,28 @@ pub struct Stretch {
     pub displacement: f64,
 }
 
-impl Stretch {
-    /// Where a point that is at `z` now would be after `moved` more displacement of the upper grip [m].
-    fn affine(&self, z: f64, moved: f64) -> f64 {
-        let length = self.gauge[1] + self.displacement - self.gauge[0];
-        if length > 0.0 { moved * ((z - self.gauge[0]) / length).clamp(0.0, 1.0) } else { 0.0 }
+/// Positions at the last search and the affine stretch since.
+pub struct Reference<'a> {
+    position: &'a Vectors,
+    low: f64,
+    inverse_length: f64,
+    moved: f64,
+}
+
+impl Reference<'_> {
+    /// Greatest squared distance of particles from where the stretch would have them [m²]; the particles are those from
+    /// `first` on, at x, y, z.
+    #[inline(always)]
+    pub fn residual2(&self, first: usize, x: &[f64], y: &[f64], z: &[f64]) -> f64 {
+        let here = first..first + x.len();
+        let (rx, ry, rz) = (&self.position.x[here.clone()], &self.position.y[here.clone()], &self.position.z[here]);
+        let mut largest = 0.0;
+        for k in 0..x.len() {
+            let affine = self.moved * ((rz[k] - self.low) * self.inverse_length).clamp(0.0, 1.0);
+            let d = DVec3::new(x[k] - rx[k], y[k] - ry[k], z[k] - rz[k] - affine);
+            largest = larger(largest, d.length_squared());
+        }
+        largest
     }
 }
 
@@ -92,7 +110,7 @@ impl Neighbours {
     }
 
     /// Whether a pair may have come within reach unseen. `largest2` is the greatest squared distance from
-    /// [`Neighbours::residual2`].
+    /// [`Reference::residual2`].
     pub fn stale(&self, largest2: f64, now: &Stretch) -> bool {
         if self.rebuilds == 0 {
             return true;
@@ -102,20 +120,16 @@ impl Neighbours {
         2.0 * largest2.sqrt() + strain * (2.0 * self.largest + self.margin + self.skin) >= self.skin
     }
 
-    /// Squared distance of particle `i` from where the affine stretch since the last search would have it [m²].
-    #[inline(always)]
-    pub fn residual2(&self, i: usize, x: DVec3, moved: f64) -> f64 {
+    /// Where the affine stretch since the last search would have every particle; `None` before the first search.
+    pub fn reference(&self, now: &Stretch) -> Option<Reference<'_>> {
         if self.rebuilds == 0 {
-            return 0.0;
+            return None;
         }
-        let mut d = x - self.reference.get(i);
-        d.z -= self.stretch.affine(self.reference.z[i], moved);
-        d.length_squared()
-    }
-
-    /// Displacement of the upper grip since the last search [m].
-    pub fn moved(&self, now: &Stretch) -> f64 {
-        now.displacement - self.stretch.displacement
+        let [low, high] = self.stretch.gauge;
+        let length = high + self.stretch.displacement - low;
+        let moved = now.displacement - self.stretch.displacement;
+        let (inverse_length, moved) = if length > 0.0 { (1.0 / length, moved) } else { (0.0, 0.0) };
+        Some(Reference { position: &self.reference, low, inverse_length, moved })
     }
 
     /// Finds all candidate pairs anew.
@@ -314,8 +328,8 @@ mod tests {
                 let z0 = start.z[i];
                 state.x.z[i] = z0 + d * ((z0 - 0.01) / 0.1).clamp(0.0, 1.0);
             }
-            let moved = neighbours.moved(&now);
-            let largest = (0..state.len()).map(|i| neighbours.residual2(i, state.x.get(i), moved)).fold(0.0, f64::max);
+            let seen = neighbours.reference(&now).map(|r| r.residual2(0, &state.x.x, &state.x.y, &state.x.z));
+            let largest = seen.unwrap_or(0.0);
             if neighbours.stale(largest, &now) {
                 neighbours.search(&state, now);
             }

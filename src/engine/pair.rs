@@ -131,6 +131,31 @@ pub fn touch<N: NormalLaw, T: TangentialLaw>(
     PairForce { force: friction - meeting.normal * push, friction }
 }
 
+/// Greatest normal and tangential stiffness [N/m] that a pair can reach within `horizon` [s] if it goes on approaching
+/// at `approach` [m/s] from `overlap` [m] (negative: still apart); `None` when it will not touch.
+pub fn foreseen_stiffness<N: NormalLaw, T: TangentialLaw>(
+    laws: &Laws<N, T>,
+    history: &History<N::State, T::State>,
+    overlap: f64,
+    approach: f64,
+    horizon: f64,
+) -> Option<[f64; 2]> {
+    let deepest = overlap + approach.max(0.0) * horizon;
+    if deepest <= 0.0 {
+        return None;
+    }
+    let (mut normal, mut tangential) = (history.normal, history.tangential);
+    let answer = laws.normal.response(&mut normal, history.reduced_radius, deepest);
+    let stiffness = laws.normal.greatest_stiffness(&normal, history.reduced_radius, deepest).max(answer.stiffness);
+    let mut across = 0.0;
+    if T::ACTIVE && answer.force > 0.0 {
+        let input =
+            TangentialInput { normal: DVec3::Z, slip: DVec3::ZERO, normal_force: answer.force, radius: answer.radius };
+        across = laws.tangential.response(&mut tangential, &input).stiffness;
+    }
+    Some([stiffness.max(history.stiffness[0]), across.max(history.stiffness[1])])
+}
+
 /// The surfaces are apart: what friction had stored is lost. `overlap` is the geometrical one, negative over a gap [m].
 #[inline(always)]
 pub fn part<N: NormalLaw, T: TangentialLaw>(

@@ -2,7 +2,7 @@
 
 use super::contacts::{ContactPoint, Contacts};
 use super::neighbours::PairList;
-use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, part, touch};
+use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, part, touch};
 use super::state::{CHUNK, Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
@@ -166,13 +166,17 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         })
     }
 
-    fn stiffness(&self, state: &State, out: &mut Stiffness) {
-        for c in self.contacts.iter().filter(|c| c.history.touching) {
+    fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
+        for c in &self.contacts {
             let (i, j) = (c.i as usize, c.j as usize);
+            let d = state.x.get(j) - state.x.get(i);
+            let distance = d.length();
+            let approach = (state.v.get(i) - state.v.get(j)).dot(d) / distance;
+            let overlap = state.radius[i] + state.radius[j] - c.history.offset - distance;
+            let Some(k) = foreseen_stiffness(&self.laws, &c.history, overlap, approach, horizon) else { continue };
             let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);
-            let k = c.history.stiffness;
-            let damping = viscous_coefficient(self.laws.damping, mass, k[0]);
-            out.contact([c.i, c.j, 0], [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], damping);
+            let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
+            out.contact([c.i, c.j, 0], [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], viscosity);
         }
     }
 }
@@ -211,7 +215,7 @@ fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
         return;
     }
     let distance = distance2.sqrt();
-    let normal = d / distance;
+    let normal = d * (1.0 / distance);
     let overlap = reach - distance;
     let mut velocity = state.v.get(j) - state.v.get(i);
     if T::ACTIVE {

@@ -48,6 +48,10 @@ pub struct State {
     pub mass: Vec<f64>,
     /// Rotational inertias [kg m²].
     pub inertia: Vec<f64>,
+    /// Their inverses [1/kg], [1/(kg m²)]: multiplying is cheaper than dividing.
+    pub inverse_mass: Vec<f64>,
+    /// See `inverse_mass`.
+    pub inverse_inertia: Vec<f64>,
     /// Hold that each particle belongs to, from 1; 0 when free. Two particles of one hold never need a contact.
     pub hold: Vec<u16>,
     /// Prescribed components of each particle, bits 0–2 for translation, 3–5 for rotation.
@@ -79,6 +83,8 @@ impl State {
             radius0: a.radius.clone(),
             mass: a.mass.clone(),
             inertia: a.inertia.clone(),
+            inverse_mass: a.mass.iter().map(|m| 1.0 / m).collect(),
+            inverse_inertia: a.inertia.iter().map(|j| 1.0 / j).collect(),
             hold: vec![0; n],
             fixed: vec![0; n],
             step: 0,
@@ -97,17 +103,17 @@ impl State {
         self.mass.is_empty()
     }
 
-    /// Kinetic energy at the instant of the positions, ½ m v_{n−1/2}·v_{n+1/2} [J].
+    /// Kinetic energy at the instant of the positions, ½ m v_{n−1/2}·v_{n+1/2} [J]; `load` is the applied force [N] and
+    /// moment [N m] on each particle. Prescribed components do not follow forces.
     ///
     /// This is the form that leapfrog conserves together with the potential: exactly for linear springs, where
-    /// ½ m |v_n|² swings with the square of the step times the stiffness, and is shaken by every rupture. Prescribed
-    /// components do not follow the forces; applied loads are left out here as in the work up to this instant.
-    pub fn kinetic(&self) -> f64 {
+    /// ½ m |v_n|² swings with the square of the step times the stiffness, and is shaken by every rupture.
+    pub fn kinetic(&self, load: impl Fn(usize) -> [DVec3; 2]) -> f64 {
         (0..self.len())
             .map(|i| {
-                let (v, w) = (self.v.get(i), self.w.get(i));
-                let v_next = v + self.free_part(i, 0, self.force.get(i)) * (self.dt / self.mass[i]);
-                let w_next = w + self.free_part(i, 3, self.torque.get(i)) * (self.dt / self.inertia[i]);
+                let ([push, turn], v, w) = (load(i), self.v.get(i), self.w.get(i));
+                let v_next = v + self.free_part(i, 0, self.force.get(i) + push) * (self.dt / self.mass[i]);
+                let w_next = w + self.free_part(i, 3, self.torque.get(i) + turn) * (self.dt / self.inertia[i]);
                 0.5 * (self.mass[i] * v.dot(v_next) + self.inertia[i] * w.dot(w_next))
             })
             .sum()
@@ -123,7 +129,7 @@ impl State {
     }
 
     /// `vector` without the prescribed components of particle `i`; `first` is 0 for translation, 3 for rotation.
-    fn free_part(&self, i: usize, first: u8, vector: DVec3) -> DVec3 {
+    pub fn free_part(&self, i: usize, first: u8, vector: DVec3) -> DVec3 {
         let free = |k: u8| if self.fixed[i] >> (first + k) & 1 == 1 { 0.0 } else { 1.0 };
         vector * DVec3::new(free(0), free(1), free(2))
     }

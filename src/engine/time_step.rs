@@ -7,6 +7,10 @@
 //! is stable to Δt = (2/ω)(√(1+ξ²) − ξ).
 
 use super::state::State;
+
+/// A contact is stepped at least this finely: Δt √(k/m*) [-]. A half period, in which two bodies meet and part, then
+/// takes eight steps; what is only stable would let them gain energy.
+const RESOLVED: f64 = 0.4;
 use crate::law::bond::BondStiffness;
 
 /// One bond or contact as the bound sees it.
@@ -31,6 +35,14 @@ struct Element {
 impl Element {
     fn translation(&self) -> f64 {
         self.normal.max(self.across)
+    }
+
+    /// √(k/m*) of a contact on its own [1/s].
+    fn pair_frequency(&self, state: &State, held: &impl Fn(usize) -> bool) -> f64 {
+        let free = (0..3).filter(|k| self.weight[*k] > 0.0 && !held(self.nodes[*k] as usize));
+        let inverse_mass: f64 =
+            free.map(|k| self.weight[k] * self.weight[k] / state.mass[self.nodes[k] as usize]).sum();
+        (self.normal * inverse_mass).sqrt()
     }
 
     fn rotation(&self) -> f64 {
@@ -142,6 +154,14 @@ impl Stiffness {
             let xi = 0.5 * damping / omega;
             bound.step = 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi);
         }
+        for e in self.elements.iter().filter(|e| !e.bond) {
+            // Nothing moves in a contact between held particles; their empty sum is −0.
+            let frequency = e.pair_frequency(state, &held);
+            let meeting = RESOLVED / frequency;
+            if frequency > 0.0 && meeting < bound.step {
+                bound = Bound { step: meeting, particle: e.nodes[0] as usize, bond: false, mode: "duration" };
+            }
+        }
         bound
     }
 
@@ -164,15 +184,15 @@ impl Stiffness {
     fn element(&self, e: &Element, state: &State, held: &impl Fn(usize) -> bool) -> (f64, &'static str) {
         let (ke, qe) = (e.translation(), e.rotation());
         let (mut mass, mut levers, mut turn) = (0.0, 0.0, [0.0; 3]);
-        for k in 0..3 {
+        for (k, turn) in turn.iter_mut().enumerate() {
             let node = e.nodes[k] as usize;
             if e.weight[k] == 0.0 || held(node) {
                 continue;
             }
             mass += e.weight[k] * self.translation[node] / state.mass[node];
             if qe > 0.0 {
-                turn[k] = e.weight[k] * self.rotation[node] / (state.inertia[node] * qe);
-                levers += e.arm[k] * e.arm[k] * turn[k];
+                *turn = e.weight[k] * self.rotation[node] / (state.inertia[node] * qe);
+                levers += e.arm[k] * e.arm[k] * *turn;
             }
         }
         let normal = if ke > 0.0 { e.normal / ke * mass } else { 0.0 };

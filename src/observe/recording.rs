@@ -235,6 +235,7 @@ impl Run {
             self.map.send_colour_bar(&self.stream, &scale)?;
         }
         curve::send_names(&self.stream, &self.info)?;
+        grips::send_style(&self.stream)?;
         States::send_style(&self.stream, &self.info)?;
         self.send_sphere_radii()
     }

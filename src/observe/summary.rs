@@ -254,3 +254,124 @@ impl Observer for Summariser {
         self.guard.finish()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::view::{RuptureCause, WireInfo};
+
+    fn info() -> Arc<RunInfo> {
+        let wire = |layer| WireInfo { layer, first: 0, len: 2, diameter: 0.4 };
+        Arc::new(RunInfo {
+            name: "two layers".into(),
+            about: String::new(),
+            layers: vec!["core".into(), "outer".into()],
+            wires: vec![wire(0), wire(1), wire(1)],
+            wire_particles: 6,
+            particles: 6,
+            radius: vec![0.2; 6],
+            rest_position: vec![[0.0; 3]; 6],
+            gauge: Some([10.0, 110.0]),
+            stress_range: [0.0, 400.0],
+            plastic_strain_range: [0.0, 0.3],
+            speed_range: [0.0, 10.0],
+            strain_end: Some(0.3),
+        })
+    }
+
+    fn rupture(order: usize, wire: usize, layer: usize) -> Rupture {
+        Rupture {
+            order,
+            step: 10,
+            time: 0.0,
+            strain: 0.25,
+            wire,
+            layer,
+            bond: 0,
+            bond_in_wire: 0,
+            position: [0.0, 0.0, 0.0657],
+            rest_z: 0.05,
+            cause: RuptureCause::PlasticStrain,
+            stress: 294e6,
+            body_stress: 300e6,
+            first_of_wire: true,
+        }
+    }
+
+    fn row(strain: f64, stress: f64) -> Sample {
+        let energy = Energy { work: 2.0, elastic_bonds: 1.0, kinetic: 0.5, ..Energy::default() };
+        Sample { strain, stress, energy, ..Sample::default() }
+    }
+
+    fn spec() -> Spec {
+        // Only its name, seed and limits are read; any scene will do.
+        crate::scene::load("single-wire", &[]).unwrap().spec
+    }
+
+    fn seen() -> Summariser {
+        let mut summariser = Summariser::new();
+        summariser.start(&info()).unwrap();
+        for (strain, stress) in [(0.0, 0.0), (0.1, 250e6), (0.2, 300e6)] {
+            summariser.sample(&row(strain, stress)).unwrap();
+        }
+        for (order, wire, layer) in [(1, 2, 1), (2, 0, 0), (3, 2, 1)] {
+            summariser.rupture(&rupture(order, wire, layer)).unwrap();
+        }
+        summariser.sample(&row(0.3, 200e6)).unwrap();
+        summariser
+    }
+
+    fn close(value: Option<f64>, right: f64) {
+        let value = value.expect("there is a value");
+        assert!((value - right).abs() < 1e-9 * right.abs(), "{value} is not {right}");
+    }
+
+    #[test]
+    fn strength_and_elongations_are_read_from_the_curve() {
+        let summary = seen().summary(&spec(), 3, "done".into(), None, Cost::default());
+        close(summary.tensile_strength_mpa, 300.0);
+        close(summary.fracture_elongation_percent, 20.0);
+        // 240 MPa lies 60 % of the way from (20 %, 300 MPa) to (30 %, 200 MPa).
+        close(summary.elongation_at_20_percent_drop_percent, 26.0);
+        close(summary.residual_stress_mpa, 200.0);
+        close(summary.energy_residual_percent, 25.0);
+    }
+
+    #[test]
+    fn a_wire_that_breaks_twice_is_one_broken_wire() {
+        let summary = seen().summary(&spec(), 3, "done".into(), None, Cost::default());
+        assert_eq!(summary.wires_broken, 2);
+        assert_eq!(summary.bonds_broken, 3);
+        assert_eq!(summary.wires_broken_by_layer["core"], BrokenOf { broken: 1, of: 1 });
+        assert_eq!(summary.wires_broken_by_layer["outer"], BrokenOf { broken: 1, of: 2 });
+        let first = summary.first_rupture.unwrap();
+        assert_eq!((first.wire, first.layer.as_str(), first.order), (3, "outer", 1));
+        assert!((first.z_mm - 65.7).abs() < 1e-9);
+        assert_eq!(summary.breaks_by_layer["outer"].len(), 1);
+    }
+
+    #[test]
+    fn a_curve_that_never_drops_has_no_drop() {
+        let curve = [(0.0, 0.0), (0.1, 100.0), (0.2, 81.0)];
+        assert_eq!(strain_after_drop(&curve, 1), None);
+    }
+
+    #[test]
+    fn free_bodies_have_no_strength() {
+        let mut summariser = Summariser::new();
+        summariser.start(&Arc::new(RunInfo { gauge: None, ..info().as_ref().clone() })).unwrap();
+        summariser.sample(&row(0.0, 0.0)).unwrap();
+        let summary = summariser.summary(&spec(), 3, "done".into(), None, Cost::default());
+        assert_eq!(summary.tensile_strength_mpa, None);
+        assert_eq!(summary.quasi_static, QuasiStatic::default());
+        let json: serde_json::Value = serde_json::to_value(&summary).unwrap();
+        assert!(json["tensile_strength_mpa"].is_null() && json["kinetic_over_internal_max"].is_null());
+    }
+
+    #[test]
+    fn trouble_stands_first_among_the_warnings() {
+        let trouble = Some("stopped at step 5: bond 3 is NaN".to_string());
+        let summary = seen().summary(&spec(), 3, "trouble".into(), trouble, Cost::default());
+        assert!(summary.warnings[0].contains("step 5"), "{:?}", summary.warnings);
+    }
+}

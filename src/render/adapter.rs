@@ -50,16 +50,9 @@ pub fn failure(what: impl Into<String>) -> Error {
 }
 
 fn request_adapter() -> Result<wgpu::Adapter> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::PRIMARY | wgpu::Backends::GL;
-    let instance = wgpu::Instance::new(descriptor);
-    let options = wgpu::RequestAdapterOptions {
-        power_preference: wgpu::PowerPreference::HighPerformance,
-        force_fallback_adapter: false,
-        compatible_surface: None,
-        ..Default::default()
-    };
-    pollster::block_on(instance.request_adapter(&options)).map_err(|e| Error::Missing {
+    // GL only when there is nothing else: there silhouettes cannot be smoothed (see `Gpu::sample_mask`).
+    let found = request_from(wgpu::Backends::PRIMARY).or_else(|_| request_from(wgpu::Backends::GL));
+    found.map_err(|e| Error::Missing {
         what: format!("no graphics adapter to draw frames with ({e})"),
         help: Some(
             "a software one will do: on Debian and Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1`, on Fedora \
@@ -68,4 +61,16 @@ fn request_adapter() -> Result<wgpu::Adapter> {
                 .into(),
         ),
     })
+}
+
+fn request_from(backends: wgpu::Backends) -> std::result::Result<wgpu::Adapter, wgpu::RequestAdapterError> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    let options = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        force_fallback_adapter: false,
+        compatible_surface: None,
+        ..Default::default()
+    };
+    pollster::block_on(wgpu::Instance::new(descriptor).request_adapter(&options))
 }

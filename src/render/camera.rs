@@ -32,6 +32,15 @@ impl Camera {
         self.rotation * (p - self.centre)
     }
 
+    /// Whether a piece of wire between two spheres (centre and radius [mm]) can reach into the panel.
+    pub fn sees(&self, a: [f32; 4], b: [f32; 4]) -> bool {
+        let reach = a[3].max(b[3]) + 2.0 / self.scale;
+        let [a, b] = [a, b].map(|p| self.to_view(Vec3::new(p[0], p[1], p[2])));
+        let half = [0.5 * self.panel.w / self.scale + reach, 0.5 * self.panel.h / self.scale + reach];
+        let inside = |a: f32, b: f32, half: f32| a.min(b) < half && a.max(b) > -half;
+        inside(a.x, b.x, half[0]) && inside(a.y, b.y, half[1])
+    }
+
     /// Pixel of a point.
     pub fn project(&self, p: Vec3) -> [f32; 2] {
         let v = self.to_view(p);
@@ -69,6 +78,16 @@ mod tests {
         let [x, y] = c.project(c.centre + Vec3::Z + Vec3::Y);
         assert!((x - 310.0).abs() < 1e-3 && (y - 160.0).abs() < 1e-3);
         assert!(c.to_view(c.centre + Vec3::X).z > 0.99);
+    }
+
+    #[test]
+    fn only_what_reaches_into_the_panel_is_seen() {
+        let c = camera(0.0, 0.0);
+        let at = |z: f32| [1.0, 2.0, 3.0 + z, 1.0];
+        assert!(c.sees(at(0.0), at(0.0)));
+        assert!(c.sees(at(20.5), at(25.0)), "its edge is still inside");
+        assert!(!c.sees(at(22.0), at(25.0)));
+        assert!(c.sees(at(-50.0), at(50.0)), "it crosses the whole panel");
     }
 
     #[test]

@@ -18,6 +18,9 @@ const PALETTE: [Rgb; 9] = [
     [120, 90, 180],
 ];
 
+/// Where in its map a range starts [-]. The very darkest colours would vanish before a dark ground.
+pub const DARKEST: f64 = 0.1;
+
 /// A quantity, its fixed range and its colours.
 pub struct ColourScale {
     by: ColourBy,
@@ -64,7 +67,7 @@ impl ColourScale {
         let Some(map) = self.map else {
             return [128; 3];
         };
-        let c = map.eval_continuous(fraction.clamp(0.0, 1.0));
+        let c = map.eval_continuous(DARKEST + (1.0 - DARKEST) * fraction.clamp(0.0, 1.0));
         [c.r, c.g, c.b]
     }
 
@@ -78,12 +81,13 @@ impl ColourScale {
         PALETTE[index % PALETTE.len()]
     }
 
-    /// One colour per particle; free spheres, which have no bonds, are coloured by speed or grey.
+    /// One colour per particle.
     pub fn particles(&self, info: &RunInfo, snapshot: &Snapshot) -> Vec<Rgb> {
         let mut colours = vec![[150, 156, 166]; snapshot.position.len()];
         for (number, wire) in info.wires.iter().enumerate() {
-            for i in wire.first..wire.first + wire.len {
-                colours[i] = match self.by {
+            for (k, colour) in colours[wire.first..wire.first + wire.len].iter_mut().enumerate() {
+                let i = wire.first + k;
+                *colour = match self.by {
                     ColourBy::Stress => self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i)),
                     ColourBy::PlasticStrain => self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i)),
                     ColourBy::Velocity => self.of_value(snapshot.speed[i]),
@@ -92,12 +96,14 @@ impl ColourScale {
                 };
             }
         }
-        for i in info.wire_particles..snapshot.position.len() {
-            colours[i] = match self.by {
-                ColourBy::Velocity => self.of_value(snapshot.speed[i]),
-                ColourBy::Wire | ColourBy::Layer => Self::category(info.wires.len() + i - info.wire_particles),
-                _ => colours[i],
-            };
+        for (k, colour) in colours.iter_mut().skip(info.wire_particles).enumerate() {
+            match self.by {
+                ColourBy::Velocity => *colour = self.of_value(snapshot.speed[info.wire_particles + k]),
+                ColourBy::Wire | ColourBy::Layer => *colour = Self::category(info.wires.len() + k),
+                // Spheres carry no axial stress: told apart when there is nothing else, grey beside wires.
+                ColourBy::Stress | ColourBy::PlasticStrain if info.wires.is_empty() => *colour = Self::category(k),
+                ColourBy::Stress | ColourBy::PlasticStrain => (),
+            }
         }
         colours
     }

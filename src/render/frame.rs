@@ -188,9 +188,7 @@ fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
                 shot(camera, "whole strand", body.radius);
             }
             View::Midsection => {
-                let half = ((panel.w - GAP * u) * 0.5).floor();
-                let front = Rect::new(panel.x, panel.y, half, panel.h);
-                let back = Rect::new(panel.right() - half, panel.y, half, panel.h);
+                let (front, back) = halves(*panel, GAP * u);
                 for (panel, caption, turn) in [(front, "front", 0.0), (back, "back", 180.0)] {
                     let camera = viewpoint::section(body, &options.camera, panel, z, turn);
                     let slant = options.camera.azimuth_deg.to_radians().sin().abs();
@@ -211,6 +209,17 @@ fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
     shots
 }
 
+/// Two panels of the same size: side by side, or one above the other when that leaves more room along the strand.
+fn halves(panel: Rect, gap: f32) -> (Rect, Rect) {
+    if panel.w < 2.2 * panel.h {
+        let h = (0.5 * (panel.h - gap)).floor();
+        (Rect { h, ..panel }, Rect { h, y: panel.bottom() - h, ..panel })
+    } else {
+        let w = (0.5 * (panel.w - gap)).floor();
+        (Rect { w, ..panel }, Rect { w, x: panel.right() - w, ..panel })
+    }
+}
+
 /// z before loading [mm] of the section that close-ups follow.
 fn focus(data: &Data, options: &FrameOptions) -> f32 {
     let [low, high] = data.info.gauge.unwrap_or([data.body.low.z, data.body.high.z]);
@@ -218,13 +227,16 @@ fn focus(data: &Data, options: &FrameOptions) -> f32 {
     options.camera.focus_z_mm.or(first).unwrap_or(0.5 * (low + high))
 }
 
-/// The strand's segments as the snapshot has them or with the layers apart, appended to `all`.
-fn append_segments(data: &Data, position: Vec<[f32; 3]>, all: &mut Vec<Segment>) -> std::ops::Range<u32> {
+/// How wires look with their particles at `position` [mm] and each wire in its shade [-].
+fn looks(data: &Data, position: Vec<[f32; 3]>, shade: Vec<f32>) -> Looks {
     let occlusion = occlusion(data.info, &position, &data.snapshot.radius);
-    let looks = Looks { position, colour: data.colours.to_vec(), occlusion };
-    let start = all.len() as u32;
-    all.extend(wires::segments(data.info, data.snapshot, &looks));
-    start..all.len() as u32
+    Looks { position, colour: data.colours.to_vec(), occlusion, shade }
+}
+
+/// Bonds that make up about eight pixels.
+fn stride(data: &Data, camera: &Camera) -> usize {
+    let spacing = 2.0 * data.info.radius.first().copied().unwrap_or(1.0);
+    (8.0 / (spacing * camera.scale)).clamp(1.0, 8.0) as usize
 }
 
 impl Solid {
@@ -245,20 +257,27 @@ impl Solid {
     }
 
     fn draw(&self, data: &Data, shots: &[Shot]) -> Result<()> {
-        let mut segments = Vec::new();
-        let whole = append_segments(data, data.snapshot.position.clone(), &mut segments);
+        let shade = data.body.depth.iter().map(|d| 0.45 + 0.55 * d).collect();
+        let whole = looks(data, data.snapshot.position.clone(), shade);
+        let mut all: Vec<Segment> = Vec::new();
         let mut drawings = Vec::new();
         for shot in shots {
-            let mut instances = whole.clone();
-            if shot.view == View::Exploded {
+            let start = all.len() as u32;
+            let stride = stride(data, &shot.camera);
+            let segments = if shot.view == View::Exploded {
                 let (lifts, _) = exploded::lifts(data.info, data.body);
                 let position = exploded::positions(data, &lifts, &shot.camera);
-                instances = append_segments(data, position, &mut segments);
-            }
+                let apart = looks(data, position, vec![1.0; data.info.wires.len()]);
+                wires::segments(data.info, data.snapshot, &apart, stride)
+            } else {
+                wires::segments(data.info, data.snapshot, &whole, stride)
+            };
+            all.extend(segments.into_iter().filter(|s| shot.camera.sees(s.a, s.b)));
+            let instances = start..all.len() as u32;
             drawings.push(Drawing { camera: shot.camera, instances, fade: shot.fade });
         }
         let origin = [self.area.x, self.area.y];
-        self.pipeline.draw(&self.gpu, &self.target, origin, data.style, &segments, &drawings)
+        self.pipeline.draw(&self.gpu, &self.target, origin, data.style, &all, &drawings)
     }
 
     /// Copies the panels, and nothing between them, into the picture.
@@ -294,13 +313,12 @@ fn overlay(canvas: &mut Canvas, data: &Data, options: &FrameOptions, layout: &La
         [s.camera.centre.z - half, s.camera.centre.z + half]
     });
     for shot in shots {
-        let x = marks::title(canvas, shot.camera.panel, data, shot.caption);
         marks::scale_bar(canvas, &shot.camera, data);
+        let mut remark = String::new();
         match shot.view {
             View::Overview => marks::overview(canvas, &shot.camera, data, window),
             View::Midsection => {
-                let text = format!("around z {focus:.1} mm");
-                marks::subtitle(canvas, x, shot.camera.panel, data, &text);
+                remark = format!("around z {focus:.1} mm");
                 marks::break_numbers(canvas, &shot.camera, data);
             }
             View::Exploded => {
@@ -309,6 +327,7 @@ fn overlay(canvas: &mut Canvas, data: &Data, options: &FrameOptions, layout: &La
             }
             _ => {}
         }
+        marks::title_over(canvas, shot.camera.panel, data, shot.caption, &remark);
     }
     for (view, panel) in &layout.panels {
         match view {

@@ -7,43 +7,64 @@ use super::ticks::{label, ticks};
 use crate::engine::view::RunInfo;
 use crate::scene::spec::ColourBy;
 
+/// Caption of the block on the first rupture.
+const FIRST_BREAK: &str = "first break";
+
 /// Draws the header into `area`.
 pub fn draw(canvas: &mut Canvas, area: Rect, data: &Data) {
     let u = canvas.unit;
     let x = name(canvas, area, data);
     let mut x = x.max(area.x + 190.0 * u);
     let bar = Rect::new(area.right() - 292.0 * u, area.y, 272.0 * u, area.h);
-    for (what, value, detail) in caption(data) {
-        let width = block(canvas, x, area.y, data, &what, &value, &detail);
+    for block in caption(data) {
+        let width = block_width(canvas, &block);
+        // A narrow frame or a long name leaves no room: better nothing than text over text.
+        if x + width > bar.x - 10.0 * u {
+            break;
+        }
+        draw_block(canvas, x, area.y, data, &block);
         x += width + 26.0 * u;
     }
     match data.scale.shown_range() {
+        Some(_) if data.info.wires.is_empty() && data.scale.by() != ColourBy::Velocity => (),
         Some(range) => colour_bar(canvas, bar, data, range),
         None => legend(canvas, bar, data),
     }
 }
 
-/// A block of the caption: what, value, detail.
-type Block = (String, String, String);
+/// A block of the caption.
+struct Block {
+    what: &'static str,
+    value: String,
+    detail: String,
+    /// Size of the value in units.
+    size: f32,
+}
+
+impl Block {
+    fn new(what: &'static str, value: String, detail: String) -> Self {
+        Self { what, value, detail, size: 17.0 }
+    }
+}
 
 fn caption(data: &Data) -> Vec<Block> {
     let sample = &data.snapshot.sample;
-    let time = ("time".into(), time_text(sample.time), format!("step {}", sample.step));
     if data.info.gauge.is_none() {
-        return vec![time];
+        return vec![Block::new("time", time_text(sample.time), format!("step {}", sample.step))];
     }
     let bonds: usize = data.info.wires.iter().map(|w| w.len.saturating_sub(1)).sum();
+    let none = String::new;
     let mut blocks = vec![
-        ("strain".into(), format!("{} %", label(sample.strain * 100.0, 2)), String::new()),
-        ("nominal stress".into(), format!("{} MPa", label(sample.stress / 1e6, 1)), String::new()),
-        ("wires broken".into(), format!("{} / {}", sample.wires_broken, data.info.wires.len()), String::new()),
-        ("bonds broken".into(), format!("{}", sample.bonds_broken), format!("of {bonds}")),
+        Block::new("strain", format!("{} %", label(sample.strain * 100.0, 2)), none()),
+        Block::new("nominal stress", format!("{} MPa", label(sample.stress / 1e6, 1)), none()),
+        Block::new("wires broken", format!("{} / {}", sample.wires_broken, data.info.wires.len()), none()),
+        Block::new("bonds broken", sample.bonds_broken.to_string(), format!("of {bonds}")),
     ];
     if let Some(first) = data.ruptures.first() {
         let layer = data.info.layers.get(first.layer).map_or("", String::as_str);
         let value = format!("wire {} · {layer} · z {:.1} mm", first.wire + 1, first.rest_z * 1e3);
         let detail = format!("at {:.2} % and {:.1} MPa", first.strain * 100.0, first.body_stress / 1e6);
-        blocks.push(("first break".into(), value, detail));
+        blocks.push(Block { size: 14.0, ..Block::new(FIRST_BREAK, value, detail) });
     }
     blocks
 }
@@ -75,22 +96,22 @@ fn size_text(info: &RunInfo) -> String {
     }
 }
 
-fn block(canvas: &mut Canvas, x: f32, y: f32, data: &Data, what: &str, value: &str, detail: &str) -> f32 {
+/// Width of a block [px]; at least a little, so that the caption does not dance as figures come and go.
+fn block_width(canvas: &Canvas, block: &Block) -> f32 {
     let u = canvas.unit;
-    let first = what == "first break";
-    let colour = if first { data.style.signal } else { data.style.muted };
+    let small = |t: &str| canvas.fonts.width(t, 11.0 * u, Weight::Regular);
+    let value = canvas.fonts.width(&block.value, block.size * u, Weight::Bold);
+    small(block.what).max(value).max(small(&block.detail)).max(74.0 * u)
+}
+
+fn draw_block(canvas: &mut Canvas, x: f32, y: f32, data: &Data, block: &Block) {
+    let u = canvas.unit;
+    let colour = if block.what == FIRST_BREAK { data.style.signal } else { data.style.muted };
     let small = Type { size: 11.0 * u, weight: Weight::Regular, colour, align: Align::Left };
-    let big = Type {
-        size: if first { 14.0 } else { 17.0 } * u,
-        weight: Weight::Bold,
-        colour: data.style.text,
-        align: Align::Left,
-    };
-    let a = canvas.text(x, y + 18.0 * u, small, what);
-    let b = canvas.text(x, y + 37.0 * u, big, value);
-    let c = canvas.text(x, y + 51.0 * u, Type { colour: data.style.muted, ..small }, detail);
-    // The caption must not dance as figures come and go.
-    a.max(b).max(c).max(74.0 * u)
+    let big = Type { size: block.size * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
+    canvas.text(x, y + 18.0 * u, small, block.what);
+    canvas.text(x, y + 37.0 * u, big, &block.value);
+    canvas.text(x, y + 51.0 * u, Type { colour: data.style.muted, ..small }, &block.detail);
 }
 
 fn colour_bar(canvas: &mut Canvas, area: Rect, data: &Data, range: [f64; 2]) {
@@ -112,6 +133,9 @@ fn colour_bar(canvas: &mut Canvas, area: Rect, data: &Data, range: [f64; 2]) {
         let x = bar.x + bar.w * ((value - range[0]) / (range[1] - range[0])) as f32;
         canvas.fill(Rect::new(x - 0.5 * u, bar.bottom(), u, 4.0 * u), data.style.muted, 1.0);
         canvas.text(x, bar.bottom() + 15.0 * u, small, &label(value, marks.decimals));
+    }
+    if data.info.wires.is_empty() {
+        return;
     }
     let x = area.right();
     let kind = Type { align: Align::Right, colour: data.style.signal, ..small };

@@ -154,6 +154,8 @@ impl SolidPipeline {
                 pass.set_vertex_buffer(0, instances.slice(..));
                 pass.draw(0..4, drawing.instances.clone());
             }
+            // On the GL backend the last scissor also cuts what is resolved when the pass ends.
+            pass.set_scissor_rect(0, 0, target.width, target.height);
         })
     }
 

@@ -144,7 +144,7 @@ impl Theme {
                 grid: [44, 50, 62],
                 signal: SIGNAL,
                 accent: [240, 243, 248],
-                rim: [0.10, 0.13, 0.17],
+                rim: [0.10, 0.12, 0.15],
                 edge: 0.0,
             },
             Theme::Light => Style {

@@ -36,7 +36,7 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data) {
         row(canvas, &rows, *top, wire, data);
     }
     layers(canvas, panel, &rows, data);
-    axis(canvas, panel, &rows, data);
+    axis(canvas, &rows, data);
     breaks(canvas, &rows, data);
     numbers(canvas, &rows, data);
 }
@@ -44,7 +44,7 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data) {
 fn rows(area: Rect, data: &Data, unit: f32) -> Rows {
     let wires = &data.info.wires;
     let gaps = data.info.layers.len().saturating_sub(1) as f32;
-    let height = (area.h / (wires.len() as f32 + 1.2 * gaps).max(1.0)).min(18.0 * unit);
+    let height = (area.h / (wires.len() as f32 + 1.2 * gaps).max(1.0)).min(34.0 * unit);
     let mut top = vec![area.y; wires.len()];
     let mut y = area.y;
     for layer in (0..data.info.layers.len()).rev() {
@@ -55,6 +55,8 @@ fn rows(area: Rect, data: &Data, unit: f32) -> Rows {
         }
         y += 1.2 * height;
     }
+    // Few wires do not fill the panel: the axis then follows the last row.
+    let area = Rect { h: (y - 1.2 * height - area.y).min(area.h), ..area };
     Rows { area, range: [data.body.low.z, data.body.high.z], top, height }
 }
 
@@ -97,7 +99,7 @@ fn layers(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
     }
 }
 
-fn axis(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
+fn axis(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     let u = canvas.unit;
     let small = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Centre };
     let marks = ticks(f64::from(rows.range[0]), f64::from(rows.range[1]), 8);
@@ -108,7 +110,7 @@ fn axis(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
         canvas.text(x, bottom + 16.0 * u, small, &label(value, marks.decimals));
     }
     let kind = Type { align: Align::Right, colour: data.style.text, ..small };
-    canvas.text(rows.area.right(), panel.bottom() - 8.0 * u, kind, "axial position before loading (mm)");
+    canvas.text(rows.area.right(), bottom + 31.0 * u, kind, "axial position before loading (mm)");
     if let Some(faces) = data.info.gauge {
         for z in faces {
             let x = rows.x(z);

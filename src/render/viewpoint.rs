@@ -11,7 +11,7 @@ use glam::Vec3;
 const UNKNOWN_STRAIN: f64 = 0.3;
 
 /// Size and place of the body before loading [mm].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// Least corner of the box around all particles.
     pub low: Vec3,
@@ -21,6 +21,8 @@ pub struct Body {
     pub axis: Vec3,
     /// Greatest distance of a wire's surface from the axis.
     pub radius: f32,
+    /// Mean distance of each wire from the axis over the greatest such distance [-]; 1 when all lie on the axis.
+    pub depth: Vec<f32>,
 }
 
 impl Body {
@@ -42,8 +44,20 @@ impl Body {
             .zip(&info.radius)
             .map(|(p, r)| (p[0] - axis.x).hypot(p[1] - axis.y) + r)
             .fold(1e-6, f32::max);
-        Self { low, high, axis, radius }
+        let depth = wire_depth(info, axis);
+        Self { low, high, axis, radius, depth }
     }
+}
+
+fn wire_depth(info: &RunInfo, axis: Vec3) -> Vec<f32> {
+    let distance = |wire: &crate::engine::view::WireInfo| {
+        let points = &info.rest_position[wire.first..wire.first + wire.len];
+        let sum: f32 = points.iter().map(|p| (p[0] - axis.x).hypot(p[1] - axis.y)).sum();
+        sum / wire.len.max(1) as f32
+    };
+    let all: Vec<f32> = info.wires.iter().map(distance).collect();
+    let greatest = all.iter().copied().fold(0.0, f32::max);
+    all.iter().map(|d| if greatest > 1e-6 { d / greatest } else { 1.0 }).collect()
 }
 
 /// Camera of the overview: the whole body with room for its stretch, always at the same scale.
@@ -62,7 +76,7 @@ pub fn overview(info: &RunInfo, body: &Body, options: &CameraOptions, panel: Rec
 /// Camera of a close-up on the section at `z` [mm]; `turn_deg` is added to the elevation.
 pub fn section(body: &Body, options: &CameraOptions, panel: Rect, z: f32, turn_deg: f32) -> Camera {
     // The strand fills a little more than half of the height: the rest is for wires that spring out.
-    let scale = options.zoom * panel.h / (3.5 * body.radius);
+    let scale = options.zoom * (panel.h / 3.5).min(panel.w / 5.0) / body.radius;
     Camera {
         rotation: Camera::orientation(options.azimuth_deg, options.elevation_deg + turn_deg),
         centre: Vec3::new(body.axis.x, body.axis.y, z),

@@ -17,7 +17,7 @@ pub struct Segment {
     pub tangent_a: [f32; 4],
     /// The same at `b`.
     pub tangent_b: [f32; 4],
-    /// Linear colour at `a`.
+    /// Linear colour at `a`, and the shade of the wire, 0 to 1.
     pub colour_a: [f32; 4],
     /// Linear colour at `b`.
     pub colour_b: [f32; 4],
@@ -42,14 +42,17 @@ pub struct Looks {
     pub colour: Vec<Rgb>,
     /// Occlusion.
     pub occlusion: Vec<[f32; 4]>,
+    /// Shade per wire [-]: 1 outside, less further in, so that what lies below a gap reads as deeper.
+    pub shade: Vec<f32>,
 }
 
-/// The segments of every wire and sphere.
-pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks) -> Vec<Segment> {
+/// The segments of every wire and sphere. Where a wire is straight, up to `stride` bonds share a segment: small
+/// pictures need no more.
+pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks, stride: usize) -> Vec<Segment> {
     let mut all = Vec::with_capacity(snapshot.position.len());
-    for wire in &info.wires {
-        let chain = Chain { info, snapshot, looks, wire };
-        chain.segments(&mut all);
+    for (wire, shade) in info.wires.iter().zip(&looks.shade) {
+        let chain = Chain { info, snapshot, looks, wire, shade: *shade };
+        chain.segments(stride, &mut all);
     }
     for i in info.wire_particles..snapshot.position.len() {
         all.push(sphere(snapshot, looks, i));
@@ -73,21 +76,33 @@ struct Chain<'a> {
     snapshot: &'a Snapshot,
     looks: &'a Looks,
     wire: &'a WireInfo,
+    shade: f32,
 }
 
 impl Chain<'_> {
-    fn segments(&self, all: &mut Vec<Segment>) {
+    fn segments(&self, stride: usize, all: &mut Vec<Segment>) {
         let last = self.wire.first + self.wire.len.saturating_sub(1);
-        for i in self.wire.first..last {
+        let mut i = self.wire.first;
+        while i < last {
+            let mut j = i + 1;
             if holds(self.snapshot, i) {
-                all.push(self.between(i, i + 1));
+                while j < last && j - i < stride && holds(self.snapshot, j) && self.straight(i, j + 1) {
+                    j += 1;
+                }
+                all.push(self.between(i, j));
             }
+            i = j;
         }
         for i in self.wire.first..self.wire.first + self.wire.len {
             if !self.holds_before(i) && !self.holds_after(i) {
                 all.push(self.between(i, i));
             }
         }
+    }
+
+    /// Whether the wire turns by less than 2.5° between two particles.
+    fn straight(&self, i: usize, j: usize) -> bool {
+        self.tangent(i).dot(self.tangent(j)) > 0.999
     }
 
     fn holds_before(&self, i: usize) -> bool {
@@ -138,7 +153,9 @@ impl Chain<'_> {
 
     fn colour(&self, i: usize) -> [f32; 4] {
         let colour = self.looks.colour[i];
-        linear4(if in_grip(self.info, i) { desaturated(colour) } else { colour })
+        let shown = if in_grip(self.info, i) { desaturated(colour) } else { colour };
+        let [r, g, b, _] = linear4(shown);
+        [r, g, b, self.shade]
     }
 }
 

@@ -15,7 +15,7 @@ struct Segment {
   @location(1) b: vec4<f32>,   // second centre, radius [mm]
   @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 end, 2 broken end
   @location(3) tb: vec4<f32>,
-  @location(4) ca: vec4<f32>,  // linear colour at a
+  @location(4) ca: vec4<f32>,  // linear colour at a; w: shade of wires inside the strand
   @location(5) cb: vec4<f32>,
   @location(6) oa: vec4<f32>,  // occlusion at a: sum of w d, sum of w
   @location(7) ob: vec4<f32>,
@@ -71,11 +71,18 @@ fn reach(kind: f32, r: f32, tangent: vec3<f32>, along: vec3<f32>) -> f32 {
   return o;
 }
 
-// Inside (negative) or outside of the segment's outline in the picture [mm].
-fn outline(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>) -> f32 {
-  let d = b.xy - a.xy;
-  let s = clamp(dot(p - a.xy, d) / max(dot(d, d), 1e-12), 0.0, 1.0);
-  return length(p - a.xy - d * s) - mix(a.w, b.w, s);
+// Whether p lies inside the segment's outline in the picture. `along` is the axis over its squared length.
+fn covers(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>, along: vec2<f32>) -> bool {
+  let w = p - a.xy;
+  let s = clamp(dot(w, along), 0.0, 1.0);
+  let off = w - (b.xy - a.xy) * s;
+  let r = mix(a.w, b.w, s);
+  return dot(off, off) <= r * r;
+}
+
+fn outline_axis(in: Varying) -> vec2<f32> {
+  let d = in.b.xy - in.a.xy;
+  return d / max(dot(d, d), 1e-12);
 }
 
 struct Hit {
@@ -124,6 +131,8 @@ fn intersect(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>) -> Hit {
   return hit;
 }
 
+fn square(x: f32) -> f32 { return x * x; }
+
 struct Lit { colour: vec4<f32>, depth: f32, };
 
 fn shade(p: vec2<f32>, in: Varying) -> Lit {
@@ -152,17 +161,25 @@ fn shade(p: vec2<f32>, in: Varying) -> Lit {
   let base = mix(mix(in.ca.rgb, in.cb.rgb, s), view.signal.rgb, broken);
 
   let o = mix(in.oa, in.ob, s);
-  let open = clamp(1.0 - 0.8 * (0.25 * o.w + 0.5 * dot(o.xyz, n)), 0.12, 1.0);
+  // Neighbours on both sides cancel in the sum of directions; what is left of the sum of weights lies to the sides.
+  let sides = max(o.w - length(o.xyz), 0.0);
+  let lateral = cross(tangent, o.xyz);
+  let towards_side = dot(n, lateral) * dot(n, lateral) / max(dot(lateral, lateral), 1e-9);
+  let hidden = 0.26 * o.w + 0.5 * dot(o.xyz, n) + 0.55 * sides * towards_side;
+  let open = clamp(1.0 - 0.8 * hidden, 0.08, 1.0);
   // Deeper parts are a little darker, so that layers read in depth.
-  let deep = smoothstep(-1.0, 0.9, (hit.z - view.fade.x) / view.fade.y);
+  let deep = clamp(0.2 + 0.8 * (hit.z - view.fade.x) / view.fade.y, 0.0, 1.0);
   let light = normalize(vec3<f32>(-0.35, 0.62, 0.70));
   let diffuse = max(dot(n, light), 0.0);
   let sky = 0.30 + 0.16 * n.y + 0.14 * n.z;
-  let glint = pow(max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0), 40.0);
-  let slant = pow(1.0 - clamp(n.z, 0.0, 1.0), 2.5);
-  var colour = base * (sky * open + 0.78 * diffuse * mix(0.45, 1.0, open)) * mix(0.62, 1.0, deep);
-  colour += vec3<f32>(0.11) * glint * open;
-  colour = colour * (1.0 - view.rim.w * slant) + view.rim.rgb * slant * open;
+  // Powers by squaring: 32 for the highlight, 3 along silhouettes.
+  let half2 = square(max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0));
+  let glint = square(square(square(square(half2))));
+  let rim = 1.0 - clamp(n.z, 0.0, 1.0);
+  let slant = rim * rim * rim;
+  var colour = base * (sky * open + 0.78 * diffuse * mix(0.45, 1.0, open)) * mix(0.6, 1.0, deep) * mix(in.ca.w, in.cb.w, s);
+  colour += (0.025 + 0.14 * base) * glint * open;
+  colour = colour * (1.0 - view.rim.w * slant) + view.rim.rgb * (0.35 + 3.0 * base) * slant * open * open;
   // A broken end keeps its colour also in the shade.
   colour = mix(colour, max(colour, base * 0.55), broken);
 
@@ -188,9 +205,10 @@ struct Masked {
   var mask = 0u;
   var sum = vec2<f32>(0.0);
   var count = 0.0;
+  let along = outline_axis(in);
   for (var i = 0u; i < 4u; i++) {
     let q = in.p + dx * offsets[i].x + dy * offsets[i].y;
-    if (outline(q, in.a, in.b) <= 0.0) {
+    if (covers(q, in.a, in.b, along)) {
       mask |= 1u << i;
       sum += q;
       count += 1.0;
@@ -208,7 +226,7 @@ struct Whole {
 
 // For adapters without a sample mask: whole pixels.
 @fragment fn fs_whole(in: Varying) -> Whole {
-  if (outline(in.p, in.a, in.b) > 0.0) { discard; }
+  if (!covers(in.p, in.a, in.b, outline_axis(in))) { discard; }
   let lit = shade(in.p, in);
   return Whole(lit.colour, lit.depth);
 }

@@ -18,7 +18,7 @@ use std::time::Instant;
 const WAITING: usize = 4;
 
 /// Writes `frame_0000.png`, `frame_0001.png` … into a folder. Draws on one thread and encodes on another; only when
-/// [`WAITING`] snapshots are not yet drawn does the simulation wait.
+/// four snapshots are not yet drawn does the simulation wait.
 pub struct FrameWriter {
     folder: PathBuf,
     options: FrameOptions,

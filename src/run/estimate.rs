@@ -22,12 +22,15 @@ pub struct Estimate {
     /// Bonds.
     pub bonds: usize,
     /// First time step [s].
+    pub first_time_step: f64,
+    /// Time step after the trial steps [s]: the first one may be short, because the bound does not know yet which
+    /// contacts will close.
     pub time_step: f64,
     /// What limits it.
     pub time_step_limit: String,
     /// Simulated time to the expected end [s]; `None` when the scene does not tell.
     pub duration: Option<f64>,
-    /// Steps to the expected end at the first time step.
+    /// Steps to the expected end at the time step after the trial.
     pub steps: Option<f64>,
     /// Wall time of a step, measured [s].
     pub step_wall: f64,
@@ -42,8 +45,7 @@ pub struct Estimate {
 pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
     let (wires, particles, bonds) = (assembly.wires.len(), assembly.len(), assembly.bond_count());
     let mut engine = Engine::new(spec, assembly)?;
-    let time_step = engine.time_step();
-    let time_step_limit = engine.time_step_limit();
+    let first_time_step = engine.time_step();
     let duration = duration(spec, &engine.info());
     let begin = Instant::now();
     let mut measured = 0;
@@ -51,17 +53,20 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
         engine.step()?;
         measured += 1;
     }
+    let step_wall = begin.elapsed().as_secs_f64() / measured as f64;
+    let time_step = engine.time_step();
     let of_time = duration.map(|seconds| (seconds / time_step).ceil());
     let of_steps = spec.stop.steps.map(|n| n as f64);
     Ok(Estimate {
         wires,
         particles,
         bonds,
+        first_time_step,
         time_step,
-        time_step_limit,
+        time_step_limit: engine.time_step_limit(),
         duration,
         steps: [of_time, of_steps].into_iter().flatten().reduce(f64::min),
-        step_wall: begin.elapsed().as_secs_f64() / measured as f64,
+        step_wall,
         measured,
     })
 }
@@ -83,7 +88,11 @@ fn duration(spec: &Spec, info: &RunInfo) -> Option<f64> {
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "size: {} wires, {} particles, {} bonds", self.wires, self.particles, self.bonds)?;
-        writeln!(f, "time step: {:.3e} s at first, limited by {}", self.time_step, self.time_step_limit)?;
+        writeln!(
+            f,
+            "time step: {:.3e} s at first, {:.3e} s after {} steps, limited by {}",
+            self.first_time_step, self.time_step, self.measured, self.time_step_limit
+        )?;
         if let Some(duration) = self.duration {
             writeln!(f, "simulated time: {duration:.3e} s")?;
         }

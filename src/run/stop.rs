@@ -34,7 +34,7 @@ impl fmt::Display for StopReason {
             Self::StressFraction(fraction) => {
                 write!(f, "stress fell to {} % of its peak after a rupture (stop.stress_fraction)", fraction * 100.0)
             }
-            Self::Time(time) => write!(f, "time reached {time:e} s (stop.time)"),
+            Self::Time(time) => write!(f, "time reached {time:.4e} s (stop.time)"),
             Self::Steps(steps) => write!(f, "{steps} steps were done (stop.steps)"),
             Self::Interrupted => write!(f, "interrupted"),
             Self::Trouble => write!(f, "trouble"),

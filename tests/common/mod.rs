@@ -22,10 +22,19 @@ pub const BREAKS: [(usize, f32); 7] =
 
 /// The strand before loading.
 pub fn ka4_like() -> RunInfo {
+    strand("ka4-like", &["inner", "middle", "outer"], &LAYERS)
+}
+
+/// One straight wire.
+pub fn single_wire() -> RunInfo {
+    strand("single-wire", &["wire"], &[(1, 0.0)])
+}
+
+fn strand(name: &str, layers: &[&str], wires: &[(usize, f32)]) -> RunInfo {
     let mut info = RunInfo {
-        name: "ka4-like".into(),
+        name: name.into(),
         about: "A made-up strand for tests of pictures.".into(),
-        layers: ["inner", "middle", "outer"].map(String::from).to_vec(),
+        layers: layers.iter().map(|l| (*l).into()).collect(),
         wires: Vec::new(),
         wire_particles: 0,
         particles: 0,
@@ -37,7 +46,7 @@ pub fn ka4_like() -> RunInfo {
         speed_range: [0.0, 2.0],
         strain_end: Some(0.2857),
     };
-    for (layer, (count, lay_radius)) in LAYERS.into_iter().enumerate() {
+    for (layer, (count, lay_radius)) in wires.iter().copied().enumerate() {
         for k in 0..count {
             info.wires.push(WireInfo { layer, first: info.rest_position.len(), len: PARTICLES, diameter: DIAMETER });
             for i in 0..PARTICLES {
@@ -95,9 +104,20 @@ fn hardening(strain: f32) -> f32 {
 
 /// The same with the first `count` of [`BREAKS`], ends sprung back and out by up to a millimetre.
 pub fn snapped(info: &RunInfo, strain: f32, count: usize) -> (Snapshot, Vec<Rupture>) {
+    broken(info, strain, &BREAKS[..count])
+}
+
+/// Every wire broken, most of them near the middle.
+pub fn all_snapped(info: &RunInfo, strain: f32) -> (Snapshot, Vec<Rupture>) {
+    let place = |w: usize| 60.0 + 14.0 * (2.7 * w as f32).sin();
+    let breaks: Vec<_> = (0..info.wires.len()).map(|k| (k * 23) % info.wires.len()).map(|w| (w, place(w))).collect();
+    broken(info, strain, &breaks)
+}
+
+fn broken(info: &RunInfo, strain: f32, breaks: &[(usize, f32)]) -> (Snapshot, Vec<Rupture>) {
     let mut s = stretched(info, strain);
     let mut ruptures: Vec<Rupture> = Vec::new();
-    for (order, &(w, z)) in BREAKS.iter().take(count).enumerate() {
+    for (order, &(w, z)) in breaks.iter().enumerate() {
         let bond = bond_at(info, w, z);
         let first_of_wire = ruptures.iter().all(|r| r.wire != w);
         s.bond_state[bond] = BondState::Broken;
@@ -106,7 +126,7 @@ pub fn snapped(info: &RunInfo, strain: f32, count: usize) -> (Snapshot, Vec<Rupt
             order: order + 1,
             step: 1000 + order as u64,
             time: 1e-3,
-            strain: body - 0.004 * (count - order) as f64,
+            strain: body - 0.03 * (breaks.len() - order) as f64 / breaks.len() as f64,
             wire: w,
             layer: info.wires[w].layer,
             bond,
@@ -186,5 +206,20 @@ pub fn two_spheres() -> (RunInfo, Snapshot) {
         bond_stress: vec![0.0; 2],
         plastic_strain: vec![0.0; 2],
     };
+    (info, snapshot)
+}
+
+/// A wire along z without grips, bent into a quarter circle.
+pub fn bent_wire() -> (RunInfo, Snapshot) {
+    let mut info = single_wire();
+    info.name = "cantilever-like".into();
+    info.gauge = None;
+    let mut snapshot = stretched(&RunInfo { gauge: Some([0.0, LENGTH]), ..info.clone() }, 0.0);
+    let bend = LENGTH * 2.0 / std::f32::consts::PI;
+    for (k, p) in snapshot.position.iter_mut().enumerate() {
+        let angle = p[2] / bend;
+        *p = [0.0, bend * (1.0 - angle.cos()), bend * angle.sin()];
+        snapshot.bond_stress[k] = 300.0 * angle.cos();
+    }
     (info, snapshot)
 }

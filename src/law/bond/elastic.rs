@@ -30,7 +30,7 @@ impl BondLaw for Elastic {
 
     #[inline(always)]
     fn stiffness(&self, shape: &BondShape, _: &()) -> BondStiffness {
-        Section::round(shape.radius).stiffness(&self.moduli, shape.rest_length)
+        Section::round(shape.radius).stiffness(&self.moduli, shape.inverse_length)
     }
 
     /// The axial part is the potential of N = EA ln(l/l₀): EA (l ln(l/l₀) − l + l₀).
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn axial_force_is_the_slope_of_its_energy() {
         let law = Elastic { moduli: Moduli::new(115e9, 0.34) };
-        let shape = BondShape { rest_length: 0.39e-3, radius: 0.195e-3 };
+        let shape = BondShape::new(0.39e-3, 0.195e-3);
         let energy = |l: f64| {
             let mut force = BondForce::default();
             let step = BondIncrement { log_strain: (l / shape.rest_length).ln(), length: l, ..Default::default() };

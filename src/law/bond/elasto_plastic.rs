@@ -10,7 +10,7 @@ use super::hardening::Hardening;
 use super::{
     BondForce, BondIncrement, BondLaw, BondShape, BondStiffness, Moduli, Section, add_transverse, transverse_energy,
 };
-use std::f64::consts::PI;
+use std::f64::consts::FRAC_1_PI;
 
 /// Elastoplastic bond.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +31,8 @@ pub struct PlasticState {
     pub equivalent: f64,
     /// e^(−ε_p/2), factor on the radius [-].
     pub thinning: f64,
+    /// e^(ε_p/2) [-].
+    pub inverse_thinning: f64,
     /// σ_y(p) [Pa].
     pub yield_stress: f64,
     /// dσ_y/dp [Pa].
@@ -64,8 +66,8 @@ struct Trial {
     shear_rate: f64,
     /// Growth of σ_y/σ_y₀ with x at unit plastic work [1/Pa].
     hardening_rate: f64,
-    /// σ_y at the start [Pa].
-    yield_stress: f64,
+    /// 1/σ_y at the start [1/Pa].
+    inverse_yield: f64,
 }
 
 impl Trial {
@@ -88,47 +90,46 @@ impl Trial {
             square(self.shear, self.shear_rate),
         );
         let mut x = (0.5 * (n.0 + t.0 + v.0 - 1.0) / (n.1 + t.1 + v.1)).max(0.0);
-        let mut end = Return { axial: 1.0, bend: 1.0, twist: 1.0, shear: 1.0, equivalent: 0.0 };
-        for _ in 0..60 {
+        for round in 0.. {
             // σ_y along the return over σ_y at its start.
             let growth = 1.0 + hardening * x;
             let g1 = 1.0 / growth;
             let g2 = g1 * g1;
-            let soft = |rate: f64| 1.0 / (1.0 + x * rate * g2);
-            let (fa, ft, fs) = (soft(self.axial_rate), soft(self.twist_rate), soft(self.shear_rate));
-            let (n, t, v) = (self.axial * g1 * fa, self.twist * g1 * ft, self.shear * g1 * fs);
+            // 1/(1 + x rate) per mode; the axial one apart, so that it has the same bits without the others.
+            let stiff = |rate: f64| 1.0 + x * rate * g2;
+            let (sa, st, ss) = (stiff(self.axial_rate), stiff(self.twist_rate), stiff(self.shear_rate));
+            let both = 1.0 / (st * ss);
+            let (axial, twist, shear) = (1.0 / sa, both * ss, both * st);
+            let (n, t, v) = (self.axial * g1 * axial, self.twist * g1 * twist, self.shear * g1 * shear);
             let bend = (self.bend * g1 - x * self.bend_rate * g2).max(0.0);
             let f = n * n + bend + t * t + v * v - 1.0;
-            end = Return {
-                axial: fa,
-                bend: if self.bend > 0.0 { bend * growth / self.bend } else { 0.0 },
-                twist: ft,
-                shear: fs,
-                equivalent: x * (2.0 - bend) / (self.yield_stress * growth),
-            };
-            if f.abs() < 1e-11 {
-                break;
+            if f.abs() < 1e-11 || round == 60 {
+                let kept = if bend > 0.0 { bend * growth / self.bend } else { 0.0 };
+                let equivalent = x * (2.0 - bend) * self.inverse_yield * g1;
+                return Return { axial, bend: kept, twist, shear, equivalent };
             }
             let fall = |value: f64, rate: f64, soft: f64| value * value * (hardening * g1 + rate * g2 * soft);
-            let mut slope = fall(n, self.axial_rate, fa) + fall(t, self.twist_rate, ft) + fall(v, self.shear_rate, fs);
+            let mut slope =
+                fall(n, self.axial_rate, axial) + fall(t, self.twist_rate, twist) + fall(v, self.shear_rate, shear);
             slope *= -2.0;
             if bend > 0.0 {
                 slope -= (self.bend * hardening + self.bend_rate) * g2;
             }
             x = (x - f / slope).max(0.0);
         }
-        end
+        unreachable!("the last round returns")
     }
 }
 
 impl ElastoPlastic {
     fn trial_axial(&self, stress: f64, state: &PlasticState) -> Trial {
-        let y = state.yield_stress;
+        let inverse_yield = 1.0 / state.yield_stress;
+        let inverse2 = inverse_yield * inverse_yield;
         Trial {
-            axial: stress / y,
-            axial_rate: 2.0 * self.moduli.young / (y * y),
-            hardening_rate: state.slope / (y * y),
-            yield_stress: y,
+            axial: stress * inverse_yield,
+            axial_rate: 2.0 * self.moduli.young * inverse2,
+            hardening_rate: state.slope * inverse2,
+            inverse_yield,
             ..Default::default()
         }
     }
@@ -139,13 +140,40 @@ impl ElastoPlastic {
         state.axial += plastic_axial;
         state.equivalent += equivalent;
         state.thinning = (-0.5 * state.axial).exp();
+        state.inverse_thinning = 1.0 / state.thinning;
         (state.yield_stress, state.slope) = self.hardening.evaluate(state.equivalent);
     }
 
-    /// Plastic work that tension does, ½(σ + σ')A l Δε_p [J]; stresses in Pa before and after the step.
+    /// The trial point of all modes.
     #[inline(always)]
-    fn axial_work(section: &Section, stress: [f64; 2], plastic: f64, step: &BondIncrement) -> f64 {
-        0.5 * (stress[0] + stress[1]) * section.area * step.length * plastic
+    #[allow(clippy::too_many_arguments)]
+    fn trial(
+        &self,
+        shape: &BondShape,
+        force: &BondForce,
+        state: &PlasticState,
+        section: &Section,
+        k: &BondStiffness,
+        stress: f64,
+        length: f64,
+    ) -> Trial {
+        let axial = self.trial_axial(stress, state);
+        let inverse_radius = shape.inverse_radius * state.inverse_thinning;
+        // 1/(σ_y r³); the limits are its inverse times 4/3 and 2π/3/√3, and σ_yA/√3.
+        let inverse_moment = axial.inverse_yield * inverse_radius * inverse_radius * inverse_radius;
+        let bend = 0.75 * inverse_moment;
+        let twist = 1.5 * FRAC_1_PI * SQRT_3 * inverse_moment;
+        let shear = SQRT_3 * FRAC_1_PI * axial.inverse_yield * inverse_radius * inverse_radius;
+        let volume = section.area * length;
+        Trial {
+            bend: force.bend_size() * bend,
+            twist: force.twist.abs() * twist,
+            shear: force.shear_size() * shear,
+            bend_rate: k.bend * volume * bend * bend,
+            twist_rate: 2.0 * k.twist * volume * twist * twist,
+            shear_rate: 2.0 * k.shear * volume * shear * shear,
+            ..axial
+        }
     }
 }
 
@@ -154,7 +182,7 @@ impl BondLaw for ElastoPlastic {
 
     fn initial(&self) -> PlasticState {
         let (yield_stress, slope) = self.hardening.evaluate(0.0);
-        PlasticState { axial: 0.0, equivalent: 0.0, thinning: 1.0, yield_stress, slope }
+        PlasticState { axial: 0.0, equivalent: 0.0, thinning: 1.0, inverse_thinning: 1.0, yield_stress, slope }
     }
 
     #[inline(always)]
@@ -170,21 +198,7 @@ impl BondLaw for ElastoPlastic {
         let before = *force;
         add_transverse(force, &k, step);
         let stress = self.moduli.young * (step.log_strain - state.axial);
-        let y = state.yield_stress;
-        let r3 = section.radius * section.radius * section.radius;
-        let (bend_limit, twist_limit, shear_limit) =
-            ((4.0 / 3.0) * y * r3, (2.0 * PI / 3.0) * INV_SQRT_3 * y * r3, INV_SQRT_3 * y * section.area);
-        let volume = section.area * step.length;
-        let (bend_size, shear_size) = (force.bend_size(), force.shear_size());
-        let trial = Trial {
-            bend: bend_size / bend_limit,
-            twist: force.twist.abs() / twist_limit,
-            shear: shear_size / shear_limit,
-            bend_rate: k.bend * volume / (bend_limit * bend_limit),
-            twist_rate: 2.0 * k.twist * volume / (twist_limit * twist_limit),
-            shear_rate: 2.0 * k.shear * volume / (shear_limit * shear_limit),
-            ..self.trial_axial(stress, state)
-        };
+        let trial = self.trial(shape, force, state, &section, &k, stress, step.length);
         if !trial.outside() {
             force.axial = stress * section.area;
             return 0.0;
@@ -195,22 +209,15 @@ impl BondLaw for ElastoPlastic {
             force.bend[axis] *= end.bend;
         }
         force.twist *= end.twist;
-        let plastic_axial = stress * (1.0 - end.axial) / self.moduli.young;
-        let stress_before = before.axial / section.area;
-        let mut work = Self::axial_work(&section, [stress_before, stress * end.axial], plastic_axial, step);
-        work += transverse_plastic_work(&before, force, &k, step);
+        let compliance = Compliance::new(&k, &self.moduli);
+        let plastic_axial = stress * (1.0 - end.axial) * self.moduli.compliance;
+        // Both ends of the step on the section at its start.
+        let work = 0.5 * (before.axial + stress * end.axial * section.area) * step.length * plastic_axial
+            + transverse_plastic_work(&before, force, &compliance, step);
+        let thinning_before = state.inverse_thinning;
         self.advance(state, plastic_axial, end.equivalent);
         force.axial = self.moduli.young * (step.log_strain - state.axial) * self.section(shape, state).area;
-        // Elastic shear, bending and torsion stay what they were while the section thins: forces follow the stiffness,
-        // and the energy that goes counts as plastic work.
-        let softer = self.stiffness(shape, state);
-        let held = transverse_energy(force, &k);
-        for axis in 0..2 {
-            force.shear[axis] *= softer.shear / k.shear;
-            force.bend[axis] *= softer.bend / k.bend;
-        }
-        force.twist *= softer.twist / k.twist;
-        work + held - transverse_energy(force, &softer)
+        work + soften(force, &compliance, &self.stiffness(shape, state), state.thinning * thinning_before)
     }
 
     #[inline(always)]
@@ -229,9 +236,8 @@ impl BondLaw for ElastoPlastic {
             return 0.0;
         }
         let end = trial.solve();
-        let plastic_axial = stress * (1.0 - end.axial) / self.moduli.young;
-        let stress_before = force.axial / section.area;
-        let work = Self::axial_work(&section, [stress_before, stress * end.axial], plastic_axial, step);
+        let plastic_axial = stress * (1.0 - end.axial) * self.moduli.compliance;
+        let work = 0.5 * (force.axial + stress * end.axial * section.area) * step.length * plastic_axial;
         self.advance(state, plastic_axial, end.equivalent);
         force.axial = self.moduli.young * (step.log_strain - state.axial) * self.section(shape, state).area;
         work
@@ -269,32 +275,74 @@ impl BondLaw for ElastoPlastic {
     }
 }
 
-const INV_SQRT_3: f64 = 0.577_350_269_189_625_8;
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
-/// Stress-free length l₀e^(ε_p) [m].
+/// Inverse of the stress-free length, e^(−ε_p)/l₀ [1/m].
 #[inline(always)]
 fn natural_length(shape: &BondShape, state: &PlasticState) -> f64 {
-    shape.rest_length / (state.thinning * state.thinning)
+    shape.inverse_length * (state.thinning * state.thinning)
+}
+
+/// Inverses of the stiffnesses across.
+struct Compliance {
+    shear: f64,
+    bend: f64,
+    twist: f64,
+}
+
+impl Compliance {
+    #[inline(always)]
+    fn new(k: &BondStiffness, moduli: &Moduli) -> Self {
+        let bend = 1.0 / k.bend;
+        // Torsion is GJ/l = 2GI/l, bending EI/l.
+        Self { shear: 1.0 / k.shear, bend, twist: bend * moduli.bend_over_twist }
+    }
 }
 
 /// Mean force times plastic displacement over shear, bending and torsion [J]; the plastic displacement is what the
 /// elastic change of force does not explain.
 #[inline(always)]
-fn transverse_plastic_work(before: &BondForce, after: &BondForce, k: &BondStiffness, step: &BondIncrement) -> f64 {
-    let mode = |f0: f64, f1: f64, k: f64, total: f64| 0.5 * (f0 + f1) * (total - (f1 - f0) / k);
-    let mut work = mode(before.twist, after.twist, k.twist, step.twist);
+fn transverse_plastic_work(before: &BondForce, after: &BondForce, c: &Compliance, step: &BondIncrement) -> f64 {
+    let mode = |f0: f64, f1: f64, c: f64, total: f64| 0.5 * (f0 + f1) * (total - (f1 - f0) * c);
+    let mut work = mode(before.twist, after.twist, c.twist, step.twist);
     for axis in 0..2 {
-        work += mode(before.shear[axis], after.shear[axis], k.shear, step.shear[axis]);
-        work += mode(before.bend[axis], after.bend[axis], k.bend, step.bend[axis]);
+        work += mode(before.shear[axis], after.shear[axis], c.shear, step.shear[axis]);
+        work += mode(before.bend[axis], after.bend[axis], c.bend, step.bend[axis]);
     }
     work
+}
+
+/// Elastic shear, bending and torsion stay what they were while the section thins: forces follow the stiffness, and the
+/// energy that goes counts as plastic work [J], which is returned. `thinner` is the ratio of the radii [-].
+#[inline(always)]
+fn soften(force: &mut BondForce, c: &Compliance, now: &BondStiffness, thinner: f64) -> f64 {
+    // I/l goes with r⁴ and the length with r⁻².
+    let thinner2 = thinner * thinner;
+    let turning = thinner2 * thinner2 * thinner2;
+    let shear = now.shear * c.shear;
+    let square = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
+    let lost = 0.5
+        * (square(force.shear) * c.shear * (1.0 - shear)
+            + (square(force.bend) * c.bend + force.twist * force.twist * c.twist) * (1.0 - turning));
+    for axis in 0..2 {
+        force.shear[axis] *= shear;
+        force.bend[axis] *= turning;
+    }
+    force.twist *= turning;
+    lost
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
-    const SHAPE: BondShape = BondShape { rest_length: 0.39e-3, radius: 0.195e-3 };
+    const SHAPE: BondShape = BondShape {
+        rest_length: 0.39e-3,
+        radius: 0.195e-3,
+        inverse_length: 1.0 / 0.39e-3,
+        inverse_radius: 1.0 / 0.195e-3,
+    };
 
     fn copper(linear: f64) -> ElastoPlastic {
         ElastoPlastic {

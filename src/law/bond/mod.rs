@@ -23,12 +23,23 @@ pub struct Moduli {
     pub shear: f64,
     /// Timoshenko shear coefficient of a round section κ = 6(1+ν)/(7+6ν) [-] (Cowper 1966).
     pub kappa: f64,
+    /// 1/E [1/Pa].
+    pub compliance: f64,
+    /// EI over GJ of a round section, E/(2G) [-].
+    pub bend_over_twist: f64,
 }
 
 impl Moduli {
     /// From Young's modulus [Pa] and Poisson's ratio [-].
     pub fn new(young: f64, poisson: f64) -> Self {
-        Self { young, shear: young / (2.0 * (1.0 + poisson)), kappa: 6.0 * (1.0 + poisson) / (7.0 + 6.0 * poisson) }
+        let shear = young / (2.0 * (1.0 + poisson));
+        Self {
+            young,
+            shear,
+            kappa: 6.0 * (1.0 + poisson) / (7.0 + 6.0 * poisson),
+            compliance: 1.0 / young,
+            bend_over_twist: young / (2.0 * shear),
+        }
     }
 }
 
@@ -39,6 +50,17 @@ pub struct BondShape {
     pub rest_length: f64,
     /// Radius of the section r₀ [m].
     pub radius: f64,
+    /// 1/l₀ [1/m] and 1/r₀ [1/m]: divisions are what a bond spends its time on.
+    pub inverse_length: f64,
+    /// See `inverse_length`.
+    pub inverse_radius: f64,
+}
+
+impl BondShape {
+    /// A bond of stress-free length [m] and radius [m].
+    pub fn new(rest_length: f64, radius: f64) -> Self {
+        Self { rest_length, radius, inverse_length: 1.0 / rest_length, inverse_radius: 1.0 / radius }
+    }
 }
 
 /// Deformation of a bond over one step, in its co-rotating frame (n, e₁, e₂).
@@ -164,17 +186,18 @@ impl Section {
         2.0 * self.inertia
     }
 
-    /// Beam stiffnesses over length `length` [m] (Timoshenko).
+    /// Beam stiffnesses over a length given by its inverse [1/m] (Timoshenko).
     #[inline(always)]
-    pub fn stiffness(&self, moduli: &Moduli, length: f64) -> BondStiffness {
-        let bend = moduli.young * self.inertia / length;
-        // 12EI/(l³(1+Φ)) with Φ = 12EI/(κGAl²), written so that one division serves both.
-        let rigid = moduli.kappa * moduli.shear * self.area * length;
+    pub fn stiffness(&self, moduli: &Moduli, inverse_length: f64) -> BondStiffness {
+        let bend = moduli.young * self.inertia * inverse_length;
+        // 12EI/(l³(1+Φ)) with Φ = 12EI/(κGAl²), written with one division.
+        let rigid = moduli.kappa * moduli.shear * self.area;
+        let twelve = 12.0 * bend * inverse_length;
         BondStiffness {
-            axial: moduli.young * self.area / length,
-            shear: 12.0 * bend * rigid / (length * length * (rigid + 12.0 * bend)),
+            axial: moduli.young * self.area * inverse_length,
+            shear: twelve * rigid * inverse_length / (rigid + twelve),
             bend,
-            twist: moduli.shear * self.polar() / length,
+            twist: moduli.shear * self.polar() * inverse_length,
         }
     }
 }
@@ -207,7 +230,7 @@ mod tests {
         let (section, l) = (Section::round(0.195e-3), 0.39e-3);
         let phi = 12.0 * moduli.young * section.inertia / (moduli.kappa * moduli.shear * section.area * l * l);
         let expected = 12.0 * moduli.young * section.inertia / (l.powi(3) * (1.0 + phi));
-        let k = section.stiffness(&moduli, l).shear;
+        let k = section.stiffness(&moduli, 1.0 / l).shear;
         assert!((k / expected - 1.0).abs() < 1e-12, "{k} {expected}");
     }
 }

@@ -27,7 +27,14 @@ pub(super) fn send(stream: &Stream, info: &RunInfo, instants: &[Instant], snapsh
             (vectors(Boxes3D::descriptor_centers(), boxes.iter().map(|[c, _]| *c)), lengths.clone()),
             (vectors(Boxes3D::descriptor_half_sizes(), boxes.iter().map(|[_, h]| *h)), lengths.clone()),
         ],
-    )?;
+    )
+}
+
+/// Sends the colour of the boxes.
+///
+/// # Errors
+/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+pub(super) fn send_style(stream: &Stream) -> Result<()> {
     stream.fixed(names::GRIPS, &Boxes3D::update_fields().with_colors([Color::from_u32(paint::NEUTRAL)]))
 }
 

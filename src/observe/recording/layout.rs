@@ -212,10 +212,12 @@ fn eye(info: &RunInfo, length: Option<f32>) -> blueprint::EyeControls3D {
     let middle = low + 0.5 * longest;
     let width = length.unwrap_or(1.04 * longest).min(1.04 * longest);
     let aspect = ASPECTS[usize::from(length.is_some())];
+    // Room for labels above.
+    let up = length.map_or(0.0, |length| 0.04 * length);
     let distance = 0.5 * width / aspect / (0.5 * FIELD_OF_VIEW).tan();
     blueprint::EyeControls3D::new()
         .with_kind(Eye3DKind::Orbital)
-        .with_position([-distance, 0.25 * distance, middle])
-        .with_look_target([0.0, 0.0, middle])
+        .with_position([-distance, up + 0.15 * distance, middle])
+        .with_look_target([0.0, up, middle])
         .with_eye_up([0.0, 1.0, 0.0])
 }

@@ -91,7 +91,7 @@ impl Map {
             .with_colors(scale.colours.iter().map(|c| Color::from_u32(*c)))
             .with_radii([Radius::new_scene_units(0.6 * self.row)]);
         stream.fixed(format!("{}/colour_bar", names::MAP), &bar)?;
-        let ends = Points2D::new([[at(-0.2), y - self.row], [at(1.1), y - self.row]])
+        let ends = Points2D::new([[at(-0.3), y - self.row], [at(1.16), y - self.row]])
             .with_labels(scale.ends.clone())
             .with_show_labels(true)
             .with_colors([Color::from_u32(NEUTRAL)])

@@ -10,9 +10,9 @@ use rerun::{Color, LineStrips3D, Points2D, Points3D, Radius, TextLog, TextLogLev
 use std::collections::BTreeMap;
 
 /// Heights at which labels of successive ruptures stand.
-const LABEL_TIERS: usize = 4;
+const LABEL_TIERS: usize = 5;
 /// Step from one height to the next, in thicknesses of the body [-].
-const LABEL_STEP: f32 = 0.16;
+const LABEL_STEP: f32 = 0.155;
 
 /// Ruptures of one wire so far.
 #[derive(Default)]
@@ -152,7 +152,7 @@ fn place(rupture: &Rupture) -> [f32; 3] {
 /// ruptures come close together.
 fn label_place(info: &RunInfo, rupture: &Rupture) -> [f32; 3] {
     let tier = ((rupture.order - 1) % LABEL_TIERS) as f32;
-    let y = thickness(info) * (0.75 + LABEL_STEP * tier);
+    let y = thickness(info) * (0.62 + LABEL_STEP * tier);
     let [_, _, z] = place(rupture);
     [0.0, y, z]
 }

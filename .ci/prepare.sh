@@ -1,0 +1,65 @@
+# Sourced by ./demo.sh and ./test.sh: what both need on a fresh machine.
+
+say() { printf '\n== %s\n' "$*"; }
+
+fail() {
+    printf '\n%s\n' "$*" >&2
+    exit 3
+}
+
+need_rust() {
+    # rustup puts cargo here, but only a new shell has it on its PATH.
+    if ! command -v cargo >/dev/null && [ -x "${CARGO_HOME:-$HOME/.cargo}/bin/cargo" ]; then
+        PATH="${CARGO_HOME:-$HOME/.cargo}/bin:$PATH"
+    fi
+    command -v cargo >/dev/null || fail "Rust is missing. Install it with
+    curl --proto '=https' --tlsv1.2 -sSf https://sh.rustup.rs | sh
+then open a new shell and start this script again."
+    command -v cc >/dev/null || fail "A C linker (cc) is missing, which Rust needs.
+On Debian and Ubuntu: apt-get install build-essential; on macOS: xcode-select --install."
+}
+
+# Whether a Vulkan driver is described anywhere the loader looks.
+has_vulkan_driver() {
+    [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] && return 0
+    local folder file
+    for folder in /usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d \
+        "${XDG_DATA_HOME:-$HOME/.local/share}/vulkan/icd.d"; do
+        for file in "$folder"/*.json; do
+            [ -e "$file" ] && return 0
+        done
+    done
+    return 1
+}
+
+# Whether a Vulkan driver is there or could be installed.
+get_vulkan() {
+    has_vulkan_driver && return 0
+    command -v apt-get >/dev/null || return 1
+    local as_root=()
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || return 1
+        as_root=(sudo)
+    fi
+    say "No graphics driver: installing Mesa's software driver (mesa-vulkan-drivers, libvulkan1)"
+    "${as_root[@]}" apt-get update -q &&
+        "${as_root[@]}" apt-get install -y -q --no-install-recommends mesa-vulkan-drivers libvulkan1
+}
+
+WITHOUT_VULKAN="No Vulkan driver was found, which frames need. A software driver is enough:
+    Debian, Ubuntu   apt-get install mesa-vulkan-drivers libvulkan1
+    Fedora           dnf install mesa-vulkan-drivers vulkan-loader
+    Arch             pacman -S vulkan-swrast vulkan-icd-loader"
+
+# Rerun's own tool in .venv, in the version that Cargo.lock names; sets RERUN_CLI when it is there.
+get_rerun() {
+    local version
+    version=$(awk '/^name = "rerun"$/ { getline; gsub(/version = |"/, ""); print; exit }' Cargo.lock)
+    if ! .venv/bin/rerun --version 2>/dev/null | grep -qF " $version "; then
+        say "Installing Rerun's tool $version into .venv"
+        python3 -m venv .venv && .venv/bin/pip install -q "rerun-sdk==$version" || return 1
+    fi
+    # No usage statistics from tests.
+    .venv/bin/rerun analytics disable >/dev/null 2>&1 || true
+    export RERUN_CLI="$PWD/.venv/bin/rerun"
+}

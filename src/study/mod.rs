@@ -1,0 +1,3 @@
+//! Floor 8: studies, made of many runs.
+
+pub mod calibrate;

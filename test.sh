@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Every check and test. Works on a fresh machine; what cannot run there is reported as SKIPPED by its name.
+set -euo pipefail
+cd "$(dirname "$0")"
+source .ci/prepare.sh
+
+need_rust
+get_vulkan || printf '\n%s\nTests of frames will be SKIPPED.\n' "$WITHOUT_VULKAN"
+get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that need it will be SKIPPED.\n'
+
+say "Shell syntax"
+for script in demo.sh test.sh .ci/run .ci/prepare.sh; do
+    bash -n "$script"
+done
+
+say "Format"
+cargo fmt --check
+
+# The lean program is built first: the full one must be what is left in target/release.
+say "Without recording and frames"
+cargo clippy --release --locked --no-default-features --all-targets -- -D warnings
+cargo build --release --locked --no-default-features
+
+say "Lints"
+cargo clippy --release --locked --all-targets -- -D warnings
+
+say "Documentation"
+RUSTDOCFLAGS=-Dwarnings cargo doc --release --locked --no-deps
+
+say "Tests"
+# One profile for demo and tests, so that the heavy libraries are built once.
+cargo test --release --locked
