@@ -91,23 +91,20 @@ impl Holds {
     fn add_grips(&mut self, grip: &GripSpec, assembly: &Assembly) {
         let z = &assembly.position.z[..assembly.wire_particles];
         let (low, high) = z.iter().fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(*z), b.max(*z)));
-        let tiny = 1e-9 * (high - low);
         self.stretch.gauge = [low + grip.length, high - grip.length];
+        let outer = assembly.layers.len().saturating_sub(1);
+        let jaw = matches!(grip.kind, GripKind::Jaw { .. });
         for driven in [false, true] {
-            let inside = |p: u32| {
-                let z = z[p as usize];
-                if driven { z >= high - grip.length - tiny } else { z <= low + grip.length + tiny }
-            };
-            let outer = assembly.layers.len().saturating_sub(1);
-            let jaw = matches!(grip.kind, GripKind::Jaw { .. });
-            let particles: Vec<u32> = assembly
-                .wires
-                .iter()
-                .filter(|w| !jaw || w.layer == outer)
-                .flat_map(|w| w.particles())
-                .map(|p| p as u32)
-                .filter(|p| inside(*p))
-                .collect();
+            let mut particles = Vec::new();
+            for wire in assembly.wires.iter().filter(|w| !jaw || w.layer == outer) {
+                // The particle nearest to the grip's face is the last one held, so that what is free between the grips
+                // is on average as long as the gauge.
+                let half = if wire.len > 1 { 0.5 * (z[wire.first + 1] - z[wire.first]).abs() } else { 0.0 };
+                let inside = |p: &usize| {
+                    if driven { z[*p] >= high - grip.length - half } else { z[*p] <= low + grip.length + half }
+                };
+                particles.extend(wire.particles().filter(inside).map(|p| p as u32));
+            }
             let kind = match grip.kind {
                 GripKind::All => Kind::Rigid,
                 GripKind::Jaw { pressure } => {

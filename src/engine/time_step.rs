@@ -155,8 +155,10 @@ impl Stiffness {
             bound.step = 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi);
         }
         for e in self.elements.iter().filter(|e| !e.bond) {
-            let meeting = RESOLVED / e.pair_frequency(state, &held);
-            if meeting < bound.step {
+            // A pair of held particles never moves.
+            let frequency = e.pair_frequency(state, &held);
+            let meeting = RESOLVED / frequency;
+            if frequency > 0.0 && meeting < bound.step {
                 bound = Bound { step: meeting, particle: e.nodes[0] as usize, bond: false, mode: "duration" };
             }
         }
