@@ -266,7 +266,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
     }
 
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
-        for c in &self.contacts {
+        for c in self.contacts.iter().filter(|c| c.history.touching) {
             let mut c = *c;
             let point = walk(state, &self.chains, &mut c);
             let (i, j) = (c.i as usize, c.j as usize);

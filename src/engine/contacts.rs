@@ -42,8 +42,7 @@ pub trait Contacts: Send {
     fn candidates(&self) -> usize;
     /// The touching pair with the greatest overlap.
     fn deepest(&self) -> Option<ContactPoint>;
-    /// Stiffnesses for the bound on the time step, as they can become within `horizon` [s]: a pair that flies together
-    /// must be stepped finely before it touches.
+    /// Stiffnesses of touching pairs for the bound on the time step, as they can become within `horizon` [s].
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
 }
 

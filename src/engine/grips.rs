@@ -95,9 +95,11 @@ impl Holds {
     fn add_grips(&mut self, grip: &GripSpec, assembly: &Assembly) -> Result<()> {
         let z = &assembly.position.z[..assembly.wire_particles];
         let (low, high) = z.iter().fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(*z), b.max(*z)));
-        let tiny = 1e-9 * (high - low);
         self.stretch.gauge = [low + grip.length, high - grip.length];
+        let outer = assembly.layers.len().saturating_sub(1);
+        let jaw = matches!(grip.kind, GripKind::Jaw { .. });
         for driven in [false, true] {
+<<<<<<< HEAD
             let inside = |p: u32| {
                 let z = z[p as usize];
                 if driven { z >= high - grip.length - tiny } else { z <= low + grip.length + tiny }
@@ -114,6 +116,17 @@ impl Holds {
                 .collect();
             if particles.is_empty() {
                 return Err(nothing_to_hold(&assembly.layers[outer].name, driven));
+=======
+            let mut particles = Vec::new();
+            for wire in assembly.wires.iter().filter(|w| !jaw || w.layer == outer) {
+                // The particle nearest to the grip's face is the last one held, so that what is free between the grips
+                // is on average as long as the gauge.
+                let half = if wire.len > 1 { 0.5 * (z[wire.first + 1] - z[wire.first]).abs() } else { 0.0 };
+                let inside = |p: &usize| {
+                    if driven { z[*p] >= high - grip.length - half } else { z[*p] <= low + grip.length + half }
+                };
+                particles.extend(wire.particles().filter(inside).map(|p| p as u32));
+>>>>>>> main
             }
             let kind = match grip.kind {
                 GripKind::All => Kind::Rigid,

@@ -131,8 +131,8 @@ pub fn touch<N: NormalLaw, T: TangentialLaw>(
     PairForce { force: friction - meeting.normal * push, friction }
 }
 
-/// Greatest normal and tangential stiffness [N/m] that a pair can reach within `horizon` [s] if it goes on approaching
-/// at `approach` [m/s] from `overlap` [m] (negative: still apart); `None` when it will not touch.
+/// Greatest normal and tangential stiffness [N/m] that a touching pair can reach within `horizon` [s] if it goes on
+/// approaching at `approach` [m/s] from `overlap` [m]; `None` when it has parted.
 pub fn foreseen_stiffness<N: NormalLaw, T: TangentialLaw>(
     laws: &Laws<N, T>,
     history: &History<N::State, T::State>,

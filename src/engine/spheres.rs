@@ -167,7 +167,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     }
 
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
-        for c in &self.contacts {
+        for c in self.contacts.iter().filter(|c| c.history.touching) {
             let (i, j) = (c.i as usize, c.j as usize);
             let d = state.x.get(j) - state.x.get(i);
             let distance = d.length();

@@ -155,7 +155,7 @@ impl Stiffness {
             bound.step = 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi);
         }
         for e in self.elements.iter().filter(|e| !e.bond) {
-            // Nothing moves in a contact between held particles; their empty sum is −0.
+            // A pair of held particles never moves.
             let frequency = e.pair_frequency(state, &held);
             let meeting = RESOLVED / frequency;
             if frequency > 0.0 && meeting < bound.step {

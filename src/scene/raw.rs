@@ -225,7 +225,7 @@ pub struct RawContact {
     pub hardness_strain: Option<Scalar>,
     /// Thornton: limiting contact pressure, "MPa", instead of the two keys above.
     pub limiting_pressure: Option<Scalar>,
-    /// Viscous damping as a fraction of critical [-]. Default 0.
+    /// Viscous damping of the normal motion as a fraction of critical [-]. Default 0.
     pub damping: Option<Scalar>,
     /// Skin of the neighbour list over the largest diameter [-]. Default 0.15.
     pub skin: Option<Scalar>,

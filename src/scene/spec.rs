@@ -167,7 +167,7 @@ pub struct ContactSpec {
     pub friction: f64,
     /// Shape of a wire in contact.
     pub shape: Shape,
-    /// Viscous damping of the normal and tangential contact motion, fraction of critical [-].
+    /// Viscous damping of the normal contact motion, fraction of critical [-]; friction damps the tangential one.
     pub damping: f64,
     /// Skin of the neighbour list over the largest particle diameter [-].
     pub skin: f64,

@@ -25,7 +25,7 @@ pub struct Assembly {
     pub radius: Vec<f64>,
     /// Particle masses [kg]: ρ A a for wire particles (half of it at wire ends), 4/3 π r³ ρ for free spheres.
     pub mass: Vec<f64>,
-    /// Rotational inertia [kg m²]: 2/5 m r², scaled if the scene asks.
+    /// Rotational inertia [kg m²]: 1/2 m r² in wires, 2/5 m r² for free spheres, scaled if the scene asks.
     pub inertia: Vec<f64>,
     /// Stress-free length of each bond slot [m]; 0 where no bond is.
     pub rest_length: Vec<f64>,

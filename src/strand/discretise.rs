@@ -18,7 +18,8 @@ const GREATEST_TURN: f64 = FRAC_PI_4;
 ///
 /// Each wire is cut into round(arc/(spacing × diameter)) equal pieces of arc, so that its particles cover it from end to
 /// end; a bond's rest length is the chord between its particles. A particle's mass is ρ A times half the arc on
-/// both sides of it, so wire ends have half a mass and the whole wire has all of it; its inertia is 2/5 m r². Mass
+/// both sides of it, so wire ends have half a mass and the whole wire has all of it; its inertia is 1/2 m r², that of
+/// a wire about its axis, so that torsional waves have their speed. Mass
 /// and inertia are multiplied by the scene's scales (inertia by both).
 ///
 /// # Errors
@@ -147,6 +148,11 @@ fn assemble(spec: &Spec, layers: Vec<Layer>, strung: &[Strung]) -> Assembly {
     assembly
 }
 
+/// Inertia over m r² of a particle that stands for a piece of wire: that of a cylinder about its axis [-].
+const WIRE_INERTIA: f64 = 0.5;
+/// The same of a solid sphere [-].
+const SPHERE_INERTIA: f64 = 0.4;
+
 fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &Strung) {
     let placed =
         Wire { layer: wire.layer, first: assembly.len(), len: wire.chain.points.len(), diameter: wire.diameter };
@@ -168,7 +174,7 @@ fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &Strung) {
         assembly.position.push(point);
         assembly.velocity.push(velocity);
         assembly.spin.push(wire.spin);
-        add_body(assembly, spec, 0.5 * wire.diameter, per_length * share(i));
+        add_body(assembly, spec, 0.5 * wire.diameter, per_length * share(i), WIRE_INERTIA);
         assembly.rest_length.push(rest_length);
         assembly.wire_of.push(number);
     }
@@ -182,18 +188,18 @@ fn add_spheres(assembly: &mut Assembly, spec: &Spec) {
         assembly.position.push(sphere.position);
         assembly.velocity.push(sphere.velocity);
         assembly.spin.push(sphere.spin);
-        add_body(assembly, spec, radius, mass);
+        add_body(assembly, spec, radius, mass, SPHERE_INERTIA);
         assembly.rest_length.push(0.0);
         assembly.wire_of.push(u32::MAX);
     }
 }
 
-/// Radius, mass and inertia of a particle of unscaled `mass` [kg].
-fn add_body(assembly: &mut Assembly, spec: &Spec, radius: f64, mass: f64) {
+/// Radius, mass and inertia of a particle of unscaled `mass` [kg]; `inertia` is its inertia over m r² [-].
+fn add_body(assembly: &mut Assembly, spec: &Spec, radius: f64, mass: f64, inertia: f64) {
     let mass = mass * spec.time.mass_scale;
     assembly.radius.push(radius);
     assembly.mass.push(mass);
-    assembly.inertia.push(0.4 * mass * radius * radius * spec.time.inertia_scale);
+    assembly.inertia.push(inertia * mass * radius * radius * spec.time.inertia_scale);
 }
 
 /// Greatest less least value; 0 for none.
