@@ -99,24 +99,6 @@ impl Holds {
         let outer = assembly.layers.len().saturating_sub(1);
         let jaw = matches!(grip.kind, GripKind::Jaw { .. });
         for driven in [false, true] {
-<<<<<<< HEAD
-            let inside = |p: u32| {
-                let z = z[p as usize];
-                if driven { z >= high - grip.length - tiny } else { z <= low + grip.length + tiny }
-            };
-            let outer = assembly.layers.len().saturating_sub(1);
-            let jaw = matches!(grip.kind, GripKind::Jaw { .. });
-            let particles: Vec<u32> = assembly
-                .wires
-                .iter()
-                .filter(|w| !jaw || w.layer == outer)
-                .flat_map(|w| w.particles())
-                .map(|p| p as u32)
-                .filter(|p| inside(*p))
-                .collect();
-            if particles.is_empty() {
-                return Err(nothing_to_hold(&assembly.layers[outer].name, driven));
-=======
             let mut particles = Vec::new();
             for wire in assembly.wires.iter().filter(|w| !jaw || w.layer == outer) {
                 // The particle nearest to the grip's face is the last one held, so that what is free between the grips
@@ -126,7 +108,9 @@ impl Holds {
                     if driven { z[*p] >= high - grip.length - half } else { z[*p] <= low + grip.length + half }
                 };
                 particles.extend(wire.particles().filter(inside).map(|p| p as u32));
->>>>>>> main
+            }
+            if particles.is_empty() {
+                return Err(nothing_to_hold(&assembly.layers[outer].name, driven));
             }
             let kind = match grip.kind {
                 GripKind::All => Kind::Rigid,
