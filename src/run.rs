@@ -28,7 +28,7 @@ use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
 use folder::OutFolder;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Where a run goes and what it writes.
@@ -93,7 +93,39 @@ pub fn in_pool<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send)
         what: format!("cannot start the threads: {e}"),
         help: Some("ask for fewer with --threads".into()),
     })?;
-    Ok(pool.install(work))
+    Ok(pool.install(|| awake(work)))
+}
+
+/// Runs `work` while the other threads of the pool look for jobs without ever falling asleep.
+///
+/// A step has half a dozen parallel loops of some 100 µs with serial work between them; a thread that sleeps through
+/// that takes as long as a loop to wake. Threads that find nothing give their core to whoever else wants it.
+fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let done = AtomicBool::new(false);
+    let caller = rayon::current_thread_index();
+    rayon::scope(|scope| {
+        // One for each thread, run by that thread alone: the caller could not finish if it took up a loop that waits
+        // for it.
+        scope.spawn_broadcast(|_, thread| {
+            while Some(thread.index()) != caller && !done.load(Ordering::Relaxed) {
+                if rayon::yield_now() != Some(rayon::Yield::Executed) {
+                    std::thread::yield_now();
+                }
+            }
+        });
+        // Dropped also when `work` panics, or the scope would wait for ever.
+        let _ending = Ending(&done);
+        work()
+    })
+}
+
+/// Says that the work is done when it is dropped.
+struct Ending<'a>(&'a AtomicBool);
+
+impl Drop for Ending<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 struct Clock {

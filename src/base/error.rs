@@ -20,7 +20,7 @@ pub enum Error {
         help: Option<String>,
     },
     /// The file system refused something.
-    #[error("{action} {}: {source}", path.display())]
+    #[error("{action} {}", path.display())]
     Io {
         /// What was being done: "cannot write", "cannot read".
         action: &'static str,

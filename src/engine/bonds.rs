@@ -52,6 +52,8 @@ pub struct BondStage<L: BondLaw, const TURN: bool> {
     viscosity: Vec<[f64; 4]>,
     rupture: Option<RuptureCheck>,
     partial: Vec<Partial>,
+    /// Whether a bond of each chunk may have reached its limit at this step.
+    due: Vec<bool>,
 }
 
 impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
@@ -79,7 +81,16 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
         } else {
             Vec::new()
         };
-        Self { law, records, shape, viscosity, rupture, partial: vec![Partial::default(); n.div_ceil(CHUNK)] }
+        let chunks = n.div_ceil(CHUNK);
+        Self {
+            law,
+            records,
+            shape,
+            viscosity,
+            rupture,
+            partial: vec![Partial::default(); chunks],
+            due: vec![true; chunks],
+        }
     }
 }
 
@@ -141,16 +152,20 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
         let motion = Motion { x: &state.x, v: &state.v, w: &state.w };
         let shared = Shared { law: &self.law, shape: &self.shape, viscosity: &self.viscosity, dt: state.dt };
         let whole = &state.whole;
+        let limit = self.rupture.as_ref().and_then(RuptureCheck::plastic_limit);
         (
             self.records.par_chunks_mut(CHUNK),
             state.bond.par_chunks_mut(CHUNK),
             state.thinning.par_chunks_mut(CHUNK),
             self.partial.par_iter_mut(),
+            self.due.par_iter_mut(),
         )
             .into_par_iter()
+            .with_max_len(1)
             .enumerate()
-            .for_each(|(chunk, (records, actions, thinning, partial))| {
-                *partial = Partial::default();
+            .for_each(|(chunk, (records, actions, thinning, partial, due))| {
+                // Sums of one chunk stay on this thread's stack: neighbours in memory belong to other threads.
+                let (mut sum, mut reached) = (Partial::default(), limit.is_none());
                 let first = chunk * CHUNK;
                 let mut here = motion.node::<TURN>(first);
                 let outputs = actions.iter_mut().zip(thinning);
@@ -161,14 +176,18 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
                     if whole[slot] {
                         let ends = [here, next];
                         *action = if TURN {
-                            turning(&shared, slot, &ends, record, partial)
+                            turning(&shared, slot, &ends, record, &mut sum)
                         } else {
-                            axial(&shared, slot, &ends, record, partial)
+                            axial(&shared, slot, &ends, record, &mut sum)
                         };
                         *thinning = shared.law.thinning(&record.state);
+                        if let Some(limit) = limit {
+                            reached |= shared.law.plastic_strain(&record.state) >= limit[slot];
+                        }
                     }
                     here = next;
                 }
+                (*partial, *due) = (sum, reached);
             });
         let mut sum = Partial::default();
         self.partial.iter().for_each(|p| sum.add(p));
@@ -177,6 +196,9 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
 
     fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64 {
         let Some(check) = &mut self.rupture else { return 0.0 };
+        if !self.due.iter().any(|due| *due) {
+            return 0.0;
+        }
         let (law, records, shape) = (&self.law, &self.records, &self.shape);
         let broken = check.broken(&state.whole, state, |slot| {
             let r = &records[slot];
@@ -231,6 +253,12 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     }
 }
 
+/// ln(l/l₀), from the square of the length, which is there before its root [-].
+#[inline(always)]
+fn log_strain(d: DVec3, shape: &BondShape) -> f64 {
+    0.5 * (d.length_squared() * (shape.inverse_length * shape.inverse_length)).ln()
+}
+
 /// A bond that only stretches.
 #[inline(always)]
 fn axial<L: BondLaw>(
@@ -244,7 +272,7 @@ fn axial<L: BondLaw>(
     let shape = &shared.shape[slot];
     let length = d.length();
     let n = d * (1.0 / length);
-    let step = BondIncrement { log_strain: (length * shape.inverse_length).ln(), length, ..Default::default() };
+    let step = BondIncrement { log_strain: log_strain(d, shape), length, ..Default::default() };
     partial.plastic += shared.law.axial_response(shape, &mut record.force, &mut record.state, &step);
     let mut axial = record.force.axial;
     if let Some(c) = shared.viscosity.get(slot) {
@@ -294,7 +322,9 @@ fn turning<L: BondLaw>(
     let turn = n_mid.cross(dv) * (dt * inv_middle) + n_mid * (spin.dot(n_mid) * dt);
     let e1_old = record.e1;
     let carried = e1_old + turn.cross(e1_old);
-    let e1 = (carried - n * carried.dot(n)).normalize();
+    let flat = carried - n * carried.dot(n);
+    // Its length differs from 1 by the square of a step's rotation; one Newton step of 1/√q mends that.
+    let e1 = flat * (1.5 - 0.5 * flat.length_squared());
     record.e1 = e1;
     let e1_mid = (e1_old + e1) * 0.5;
     let e2_mid = n_mid.cross(e1_mid);
@@ -302,7 +332,7 @@ fn turning<L: BondLaw>(
     let slide = (dv - spin.cross(middle)) * dt;
     let rotation = (b.w - a.w) * dt;
     let step = BondIncrement {
-        log_strain: (length * shape.inverse_length).ln(),
+        log_strain: log_strain(d, shape),
         length,
         shear: [slide.dot(e1_mid), slide.dot(e2_mid)],
         bend: [rotation.dot(e1_mid), rotation.dot(e2_mid)],

@@ -22,6 +22,7 @@ pub fn gather(state: &mut State, turn: bool, contacts: bool) {
         state.radius.par_chunks_mut(CHUNK),
     )
         .into_par_iter()
+        .with_max_len(1)
         .enumerate()
         .for_each(|(chunk, (fx, fy, fz, tx, ty, tz, radius))| {
             let first = chunk * CHUNK;
@@ -72,6 +73,7 @@ pub fn kick(state: &mut State, dt: f64, turn: bool) {
 fn accelerate(v: &mut Vectors, f: &Vectors, inverse_mass: &[f64], dt: f64) {
     (v.x.par_chunks_mut(CHUNK), v.y.par_chunks_mut(CHUNK), v.z.par_chunks_mut(CHUNK))
         .into_par_iter()
+        .with_max_len(1)
         .enumerate()
         .for_each(|(chunk, (vx, vy, vz))| {
             let here = chunk * CHUNK..chunk * CHUNK + vx.len();
@@ -107,6 +109,7 @@ pub fn drift(state: &mut State, neighbours: Option<&Reference>) -> Drifted {
     let (v, x) = (&state.v, &mut state.x);
     (x.x.par_chunks_mut(CHUNK), x.y.par_chunks_mut(CHUNK), x.z.par_chunks_mut(CHUNK))
         .into_par_iter()
+        .with_max_len(1)
         .enumerate()
         .map(|(chunk, (px, py, pz))| {
             let here = chunk * CHUNK..chunk * CHUNK + px.len();

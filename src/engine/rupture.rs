@@ -20,6 +20,8 @@ pub struct RuptureCheck {
     factor: Vec<f64>,
     /// Stress-free lengths [m].
     rest_length: Vec<f64>,
+    /// Plastic strain at which each slot breaks [-]; empty under criteria that look at something else.
+    plastic_limit: Vec<f64>,
 }
 
 impl RuptureCheck {
@@ -36,7 +38,19 @@ impl RuptureCheck {
                 }
             }
         }
-        Self { criterion: spec.criterion.clone(), factor, rest_length: assembly.rest_length.clone() }
+        let plastic_limit = match spec.criterion {
+            RuptureCriterion::PlasticStrain { strain } => {
+                (0..assembly.len()).map(|s| strain * factor.get(s).copied().unwrap_or(1.0)).collect()
+            }
+            _ => Vec::new(),
+        };
+        Self { criterion: spec.criterion.clone(), factor, rest_length: assembly.rest_length.clone(), plastic_limit }
+    }
+
+    /// Plastic strain at which each slot breaks [-], if that is the criterion: bonds can then tell on their way whether
+    /// any has reached it, and the pass over all of them is left out.
+    pub fn plastic_limit(&self) -> Option<&[f64]> {
+        (!self.plastic_limit.is_empty()).then_some(&self.plastic_limit)
     }
 
     /// Slots that broke, in order, with the cause. `bond(slot)` gives (p, forces, section).
@@ -49,9 +63,10 @@ impl RuptureCheck {
         let factor = |slot: usize| self.factor.get(slot).copied().unwrap_or(1.0);
         let slots = (0..whole.len()).filter(|s| whole[*s]);
         match &self.criterion {
-            RuptureCriterion::PlasticStrain { strain } => {
-                slots.filter(|s| bond(*s).0 >= strain * factor(*s)).map(|s| (s, RuptureCause::PlasticStrain)).collect()
-            }
+            RuptureCriterion::PlasticStrain { .. } => slots
+                .filter(|s| bond(*s).0 >= self.plastic_limit[*s])
+                .map(|s| (s, RuptureCause::PlasticStrain))
+                .collect(),
             RuptureCriterion::BeamStress { tensile, shear, moment_share } => {
                 let law = BeamStress { tensile: *tensile, shear: *shear, moment_share: *moment_share };
                 slots

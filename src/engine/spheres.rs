@@ -2,7 +2,7 @@
 
 use super::contacts::{ContactPoint, Contacts};
 use super::neighbours::PairList;
-use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, part, touch};
+use super::pair::{History, Laws, Meeting, elastic_energy, foreseen_stiffness, part, touch};
 use super::state::{CHUNK, Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
@@ -12,21 +12,30 @@ use crate::law::tangential::TangentialLaw;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// A candidate pair with its history and the force of this step.
+/// A candidate pair with its history.
 #[derive(Debug, Clone, Copy)]
 struct Contact<N, T> {
     i: u32,
     j: u32,
     history: History<N, T>,
-    action: PairForce,
+}
+
+/// What a contact does at this step, apart from its history so that gathering reads little; zero when nothing touches.
+#[derive(Debug, Clone, Copy, Default)]
+struct Action {
+    /// Force on the first particle [N]; the second feels minus this.
+    force: DVec3,
     /// n × friction: torque per lever arm on either particle [N].
     twist: DVec3,
+    /// How far the contact point lies inside either radius [m].
+    sunk: f64,
 }
 
 /// Contacts between spheres with normal law `N` and tangential law `T`.
 pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     laws: Laws<N, T>,
     contacts: Vec<Contact<N::State, T::State>>,
+    actions: Vec<Action>,
     /// The list before a rebuild; kept for its memory.
     old: Vec<Contact<N::State, T::State>>,
     /// For each particle the contacts that it is in: index << 1 | 1 when it is the second of the pair.
@@ -41,6 +50,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
         Self {
             laws,
             contacts: Vec::new(),
+            actions: Vec::new(),
             old: Vec::new(),
             of_particle: Vec::new(),
             start: Vec::new(),
@@ -71,7 +81,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
 
     /// Adds up each particle's contacts in the order of the list.
     fn gather(&self, state: &mut State) {
-        let (contacts, start, of_particle) = (&self.contacts, &self.start, &self.of_particle);
+        let (actions, start, of_particle) = (&self.actions, &self.start, &self.of_particle);
         let radius = &state.radius;
         let f = &mut state.contact_force;
         let t = &mut state.contact_torque;
@@ -84,18 +94,17 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
             t.z.par_chunks_mut(CHUNK),
         )
             .into_par_iter()
+            .with_max_len(1)
             .enumerate()
             .for_each(|(chunk, (fx, fy, fz, tx, ty, tz))| {
                 for k in 0..fx.len() {
                     let p = chunk * CHUNK + k;
                     let (mut force, mut torque) = (DVec3::ZERO, DVec3::ZERO);
                     for entry in &of_particle[start[p] as usize..start[p + 1] as usize] {
-                        let c = &contacts[(entry >> 1) as usize];
-                        if c.history.touching {
-                            let sign = if entry & 1 == 0 { 1.0 } else { -1.0 };
-                            force += c.action.force * sign;
-                            torque += c.twist * (radius[p] - 0.5 * sunk(&c.history));
-                        }
+                        let action = &actions[(entry >> 1) as usize];
+                        let sign = if entry & 1 == 0 { 1.0 } else { -1.0 };
+                        force += action.force * sign;
+                        torque += action.twist * (radius[p] - action.sunk);
                     }
                     (fx[k], fy[k], fz[k]) = force.into();
                     (tx[k], ty[k], tz[k]) = torque.into();
@@ -125,6 +134,8 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         for c in &mut self.old[k..] {
             part::<N, T>(&self.laws, &mut c.history, 0.0, &mut lost);
         }
+        self.actions.clear();
+        self.actions.resize(self.contacts.len(), Action::default());
         self.partial.clear();
         self.partial.resize(self.contacts.len().div_ceil(CHUNK), Partial::default());
         self.index_particles(state.len());
@@ -134,12 +145,17 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     fn compute(&mut self, state: &mut State) -> Partial {
         let laws = &self.laws;
         let shared = &*state;
-        (self.contacts.par_chunks_mut(CHUNK), self.partial.par_iter_mut()).into_par_iter().for_each(
-            |(contacts, partial)| {
-                *partial = Partial::default();
-                contacts.iter_mut().for_each(|c| sphere_pair(laws, shared, c, partial));
-            },
-        );
+        (self.contacts.par_chunks_mut(CHUNK), self.actions.par_chunks_mut(CHUNK), self.partial.par_iter_mut())
+            .into_par_iter()
+            .with_max_len(1)
+            .for_each(|(contacts, actions, partial)| {
+                // The sum stays on this thread's stack: its neighbours in memory belong to other threads.
+                let mut sum = Partial::default();
+                for (contact, action) in contacts.iter_mut().zip(actions) {
+                    *action = sphere_pair(laws, shared, contact, &mut sum);
+                }
+                *partial = sum;
+            });
         self.gather(state);
         let mut sum = Partial::default();
         self.partial.iter().for_each(|p| sum.add(p));
@@ -189,7 +205,7 @@ fn fresh<N: Default, S: Default>(i: u32, j: u32, state: &State) -> Contact<N, S>
         let distance = (state.x.get(b) - state.x.get(a)).length();
         history.offset = (state.radius[a] + state.radius[b] - distance).max(0.0);
     }
-    Contact { i, j, history, action: PairForce::default(), twist: DVec3::ZERO }
+    Contact { i, j, history }
 }
 
 /// Geometrical overlap [m]; the lever arms of friction end in its middle, so that they add up to the distance.
@@ -204,15 +220,17 @@ fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
     state: &State,
     c: &mut Contact<N::State, T::State>,
     partial: &mut Partial,
-) {
+) -> Action {
     let (i, j) = (c.i as usize, c.j as usize);
     let d = state.x.get(j) - state.x.get(i);
     let touching = state.radius[i] + state.radius[j];
     let reach = touching - c.history.offset;
     let distance2 = d.length_squared();
     if distance2 >= reach * reach {
-        part::<N, T>(laws, &mut c.history, touching - distance2.sqrt(), partial);
-        return;
+        if c.history.touching || c.history.offset > 0.0 {
+            part::<N, T>(laws, &mut c.history, touching - distance2.sqrt(), partial);
+        }
+        return Action::default();
     }
     let distance = distance2.sqrt();
     let normal = d * (1.0 / distance);
@@ -223,8 +241,8 @@ fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
         let arms = state.w.get(i) * (state.radius[i] - half) + state.w.get(j) * (state.radius[j] - half);
         velocity -= arms.cross(normal);
     }
-    let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);
+    let mass = 1.0 / (state.inverse_mass[i] + state.inverse_mass[j]);
     let meeting = Meeting { normal, overlap, reach, velocity, mass, dt: state.dt };
-    c.action = touch(laws, &mut c.history, &meeting, partial);
-    c.twist = normal.cross(c.action.friction);
+    let pair = touch(laws, &mut c.history, &meeting, partial);
+    Action { force: pair.force, twist: normal.cross(pair.friction), sunk: 0.5 * sunk(&c.history) }
 }

@@ -5,7 +5,7 @@ use crate::strand::assembly::Assembly;
 use glam::DVec3;
 
 /// Number of items that one task works on. Fixed, so that partial sums do not depend on the number of threads.
-pub const CHUNK: usize = 512;
+pub const CHUNK: usize = 256;
 
 /// What a bond does to its two particles.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

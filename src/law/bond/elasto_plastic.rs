@@ -75,47 +75,45 @@ impl Trial {
         self.axial * self.axial + self.bend + self.twist * self.twist + self.shear * self.shear > 1.0
     }
 
-    /// Newton on x. f is convex and falls with x, so from x = 0 Newton never oversteps; two or three rounds do.
+    /// Newton on z = x (σ_y₀/σ_y)², in which the return has no division by the growth of σ_y: 1/growth is 1 − hz.
+    ///
+    /// The start is the root for tension alone, good to the square of the step; one round always follows, so that the
+    /// answer depends smoothly on the trial, and more where that was not enough.
     #[inline(always)]
     fn solve(&self) -> Return {
         // Plastic work per x is 2 − m on the surface. Hardening within the step takes m from the trial: what that
         // leaves out is of second order in the step, and the next step starts from σ_y(p) again.
-        let hardening = self.hardening_rate * (2.0 - self.bend.min(1.0));
-        // Without its |M| term f is lower and as convex, so its first Newton step also stays left of the root. In a
-        // pulled wire, where tension wipes out the moment, it is nearly there.
-        let square = |value: f64, rate: f64| (value * value, value * value * (hardening + rate));
+        let h = self.hardening_rate * (2.0 - self.bend.min(1.0));
+        let square = |value: f64, rate: f64| [value * value, value * value * (h + rate)];
         let (n, t, v) = (
             square(self.axial, self.axial_rate),
             square(self.twist, self.twist_rate),
             square(self.shear, self.shear_rate),
         );
-        let mut x = (0.5 * (n.0 + t.0 + v.0 - 1.0) / (n.1 + t.1 + v.1)).max(0.0);
+        let size2 = n[0] + t[0] + v[0];
+        let mut z = ((size2.sqrt() - 1.0) * size2 / (n[1] + t[1] + v[1])).max(0.0);
         for round in 0.. {
-            // σ_y along the return over σ_y at its start.
-            let growth = 1.0 + hardening * x;
-            let g1 = 1.0 / growth;
-            let g2 = g1 * g1;
-            // 1/(1 + x rate) per mode; the axial one apart, so that it has the same bits without the others.
-            let stiff = |rate: f64| 1.0 + x * rate * g2;
-            let (sa, st, ss) = (stiff(self.axial_rate), stiff(self.twist_rate), stiff(self.shear_rate));
-            let both = 1.0 / (st * ss);
-            let (axial, twist, shear) = (1.0 / sa, both * ss, both * st);
-            let (n, t, v) = (self.axial * g1 * axial, self.twist * g1 * twist, self.shear * g1 * shear);
-            let bend = (self.bend * g1 - x * self.bend_rate * g2).max(0.0);
+            let shrink = 1.0 - h * z;
+            // Each mode apart, so that the axial one has the same bits without the others.
+            let soft = |rate: f64| 1.0 / (1.0 + z * rate);
+            let (axial, twist, shear) = (soft(self.axial_rate), soft(self.twist_rate), soft(self.shear_rate));
+            let (n, t, v) = (self.axial * shrink * axial, self.twist * shrink * twist, self.shear * shrink * shear);
+            let bend = (self.bend * shrink - z * self.bend_rate).max(0.0);
             let f = n * n + bend + t * t + v * v - 1.0;
-            if f.abs() < 1e-11 || round == 60 {
+            if round > 0 && (f.abs() < 1e-10 || round == 60) {
+                let growth = 1.0 / shrink;
                 let kept = if bend > 0.0 { bend * growth / self.bend } else { 0.0 };
-                let equivalent = x * (2.0 - bend) * self.inverse_yield * g1;
+                let equivalent = z * (2.0 - bend) * self.inverse_yield * growth;
                 return Return { axial, bend: kept, twist, shear, equivalent };
             }
-            let fall = |value: f64, rate: f64, soft: f64| value * value * (hardening * g1 + rate * g2 * soft);
+            let fall = |value: f64, rate: f64, soft: f64| value * value * (h + rate * soft);
             let mut slope =
                 fall(n, self.axial_rate, axial) + fall(t, self.twist_rate, twist) + fall(v, self.shear_rate, shear);
             slope *= -2.0;
             if bend > 0.0 {
-                slope -= (self.bend * hardening + self.bend_rate) * g2;
+                slope -= self.bend * h + self.bend_rate;
             }
-            x = (x - f / slope).max(0.0);
+            z = (z - f / slope).max(0.0);
         }
         unreachable!("the last round returns")
     }
@@ -139,8 +137,15 @@ impl ElastoPlastic {
     fn advance(&self, state: &mut PlasticState, plastic_axial: f64, equivalent: f64) {
         state.axial += plastic_axial;
         state.equivalent += equivalent;
-        state.thinning = (-0.5 * state.axial).exp();
-        state.inverse_thinning = 1.0 / state.thinning;
+        // e^(∓Δε_p/2) to the rounding of a double: the next term of a step of 1e-5 is 2e-17.
+        let half = 0.5 * plastic_axial;
+        if half.abs() < 5e-6 {
+            state.thinning *= 1.0 - half * (1.0 - 0.5 * half);
+            state.inverse_thinning *= 1.0 + half * (1.0 + 0.5 * half);
+        } else {
+            state.thinning = (-0.5 * state.axial).exp();
+            state.inverse_thinning = 1.0 / state.thinning;
+        }
         (state.yield_stress, state.slope) = self.hardening.evaluate(state.equivalent);
     }
 
