@@ -140,7 +140,7 @@ fn a_wire_that_snaps_gets_contacts() {
     // Thrown apart by their inertia, the pieces spring back.
     let mut thrown = edited(WIRE, &set, |a| {
         let half = a.len() / 2;
-        (0..a.len()).for_each(|p| a.velocity.set(p, glam::DVec3::Z * if p < half { -40.0 } else { 40.0 }));
+        (0..a.len()).for_each(|p| a.velocity.set(p, glam::DVec3::Z * if p < half { -20.0 } else { 20.0 }));
     });
     let mut touched = 0;
     run_while(&mut thrown, |e| {
