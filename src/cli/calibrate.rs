@@ -18,7 +18,7 @@ pub struct Args {
     #[arg(long, value_name = "PERCENT")]
     elongation: Option<f64>,
     /// Allowed error of either [%]
-    #[arg(long, value_name = "PERCENT", default_value_t = 0.5)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
     tolerance: f64,
     /// Threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

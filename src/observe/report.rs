@@ -62,8 +62,8 @@ fn first_rupture(first: Option<&Break>) -> String {
     match first {
         None => "none".into(),
         Some(b) => format!(
-            "wire {}, {} layer, at z = {:.1} mm, strain {:.2} %, {:.0} MPa ({})",
-            b.wire, b.layer, b.z_mm, b.strain_percent, b.stress_mpa, b.cause
+            "wire {}, {} layer, at z = {:.1} mm ({:.1} mm before loading), strain {:.2} %, {:.0} MPa ({})",
+            b.wire, b.layer, b.z_mm, b.rest_z_mm, b.strain_percent, b.stress_mpa, b.cause
         ),
     }
 }

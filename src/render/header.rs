@@ -62,7 +62,7 @@ fn caption(data: &Data) -> Vec<Block> {
     ];
     if let Some(first) = data.ruptures.first() {
         let layer = data.info.layers.get(first.layer).map_or("", String::as_str);
-        let value = format!("wire {} · {layer} · z {:.1} mm", first.wire + 1, first.rest_z * 1e3);
+        let value = format!("wire {} · {layer} · z {:.1} mm before loading", first.wire + 1, first.rest_z * 1e3);
         let detail = format!("at {:.2} % and {:.1} MPa", first.strain * 100.0, first.body_stress / 1e6);
         blocks.push(Block { size: 14.0, ..Block::new(FIRST_BREAK, value, detail) });
     }
