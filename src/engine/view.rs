@@ -49,6 +49,14 @@ pub struct RunInfo {
     pub strain_end: Option<f64>,
 }
 
+impl RunInfo {
+    /// Whether grips strain the body towards an end that is known, so that strength and elongation mean something; a
+    /// wire that is only turned has none.
+    pub fn is_pulled(&self) -> bool {
+        self.gauge.is_some() && self.strain_end.is_some()
+    }
+}
+
 /// A wire for those who draw or record it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WireInfo {

@@ -145,7 +145,7 @@ fn first_not_finite(sample: &Sample) -> Option<String> {
 
 impl Observer for Guard {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
-        *self = Self { gripped: info.gauge.is_some(), ..Self::default() };
+        *self = Self { gripped: info.is_pulled(), ..Self::default() };
         Ok(())
     }
 

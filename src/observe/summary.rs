@@ -140,7 +140,7 @@ impl Summariser {
         trouble: Option<String>,
         cost: Cost,
     ) -> RunSummary {
-        let gripped = self.info.as_ref().is_some_and(|info| info.gauge.is_some());
+        let gripped = self.info.as_ref().is_some_and(|info| info.is_pulled());
         let measured = |value: Option<f64>| value.filter(|_| gripped);
         let peak = peak_of(&self.curve);
         let energy = self.last.energy;
