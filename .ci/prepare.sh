@@ -2,6 +2,9 @@
 
 say() { printf '\n== %s\n' "$*"; }
 
+# Mesa complains without a session folder, which off-screen pictures do not need.
+export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}"
+
 fail() {
     printf '\n%s\n' "$*" >&2
     exit 3

@@ -134,7 +134,7 @@ fn a_full_disk_is_an_error() {
     let file = folder.path().join("recording.rrd");
     std::os::unix::fs::symlink("/dev/full", folder.path().join("recording.rrd.partial")).unwrap();
     let result = Recording::new(&file, options()).and_then(|mut recording| run.show(&mut recording));
-    let Err(Error::Io { source, .. }) = result else { panic!("{result:?}") };
+    let Err(Error::Io { cause: source, .. }) = result else { panic!("{result:?}") };
     assert_eq!(source.kind(), std::io::ErrorKind::StorageFull);
     assert!(!file.exists());
 }

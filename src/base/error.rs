@@ -20,14 +20,14 @@ pub enum Error {
         help: Option<String>,
     },
     /// The file system refused something.
-    #[error("{action} {}", path.display())]
+    #[error("{action} {}: {cause}", path.display())]
     Io {
         /// What was being done: "cannot write", "cannot read".
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// The system's answer.
-        source: std::io::Error,
+        /// The system's answer; part of the message, so not also given as its source.
+        cause: std::io::Error,
     },
     /// The machine lacks something that was asked for (no adapter, no Rerun viewer listening).
     #[error("{what}")]
@@ -78,8 +78,8 @@ impl Error {
     }
 
     /// A file-system error with what was being done.
-    pub fn io(action: &'static str, path: impl Into<PathBuf>, source: std::io::Error) -> Self {
-        Error::Io { action, path: path.into(), source }
+    pub fn io(action: &'static str, path: impl Into<PathBuf>, cause: std::io::Error) -> Self {
+        Error::Io { action, path: path.into(), cause }
     }
 
     /// Exit code of the program for this error: 2 for bad input, 3 for something missing on the machine,
