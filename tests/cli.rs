@@ -1,6 +1,7 @@
 //! The real program in temporary folders: exit codes, messages, and the files of a run.
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -317,7 +318,7 @@ fn has_adapter(test: &str) -> bool {
     #[cfg(not(feature = "render"))]
     let there = false;
     if !there {
-        println!("SKIPPED (no frames: no graphics adapter, or built without them): {test}");
+        let _ = writeln!(std::io::stderr(), "SKIPPED (no frames: no graphics adapter, or built without them): {test}");
     }
     there
 }
@@ -354,7 +355,10 @@ fn frames_are_drawn_and_drawn_again() {
 fn the_recording_passes_the_check_of_reruns_own_tool() {
     let test = "the_recording_passes_the_check_of_reruns_own_tool";
     let Some(tool) = std::env::var_os("RERUN_CLI").filter(|_| cfg!(feature = "record")) else {
-        println!("SKIPPED (RERUN_CLI does not name Rerun's tool, or built without recordings): {test}");
+        let _ = writeln!(
+            std::io::stderr(),
+            "SKIPPED (RERUN_CLI does not name Rerun's tool, or built without recordings): {test}"
+        );
         return;
     };
     let folder = tempfile::tempdir().unwrap();
