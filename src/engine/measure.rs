@@ -1,8 +1,8 @@
 //! What is measured: nominal stress, stresses per wire and layer, energies, snapshots for those who draw and record.
 
+use super::Engine;
 use super::grips::{Holds, Reaction};
 use super::view::{BondState, Energy, RunInfo, Sample, Snapshot, WireInfo};
-use super::{Engine, hardening};
 use crate::scene::spec::{BondLawSpec, DriveSpec, RuptureCriterion, Spec};
 use crate::strand::assembly::Assembly;
 
@@ -214,7 +214,7 @@ impl Engine {
         match &self.spec.bond.law {
             BondLawSpec::ElastoPlastic(h) => {
                 let p = if strain > 0.0 { strain.ln_1p() } else { 0.01 };
-                let top = round_up(hardening(h).stress(p) * 1e-6);
+                let top = round_up(h.stress(p) * 1e-6);
                 ([0.0, top as f32], [0.0, round_up(p) as f32])
             }
             BondLawSpec::Elastic => {

@@ -22,10 +22,9 @@ use crate::base::error::{Error, Result};
 use crate::law::bond::Moduli;
 use crate::law::bond::elastic::Elastic;
 use crate::law::bond::elasto_plastic::ElastoPlastic;
-use crate::law::bond::hardening::Hardening;
 use crate::law::contact::constants::effective_modulus;
 use crate::scene::plan::{ContactPlan, Plan};
-use crate::scene::spec::{BondLawSpec, HardeningSpec, Material, Shape, Spec};
+use crate::scene::spec::{BondLawSpec, Material, Shape, Spec};
 use crate::strand::assembly::Assembly;
 use bonds::{BondStage, Bonds};
 use contacts::Contacts;
@@ -448,26 +447,12 @@ fn build_bonds(spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> 
             Box::new(BondStage::<_, false>::new(Elastic { moduli }, assembly, damping, check))
         }
         (BondLawSpec::ElastoPlastic(h), turn) => {
-            let law = ElastoPlastic { moduli, hardening: hardening(h) };
+            let law = ElastoPlastic { moduli, hardening: h.clone() };
             if turn {
                 Box::new(BondStage::<_, true>::new(law, assembly, damping, check))
             } else {
                 Box::new(BondStage::<_, false>::new(law, assembly, damping, check))
             }
         }
-    }
-}
-
-/// The hardening law that a scene states.
-pub fn hardening(spec: &HardeningSpec) -> Hardening {
-    match spec.clone() {
-        HardeningSpec::Voce { yield_stress, saturation, rate, linear } => {
-            Hardening::Voce { yield_stress, saturation, rate, linear }
-        }
-        HardeningSpec::Swift { strength, prestrain, exponent } => Hardening::Swift { strength, prestrain, exponent },
-        HardeningSpec::Ludwik { yield_stress, strength, exponent } => {
-            Hardening::Ludwik { yield_stress, strength, exponent }
-        }
-        HardeningSpec::Table(points) => Hardening::Table(points),
     }
 }

@@ -214,7 +214,7 @@ fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<f64> 
     };
     let factor = at.ratio_or("hardness_factor", &raw.hardness_factor, HARDNESS_FACTOR, Range::Positive)?;
     let strain = at.ratio_or("hardness_strain", &raw.hardness_strain, 0.0, Range::NotNegative)?;
-    Ok(factor * hardening::yield_stress(law, strain))
+    Ok(factor * law.stress(strain))
 }
 
 fn time(at: &At, raw: &RawTime) -> Result<TimeSpec> {

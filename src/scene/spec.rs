@@ -1,5 +1,7 @@
 //! `Spec`: a scene after resolution, all SI, nothing left to guess. It is what every later floor reads.
 
+/// The hardening law is stated as it is computed.
+pub use crate::law::bond::hardening::Hardening as HardeningSpec;
 use glam::DVec3;
 use std::path::PathBuf;
 
@@ -85,42 +87,6 @@ pub enum BondLawSpec {
     Elastic,
     /// `elasto-plastic`: isotropic hardening, coupled section plasticity.
     ElastoPlastic(HardeningSpec),
-}
-
-/// Hardening law σ_y(p): true yield stress over equivalent plastic strain.
-#[derive(Debug, Clone, PartialEq)]
-pub enum HardeningSpec {
-    /// σ₀ + Q (1 − e^(−b p)) + H p.
-    Voce {
-        /// σ₀ [Pa].
-        yield_stress: f64,
-        /// Q [Pa].
-        saturation: f64,
-        /// b [-].
-        rate: f64,
-        /// H [Pa].
-        linear: f64,
-    },
-    /// K (ε₀ + p)^n.
-    Swift {
-        /// K [Pa].
-        strength: f64,
-        /// ε₀ [-].
-        prestrain: f64,
-        /// n [-].
-        exponent: f64,
-    },
-    /// σ₀ + K p^n.
-    Ludwik {
-        /// σ₀ [Pa].
-        yield_stress: f64,
-        /// K [Pa].
-        strength: f64,
-        /// n [-].
-        exponent: f64,
-    },
-    /// Straight lines between (true plastic strain [-], true stress [Pa]) points, first at strain 0, last slope kept.
-    Table(Vec<[f64; 2]>),
 }
 
 /// Rupture criterion with its scatter.

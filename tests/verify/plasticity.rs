@@ -1,7 +1,6 @@
 //! One wire pulled past yield, one bond bent and twisted past yield.
 
 use crate::support::{alone, builtin, case, near, set};
-use strandsnap::engine::hardening;
 use strandsnap::reference::plasticity::{Section, tension_at};
 use strandsnap::scene::spec::BondLawSpec;
 
@@ -11,7 +10,7 @@ fn one_wire_pulled_follows_the_hardening_law() {
     alone(|| {
         let mut case = case("pull", &[]);
         let BondLawSpec::ElastoPlastic(law) = &case.spec.bond.law else { panic!("the scene is plastic") };
-        let (law, young) = (hardening(law), case.spec.material.young);
+        let (law, young) = (law.clone(), case.spec.material.young);
         let exact = |strain: f64| tension_at(strain, |p| law.stress(p), young);
         let mut marks = vec![0.199, 0.15, 0.1, 0.03, 0.01];
         case.run(|engine| {
@@ -111,7 +110,7 @@ fn torque_at_the_grip_of_a_wire_twisted_past_yield() {
     alone(|| {
         let mut case = builtin("torsion");
         let BondLawSpec::ElastoPlastic(law) = &case.spec.bond.law else { panic!("the scene is plastic") };
-        let (law, bar) = (hardening(law), case.bar());
+        let (law, bar) = (law.clone(), case.bar());
         let per_stress = Section { radius: 0.5 * bar.diameter, yield_stress: 1.0 }.plastic_torque();
         let rate = case.spec.grip.as_ref().unwrap().rotation_rate;
         case.run(|_| {});

@@ -120,4 +120,24 @@ mod tests {
         assert!((law.considere(0.5).unwrap() - 0.19).abs() < 1e-3);
         assert_eq!(law.considere(0.15), None);
     }
+
+    #[test]
+    fn the_table_is_met_at_its_points_and_keeps_its_last_slope() {
+        let law = Hardening::Table(vec![[0.0, 90e6], [0.1, 150e6], [0.3, 210e6]]);
+        for (p, stress) in [(0.0, 90e6), (0.05, 120e6), (0.1, 150e6), (0.2, 180e6), (0.3, 210e6), (0.4, 240e6)] {
+            assert!((law.stress(p) - stress).abs() < 1.0, "{p}");
+        }
+    }
+
+    #[test]
+    fn the_formulas_begin_at_the_yield_stress() {
+        let voce = Hardening::Voce { yield_stress: 90e6, saturation: 200e6, rate: 8.0, linear: 300e6 };
+        assert_eq!(voce.stress(0.0), 90e6);
+        let far = voce.stress(10.0);
+        assert!((far - (290e6 + 3000e6)).abs() < 1.0, "{far}");
+        let swift = Hardening::Swift { strength: 400e6, prestrain: 0.01, exponent: 0.5 };
+        assert!((swift.stress(0.0) - 40e6).abs() < 1e-6);
+        let ludwik = Hardening::Ludwik { yield_stress: 90e6, strength: 292e6, exponent: 0.31 };
+        assert_eq!(ludwik.stress(1.0), 382e6);
+    }
 }
