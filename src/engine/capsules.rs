@@ -5,7 +5,7 @@
 //! force. A contact walks along the other wire from segment to segment as the particle slides, and keeps its history.
 //! A free sphere against a wire, or two free spheres, carry the whole force.
 
-use super::contacts::{ContactPoint, Contacts};
+use super::contacts::Contacts;
 use super::neighbours::{PairList, apart};
 use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, normal_energy, part, touch};
 use super::state::{CHUNK, Partial, State};
@@ -255,14 +255,6 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
 
     fn candidates(&self) -> usize {
         self.contacts.len()
-    }
-
-    fn deepest(&self) -> Option<ContactPoint> {
-        self.contacts.iter().max_by(|a, b| a.history.overlap.total_cmp(&b.history.overlap)).map(|c| ContactPoint {
-            i: c.i as usize,
-            j: c.j as usize,
-            overlap: c.history.overlap,
-        })
     }
 
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {

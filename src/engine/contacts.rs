@@ -17,17 +17,6 @@ use crate::law::tangential::none::Frictionless;
 use crate::scene::spec::{ContactSpec, Material, NormalSpec, Shape, TangentialSpec};
 use crate::strand::assembly::Assembly;
 
-/// A place where two bodies overlap.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactPoint {
-    /// First particle.
-    pub i: usize,
-    /// Second particle.
-    pub j: usize,
-    /// Overlap [m].
-    pub overlap: f64,
-}
-
 /// Contacts of a run.
 pub trait Contacts: Send {
     /// Takes a new list of candidates; history of pairs that stay is kept. Returns what was lost with pairs that left.
@@ -40,8 +29,6 @@ pub trait Contacts: Send {
     fn active(&self) -> usize;
     /// Number of candidate pairs.
     fn candidates(&self) -> usize;
-    /// The touching pair with the greatest overlap.
-    fn deepest(&self) -> Option<ContactPoint>;
     /// Stiffnesses of touching pairs for the bound on the time step, as they can become within `horizon` [s].
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
 }

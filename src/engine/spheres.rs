@@ -1,6 +1,6 @@
 //! Contact stage for spheres: every particle is a ball of its wire's diameter.
 
-use super::contacts::{ContactPoint, Contacts};
+use super::contacts::Contacts;
 use super::neighbours::PairList;
 use super::pair::{History, Laws, Meeting, elastic_energy, foreseen_stiffness, part, touch};
 use super::state::{CHUNK, Partial, State};
@@ -172,14 +172,6 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
 
     fn candidates(&self) -> usize {
         self.contacts.len()
-    }
-
-    fn deepest(&self) -> Option<ContactPoint> {
-        self.contacts.iter().max_by(|a, b| a.history.overlap.total_cmp(&b.history.overlap)).map(|c| ContactPoint {
-            i: c.i as usize,
-            j: c.j as usize,
-            overlap: c.history.overlap,
-        })
     }
 
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {

@@ -53,10 +53,6 @@ impl BondLaw for Elastic {
     fn thinning(&self, _: &()) -> f64 {
         1.0
     }
-
-    fn yield_stress(&self, _: &()) -> f64 {
-        f64::INFINITY
-    }
 }
 
 #[cfg(test)]

@@ -274,10 +274,6 @@ impl BondLaw for ElastoPlastic {
     fn thinning(&self, state: &PlasticState) -> f64 {
         state.thinning
     }
-
-    fn yield_stress(&self, state: &PlasticState) -> f64 {
-        state.yield_stress
-    }
 }
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;

@@ -156,9 +156,6 @@ pub trait BondLaw: Clone + Send + Sync + 'static {
 
     /// Factor on the undeformed radius, e^(−ε_p/2) [-].
     fn thinning(&self, state: &Self::State) -> f64;
-
-    /// True yield stress now [Pa]; infinite for elastic laws.
-    fn yield_stress(&self, state: &Self::State) -> f64;
 }
 
 /// A round section.
