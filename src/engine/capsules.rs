@@ -249,6 +249,17 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
         self.contacts.iter().map(|c| c.share * elastic_energy(&self.laws, &c.history)).sum()
     }
 
+    fn add_normal_forces(&self, onto: &mut [f64]) {
+        for c in self.contacts.iter().filter(|c| c.history.touching) {
+            let force = c.share * c.history.normal_force;
+            onto[c.i as usize] += force;
+            onto[c.j as usize] += force * (1.0 - c.t);
+            if c.segment {
+                onto[c.j as usize + 1] += force * c.t;
+            }
+        }
+    }
+
     fn active(&self) -> usize {
         self.contacts.iter().filter(|c| c.history.touching).count()
     }

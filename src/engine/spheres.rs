@@ -166,6 +166,13 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         self.contacts.iter().map(|c| elastic_energy(&self.laws, &c.history)).sum()
     }
 
+    fn add_normal_forces(&self, onto: &mut [f64]) {
+        for c in &self.contacts {
+            onto[c.i as usize] += c.history.normal_force;
+            onto[c.j as usize] += c.history.normal_force;
+        }
+    }
+
     fn active(&self) -> usize {
         self.contacts.iter().filter(|c| c.history.touching).count()
     }

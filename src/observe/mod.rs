@@ -15,7 +15,7 @@ pub mod units;
 pub mod wording;
 
 use crate::base::error::Result;
-use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
 use std::sync::Arc;
 
 /// Something that watches a run.
@@ -32,6 +32,10 @@ pub trait Observer {
     }
     /// A bond broke.
     fn rupture(&mut self, _rupture: &Rupture) -> Result<()> {
+        Ok(())
+    }
+    /// Something that the user must know was found.
+    fn notice(&mut self, _notice: &Notice) -> Result<()> {
         Ok(())
     }
     /// After the last step, also of a run that was stopped: everything written so far must be made whole.

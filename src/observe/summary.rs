@@ -275,6 +275,7 @@ mod tests {
             stress_range: [0.0, 400.0],
             plastic_strain_range: [0.0, 0.3],
             speed_range: [0.0, 10.0],
+            contact_pressure_range: [0.0, 1.0],
             strain_end: Some(0.3),
         })
     }
