@@ -1,16 +1,22 @@
 //! Bond stage: kinematics of every bond, its law, damping, and what it does to its two particles.
 //!
-//! Generic over the law and over whether particles turn; the loop inside is monomorphic. Log axial strain on the
-//! current length; shear, bending and torsion by increments in the bond's co-rotating frame (n, e₁, e₂), measured at
-//! mid-step so that a rigid rotation gives none up to third order in its angle per step.
+//! Generic over the law and over whether particles turn; the loop inside is monomorphic and takes as many bonds at
+//! once as the machine's registers hold. Log axial strain on the current length; shear, bending and torsion by
+//! increments in the bond's co-rotating frame (n, e₁, e₂), measured at mid-step so that a rigid rotation gives none up
+//! to third order in its angle per step.
+//!
+//! Everything that a bond remembers lies in blocks of [`BLOCK`] slots, field after field: one stream of memory, from
+//! which a register takes a field of a whole block.
 
 use super::rupture::{Criterion, RuptureCheck};
-use super::state::{BondAction, CHUNK, Partial, State};
+use super::state::{BondActions, CHUNK, Partial, State};
 use super::time_step::Stiffness;
+use crate::base::lanes::{BLOCK, Lanes, Mask, Real, Triple};
+use crate::base::vectors::Vectors;
 use crate::law::bond::{BondForce, BondIncrement, BondLaw, BondShape, Section};
 use crate::law::damping::viscous_coefficient;
 use crate::strand::assembly::Assembly;
-use glam::DVec3;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// What the engine asks of bonds, whatever their law.
@@ -32,75 +38,132 @@ pub trait Bonds: Send {
     fn plastic_strain(&self, slot: usize) -> f64;
     /// Share of its rupture limit that a bond has reached [-]: it breaks at 1. 0 without a rupture criterion.
     fn utilisation(&self, slot: usize, state: &State) -> f64;
-}
-
-/// One bond's frame, forces and history.
-#[derive(Debug, Clone, Copy)]
-struct Record<S> {
-    /// e₁ of the co-rotating frame.
-    e1: DVec3,
-    force: BondForce,
-    /// Force of the axial dashpot at the last step [N].
-    dashpot: f64,
-    state: S,
+    /// What the stage keeps of each bond [bytes].
+    fn bytes_per_bond(&self) -> usize;
 }
 
 /// Bonds with law `L`; `TURN` says whether particles turn.
 pub struct BondStage<L: BondLaw, const TURN: bool> {
     law: L,
-    records: Vec<Record<L::State>>,
-    shape: Vec<BondShape>,
-    /// Viscous coefficients of axial, shear [N s/m], bending, torsion [N m s]; empty without damping.
-    viscosity: Vec<[f64; 4]>,
+    /// Blocks of [`Self::FIELDS`] fields.
+    records: Vec<f64>,
+    /// Blocks of the viscous coefficients of axial, shear [N s/m], bending, torsion [N m s]; empty without damping.
+    viscosity: Vec<f64>,
     rupture: Option<RuptureCheck>,
     partial: Vec<Partial>,
     /// Whether a bond of each chunk may have reached its limit at this step.
     due: Vec<bool>,
+    arch: Arch,
 }
 
+/// Viscous coefficients of a bond.
+const MODES: usize = 4;
+/// l₀, r₀ and their inverses.
+const SHAPE_FIELDS: usize = 4;
+
 impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
+    // Places of the fields in a block. A bond that only stretches has no frame and no force but the axial one.
+    const FRAME: usize = 0;
+    const AXIAL: usize = if TURN { 3 } else { 0 };
+    const ACROSS: usize = Self::AXIAL + 1;
+    const DASHPOT: usize = Self::ACROSS + if TURN { 5 } else { 0 };
+    const HISTORY: usize = Self::DASHPOT + 1;
+    const SHAPE: usize = Self::HISTORY + L::HISTORY;
+    /// 1 where the bond holds, 0 elsewhere.
+    const LIVE: usize = Self::SHAPE + SHAPE_FIELDS;
+    const FIELDS: usize = Self::LIVE + 1;
+
     /// All bonds of the assembly; `damping` is the fraction of critical per mode [-].
-    pub fn new(law: L, assembly: &Assembly, damping: [f64; 4], rupture: Option<RuptureCheck>) -> Self {
+    pub fn new(law: L, assembly: &Assembly, damping: [f64; MODES], rupture: Option<RuptureCheck>) -> Self {
         let n = assembly.len();
-        let shape: Vec<_> = (0..n).map(|i| BondShape::new(assembly.rest_length[i], assembly.radius[i])).collect();
-        let records = (0..n)
-            .map(|i| {
-                let axis = if assembly.is_bond(i) {
-                    (assembly.position.get(i + 1) - assembly.position.get(i)).normalize()
-                } else {
-                    DVec3::Z
-                };
-                Record {
-                    e1: axis.any_orthonormal_vector(),
-                    force: BondForce::default(),
-                    dashpot: 0.0,
-                    state: law.initial(),
-                }
-            })
-            .collect();
-        let viscosity = if damping.iter().any(|d| *d > 0.0) {
-            (0..n).map(|i| viscosity(&law, assembly, &shape[i], i, damping)).collect()
-        } else {
-            Vec::new()
-        };
-        let chunks = n.div_ceil(CHUNK);
-        Self {
+        let blocks = n.div_ceil(BLOCK);
+        let damped = damping.iter().any(|d| *d > 0.0);
+        let mut stage = Self {
             law,
-            records,
-            shape,
-            viscosity,
+            records: vec![0.0; blocks * BLOCK * Self::FIELDS],
+            viscosity: vec![0.0; if damped { blocks * BLOCK * MODES } else { 0 }],
             rupture,
-            partial: vec![Partial::default(); chunks],
-            due: vec![true; chunks],
+            partial: vec![Partial::default(); n.div_ceil(CHUNK)],
+            due: vec![true; n.div_ceil(CHUNK)],
+            arch: Arch::new(),
+        };
+        for slot in 0..n {
+            let shape = BondShape::new(assembly.rest_length[slot], assembly.radius[slot]);
+            stage.set_up(slot, &shape, assembly);
+            if damped && assembly.is_bond(slot) {
+                for (mode, c) in viscosity(&stage.law, assembly, &shape, slot, damping).into_iter().enumerate() {
+                    stage.viscosity[place(MODES, slot, mode)] = c;
+                }
+            }
+        }
+        stage
+    }
+
+    /// The record of a slot before any load.
+    fn set_up(&mut self, slot: usize, shape: &BondShape, assembly: &Assembly) {
+        let initial = self.law.initial();
+        L::each_number(&initial, |k, number| self.set(slot, Self::HISTORY + k, number));
+        // A slot without a bond has no length; its inverse must not be infinite where it is not used.
+        let inverse_length = if assembly.is_bond(slot) { shape.inverse_length } else { 0.0 };
+        let numbers = [shape.rest_length, shape.radius, inverse_length, shape.inverse_radius];
+        numbers.into_iter().enumerate().for_each(|(k, number)| self.set(slot, Self::SHAPE + k, number));
+        if assembly.is_bond(slot) {
+            self.set(slot, Self::LIVE, 1.0);
+            if TURN {
+                let axis = (assembly.position.get(slot + 1) - assembly.position.get(slot)).normalize();
+                let e1 = axis.any_orthonormal_vector().to_array();
+                e1.into_iter().enumerate().for_each(|(k, e)| self.set(slot, Self::FRAME + k, e));
+            }
         }
     }
+
+    fn get(&self, slot: usize, field: usize) -> f64 {
+        self.records[place(Self::FIELDS, slot, field)]
+    }
+
+    fn set(&mut self, slot: usize, field: usize, number: f64) {
+        self.records[place(Self::FIELDS, slot, field)] = number;
+    }
+
+    fn shape(&self, slot: usize) -> BondShape {
+        shape(|k| self.get(slot, Self::SHAPE + k))
+    }
+
+    fn history(&self, slot: usize) -> L::State<f64> {
+        L::history(|k| self.get(slot, Self::HISTORY + k))
+    }
+
+    fn force(&self, slot: usize) -> BondForce {
+        if TURN {
+            force(self.get(slot, Self::AXIAL), |k| self.get(slot, Self::ACROSS + k))
+        } else {
+            BondForce { axial: self.get(slot, Self::AXIAL), ..Default::default() }
+        }
+    }
+
+    fn section(&self, slot: usize) -> Section {
+        self.law.section(&self.shape(slot), &self.history(slot))
+    }
+}
+
+/// Where field `field` of `slot` lies among blocks of `fields` fields.
+#[inline(always)]
+fn place(fields: usize, slot: usize, field: usize) -> usize {
+    (slot / BLOCK * fields + field) * BLOCK + slot % BLOCK
+}
+
+#[inline(always)]
+fn shape<R: Real>(number: impl Fn(usize) -> R) -> BondShape<R> {
+    BondShape { rest_length: number(0), radius: number(1), inverse_length: number(2), inverse_radius: number(3) }
+}
+
+#[inline(always)]
+fn force<R: Real>(axial: R, across: impl Fn(usize) -> R) -> BondForce<R> {
+    BondForce { axial, shear: [across(0), across(1)], bend: [across(2), across(3)], twist: across(4) }
 }
 
 /// Coefficients 2ξ√(k m) with the reduced mass (or inertia) of the two ends.
-fn viscosity<L: BondLaw>(law: &L, a: &Assembly, shape: &BondShape, i: usize, damping: [f64; 4]) -> [f64; 4] {
-    if !a.is_bond(i) {
-        return [0.0; 4];
-    }
+fn viscosity<L: BondLaw>(law: &L, a: &Assembly, shape: &BondShape, i: usize, damping: [f64; MODES]) -> [f64; MODES] {
     let reduced = |m: &[f64]| m[i] * m[i + 1] / (m[i] + m[i + 1]);
     let (mass, inertia) = (reduced(&a.mass), reduced(&a.inertia));
     let k = law.stiffness(shape, &law.initial());
@@ -114,82 +177,31 @@ fn viscosity<L: BondLaw>(law: &L, a: &Assembly, shape: &BondShape, i: usize, dam
 
 /// Power that the motion does on a bond against its whole action [W].
 fn power(state: &State, slot: usize) -> f64 {
-    let action = &state.bond[slot];
-    let (wa, wb) = (state.w.get(slot), state.w.get(slot + 1));
-    action.pull.dot(state.v.get(slot + 1) - state.v.get(slot)) + action.moment.dot(wb - wa) - action.arm.dot(wa + wb)
-}
-
-/// What all bonds of a step share.
-struct Shared<'a, L> {
-    law: &'a L,
-    shape: &'a [BondShape],
-    viscosity: &'a [[f64; 4]],
-    dt: f64,
-}
-
-/// A particle as its bonds see it.
-#[derive(Clone, Copy)]
-struct Node {
-    x: DVec3,
-    v: DVec3,
-    w: DVec3,
-}
-
-/// The parts of the state that bonds read.
-struct Motion<'a> {
-    x: &'a crate::base::vectors::Vectors,
-    v: &'a crate::base::vectors::Vectors,
-    w: &'a crate::base::vectors::Vectors,
-}
-
-impl Motion<'_> {
-    #[inline(always)]
-    fn node<const TURN: bool>(&self, p: usize) -> Node {
-        Node { x: self.x.get(p), v: self.v.get(p), w: if TURN { self.w.get(p) } else { DVec3::ZERO } }
-    }
+    let pull = state.bond.pull(slot).dot(state.v.get(slot + 1) - state.v.get(slot));
+    let [near, far] = state.bond.moments(slot);
+    pull - near.dot(state.w.get(slot)) - far.dot(state.w.get(slot + 1))
 }
 
 impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     fn compute(&mut self, state: &mut State) -> Partial {
-        let motion = Motion { x: &state.x, v: &state.v, w: &state.w };
-        let shared = Shared { law: &self.law, shape: &self.shape, viscosity: &self.viscosity, dt: state.dt };
-        let whole = &state.whole;
+        let blocks = CHUNK / BLOCK;
+        let fields = state.bond.fields();
+        let (law, viscosity, arch) = (&self.law, &self.viscosity, self.arch);
         let limit = self.rupture.as_ref().and_then(RuptureCheck::plastic_limit);
+        let (x, v, w, dt) = (&state.x, &state.v, &state.w, state.dt);
         (
-            self.records.par_chunks_mut(CHUNK),
-            state.bond.par_chunks_mut(CHUNK),
-            state.thinning.par_chunks_mut(CHUNK),
+            self.records.par_chunks_mut(blocks * BLOCK * Self::FIELDS),
+            state.bond.data.par_chunks_mut(CHUNK * fields),
             self.partial.par_iter_mut(),
             self.due.par_iter_mut(),
         )
             .into_par_iter()
             .with_max_len(1)
             .enumerate()
-            .for_each(|(chunk, (records, actions, thinning, partial, due))| {
-                // Sums of one chunk stay on this thread's stack: neighbours in memory belong to other threads.
-                let (mut sum, mut reached) = (Partial::default(), limit.is_none());
+            .for_each(|(chunk, (records, actions, partial, due))| {
                 let first = chunk * CHUNK;
-                let mut here = motion.node::<TURN>(first);
-                let outputs = actions.iter_mut().zip(thinning);
-                for ((k, record), (action, thinning)) in records.iter_mut().enumerate().zip(outputs) {
-                    // The last particle has no successor, and its slot no bond.
-                    let slot = first + k;
-                    let next = if slot + 1 < whole.len() { motion.node::<TURN>(slot + 1) } else { here };
-                    if whole[slot] {
-                        let ends = [here, next];
-                        *action = if TURN {
-                            turning(&shared, slot, &ends, record, &mut sum)
-                        } else {
-                            axial(&shared, slot, &ends, record, &mut sum)
-                        };
-                        *thinning = shared.law.thinning(&record.state);
-                        if let Some(limit) = limit {
-                            reached |= shared.law.plastic_strain(&record.state) >= limit[slot];
-                        }
-                    }
-                    here = next;
-                }
-                (*partial, *due) = (sum, reached);
+                let job = Chunk::<L, TURN> { law, first, x, v, w, dt, records, viscosity, limit, actions };
+                (*partial, *due) = arch.dispatch(job);
             });
         let mut sum = Partial::default();
         self.partial.iter().for_each(|p| sum.add(p));
@@ -201,170 +213,342 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
         if !self.due.iter().any(|due| *due) {
             return 0.0;
         }
-        let (law, records, shape) = (&self.law, &self.records, &self.shape);
-        let broken = check.broken(&state.whole, state, |slot| {
-            let r = &records[slot];
-            (law.plastic_strain(&r.state), &r.force, law.section(&shape[slot], &r.state))
-        });
+        let broken =
+            check.broken(&state.whole, state, |slot| (self.plastic_strain(slot), self.force(slot), self.section(slot)));
         let mut released = 0.0;
         for (slot, criterion) in broken {
             broke(slot, criterion, self.stress(slot));
-            let record = &mut self.records[slot];
-            released += self.law.elastic_energy(&self.shape[slot], &record.force, &record.state);
+            released += self.law.elastic_energy(&self.shape(slot), &self.force(slot), &self.history(slot));
             // The law has booked this step up to now with the mean of old and new force; the new one never acts.
             released -= 0.5 * state.dt * power(state, slot);
-            record.force = BondForce::default();
+            (Self::AXIAL..Self::DASHPOT).for_each(|field| self.set(slot, field, 0.0));
+            self.set(slot, Self::LIVE, 0.0);
             state.whole[slot] = false;
-            state.bond[slot] = BondAction::default();
+            state.bond.clear(slot);
         }
         released
     }
 
     fn elastic_energy(&self, state: &State) -> f64 {
-        self.records
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| state.whole[*i])
-            .map(|(i, r)| self.law.elastic_energy(&self.shape[i], &r.force, &r.state))
-            .sum()
+        let whole = (0..state.whole.len()).filter(|slot| state.whole[*slot]);
+        whole.map(|s| self.law.elastic_energy(&self.shape(s), &self.force(s), &self.history(s))).sum()
     }
 
     fn stiffness(&self, state: &State, out: &mut Stiffness) {
-        for (i, r) in self.records.iter().enumerate() {
-            if state.whole[i] {
-                let k = self.law.stiffness(&self.shape[i], &r.state);
-                let length = (state.x.get(i + 1) - state.x.get(i)).length();
-                let viscosity = self.viscosity.get(i).copied().unwrap_or_default();
-                out.bond(i, &k, length, viscosity, TURN);
-            }
+        for i in (0..state.whole.len()).filter(|slot| state.whole[*slot]) {
+            let k = self.law.stiffness(&self.shape(i), &self.history(i));
+            let length = (state.x.get(i + 1) - state.x.get(i)).length();
+            let damped = !self.viscosity.is_empty();
+            let coefficient = |mode| if damped { self.viscosity[place(MODES, i, mode)] } else { 0.0 };
+            out.bond(i, &k, length, std::array::from_fn(coefficient), TURN);
         }
     }
 
     fn stress(&self, slot: usize) -> f64 {
-        let r = &self.records[slot];
-        let section: Section = self.law.section(&self.shape[slot], &r.state);
-        r.force.axial / section.area
+        self.axial_force(slot) / self.section(slot).area
     }
 
     fn axial_force(&self, slot: usize) -> f64 {
-        self.records[slot].force.axial
+        self.get(slot, Self::AXIAL)
     }
 
     fn plastic_strain(&self, slot: usize) -> f64 {
-        self.law.plastic_strain(&self.records[slot].state)
+        self.law.plastic_strain(&self.shape(slot), &self.history(slot))
     }
 
     fn utilisation(&self, slot: usize, state: &State) -> f64 {
         let Some(check) = &self.rupture else { return 0.0 };
-        let r = &self.records[slot];
-        let section = self.law.section(&self.shape[slot], &r.state);
-        check.utilisation(slot, state, self.law.plastic_strain(&r.state), &r.force, &section)
+        check.utilisation(slot, state, self.plastic_strain(slot), &self.force(slot), &self.section(slot))
     }
+
+    fn bytes_per_bond(&self) -> usize {
+        let modes = if self.viscosity.is_empty() { 0 } else { MODES };
+        (Self::FIELDS + modes) * size_of::<f64>()
+    }
+}
+
+/// The bonds of one chunk at one step.
+struct Chunk<'a, L: BondLaw, const TURN: bool> {
+    law: &'a L,
+    /// Its first slot.
+    first: usize,
+    x: &'a Vectors,
+    v: &'a Vectors,
+    w: &'a Vectors,
+    /// Step [s].
+    dt: f64,
+    records: &'a mut [f64],
+    viscosity: &'a [f64],
+    /// Plastic strain at which each slot breaks [-], if that is the criterion.
+    limit: Option<&'a [f64]>,
+    actions: &'a mut [f64],
+}
+
+/// Energies of one chunk, a sum per lane of a block: added up in the same order whatever the registers' width.
+#[derive(Default)]
+struct Sums {
+    plastic: [f64; BLOCK],
+    damping: [f64; BLOCK],
+}
+
+/// Particles as their bonds see them.
+#[derive(Clone, Copy)]
+struct Node<R> {
+    x: Triple<R>,
+    v: Triple<R>,
+    w: Triple<R>,
+}
+
+/// What bonds do: pull on the first particle [N] (the second feels minus this), moments on the first and on the second
+/// [N m].
+struct Acts<R> {
+    pull: Triple<R>,
+    near: Triple<R>,
+    far: Triple<R>,
+}
+
+impl<L: BondLaw, const TURN: bool> WithSimd for Chunk<'_, L, TURN> {
+    /// Energies, and whether a bond may have reached its limit.
+    type Output = (Partial, bool);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
+        let (mut sums, mut due) = (Sums::default(), self.limit.is_none());
+        let blocks = self.records.len() / (BLOCK * BondStage::<L, TURN>::FIELDS);
+        for block in 0..blocks {
+            for lane in (0..BLOCK).step_by(Lanes::<S>::LEN) {
+                due |= self.bonds(simd, block, lane, &mut sums);
+            }
+        }
+        let sum = |lanes: [f64; BLOCK]| lanes.iter().sum();
+        (Partial { plastic: sum(sums.plastic), damping: sum(sums.damping), ..Default::default() }, due)
+    }
+}
+
+impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
+    /// The bonds of a block from `lane` on, as many as a register holds; tells whether one may have reached its limit.
+    #[inline(always)]
+    fn bonds<S: Simd>(&mut self, simd: S, block: usize, lane: usize, sums: &mut Sums) -> bool {
+        let fields = BondStage::<L, TURN>::FIELDS;
+        let slot = self.first + block * BLOCK + lane;
+        let ends = [self.node(simd, slot), self.node(simd, slot + 1)];
+        let record = &mut self.records[block * BLOCK * fields..(block + 1) * BLOCK * fields];
+        let load = |record: &[f64], field: usize| Lanes::load(simd, record, field * BLOCK + lane);
+        let live_number = load(record, BondStage::<L, TURN>::LIVE);
+        let zero = live_number.like(0.0);
+        let live = live_number.above(zero);
+
+        let shape = shape(|k| load(record, BondStage::<L, TURN>::SHAPE + k));
+        let mut state = L::history(|k| load(record, BondStage::<L, TURN>::HISTORY + k));
+        let across = |k| if TURN { load(record, BondStage::<L, TURN>::ACROSS + k) } else { zero };
+        let mut force = force(load(record, BondStage::<L, TURN>::AXIAL), across);
+        let mut dashpot = load(record, BondStage::<L, TURN>::DASHPOT);
+        let viscosity = (!self.viscosity.is_empty() && self.dt > 0.0).then(|| {
+            let all = &self.viscosity[place(MODES, slot, 0)..][..(MODES - 1) * BLOCK + Lanes::<S>::LEN];
+            [0, 1, 2, 3].map(|mode| Lanes::load(simd, all, mode * BLOCK))
+        });
+
+        let mut step = Step { law: self.law, dt: self.dt, live, plastic: zero, damping: zero };
+        let acts = if TURN {
+            let frame = |k| load(record, BondStage::<L, TURN>::FRAME + k);
+            let mut e1 = Triple { x: frame(0), y: frame(1), z: frame(2) };
+            let acts = step.turning(&ends, &shape, &mut e1, &mut force, &mut state, &mut dashpot, viscosity);
+            for (k, e) in [e1.x, e1.y, e1.z].into_iter().enumerate() {
+                e.store(record, (BondStage::<L, TURN>::FRAME + k) * BLOCK + lane);
+            }
+            let all = [force.shear[0], force.shear[1], force.bend[0], force.bend[1], force.twist];
+            for (k, f) in all.into_iter().enumerate() {
+                f.store(record, (BondStage::<L, TURN>::ACROSS + k) * BLOCK + lane);
+            }
+            acts
+        } else {
+            step.stretching(&ends, &shape, &mut force, &mut state, &mut dashpot, viscosity)
+        };
+        force.axial.store(record, BondStage::<L, TURN>::AXIAL * BLOCK + lane);
+        dashpot.store(record, BondStage::<L, TURN>::DASHPOT * BLOCK + lane);
+        L::each_number(&state, |k, number| {
+            number.store(record, (BondStage::<L, TURN>::HISTORY + k) * BLOCK + lane);
+        });
+        let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| {
+            (Lanes::load(simd, sum, lane) + Lanes::choose(live, part, zero)).store(sum, lane);
+        };
+        book(&mut sums.plastic, step.plastic);
+        book(&mut sums.damping, step.damping);
+        self.act(block, lane, live, &acts, self.law.thinning(&shape, &state));
+        self.limit.is_some_and(|limit| {
+            let limit = Lanes::load_up_to_end(simd, limit, slot);
+            (live & !limit.above(self.law.plastic_strain(&shape, &state))).any()
+        })
+    }
+
+    #[inline(always)]
+    fn node<S: Simd>(&self, simd: S, p: usize) -> Node<Lanes<S>> {
+        let load = |v: &Vectors| Triple {
+            x: Lanes::load_up_to_end(simd, &v.x, p),
+            y: Lanes::load_up_to_end(simd, &v.y, p),
+            z: Lanes::load_up_to_end(simd, &v.z, p),
+        };
+        let v = load(self.v);
+        let still = v.x.like(0.0);
+        Node { x: load(self.x), v, w: if TURN { load(self.w) } else { Triple { x: still, y: still, z: still } } }
+    }
+
+    /// Writes what the bonds do, and zeros for those that are not there.
+    #[inline(always)]
+    fn act<S: Simd>(
+        &mut self,
+        block: usize,
+        lane: usize,
+        live: <Lanes<S> as Real>::Mask,
+        acts: &Acts<Lanes<S>>,
+        thinning: Lanes<S>,
+    ) {
+        let at = block * BLOCK + lane;
+        let mut put = |field: usize, number: Lanes<S>| {
+            Lanes::choose(live, number, number.like(0.0)).store(self.actions, field * CHUNK + at);
+        };
+        put(BondActions::LIVE, thinning.like(1.0));
+        put(BondActions::THINNING, thinning);
+        let mut put_all = |field: usize, vector: &Triple<Lanes<S>>| {
+            [vector.x, vector.y, vector.z].into_iter().enumerate().for_each(|(k, number)| put(field + k, number));
+        };
+        put_all(BondActions::PULL, &acts.pull);
+        if TURN {
+            put_all(BondActions::NEAR, &acts.near);
+            put_all(BondActions::FAR, &acts.far);
+        }
+    }
+}
+
+/// A step of some bonds: what they share, and the energies that they give off [J].
+struct Step<'a, L: BondLaw, R: Real> {
+    law: &'a L,
+    dt: f64,
+    live: R::Mask,
+    plastic: R,
+    damping: R,
 }
 
 /// ln(l/l₀), from the square of the length, which is there before its root [-].
 #[inline(always)]
-fn log_strain(d: DVec3, shape: &BondShape) -> f64 {
-    0.5 * (d.length_squared() * (shape.inverse_length * shape.inverse_length)).ln()
+fn log_strain<R: Real>(d: Triple<R>, shape: &BondShape<R>) -> R {
+    (d.length_squared() * (shape.inverse_length * shape.inverse_length)).ln() * 0.5
 }
 
-/// A bond that only stretches.
-#[inline(always)]
-fn axial<L: BondLaw>(
-    shared: &Shared<L>,
-    slot: usize,
-    [a, b]: &[Node; 2],
-    record: &mut Record<L::State>,
-    partial: &mut Partial,
-) -> BondAction {
-    let d = b.x - a.x;
-    let shape = &shared.shape[slot];
-    let length = d.length();
-    let n = d * (1.0 / length);
-    let step = BondIncrement { log_strain: log_strain(d, shape), length, ..Default::default() };
-    partial.plastic += shared.law.axial_response(shape, &mut record.force, &mut record.state, &step);
-    let mut axial = record.force.axial;
-    if let Some(c) = shared.viscosity.get(slot) {
-        let rate = (b.v - a.v).dot(n);
-        axial += axial_dashpot(c[0], rate, shared.dt, &mut record.dashpot, partial);
-    }
-    BondAction { pull: n * axial, ..Default::default() }
-}
-
-/// Force of the axial dashpot at an elongation rate [m/s]; one formula for both kinds of bond, so that they agree to
-/// the bit. The first evaluation, before any step (`dt` = 0), has none: its work would go unbooked.
-///
-/// Work is the mean of `last` and present force over the step between them. The present force alone books too much
-/// where the rate falls from step to step, as in the ringing after a rupture.
-#[inline(always)]
-fn axial_dashpot(coefficient: f64, rate: f64, dt: f64, last: &mut f64, partial: &mut Partial) -> f64 {
-    if dt == 0.0 {
-        return 0.0;
-    }
-    let force = coefficient * rate;
-    partial.damping += 0.5 * (*last + force) * rate * dt;
-    *last = force;
-    force
-}
-
-/// A bond in all modes.
-#[inline(always)]
-fn turning<L: BondLaw>(
-    shared: &Shared<L>,
-    slot: usize,
-    [a, b]: &[Node; 2],
-    record: &mut Record<L::State>,
-    partial: &mut Partial,
-) -> BondAction {
-    let dt = shared.dt;
-    let (d, dv) = (b.x - a.x, b.v - a.v);
-    let shape = &shared.shape[slot];
-    let length = d.length();
-    let n = d * (1.0 / length);
-
-    // Mid-step geometry.
-    let middle = d - dv * (0.5 * dt);
-    let inv_middle = 1.0 / middle.length();
-    let n_mid = middle * inv_middle;
-    let spin = (a.w + b.w) * 0.5;
-    // The frame turns with the bond's direction and with the mean spin about it.
-    let turn = n_mid.cross(dv) * (dt * inv_middle) + n_mid * (spin.dot(n_mid) * dt);
-    let e1_old = record.e1;
-    let carried = e1_old + turn.cross(e1_old);
-    let flat = carried - n * carried.dot(n);
-    // Its length differs from 1 by the square of a step's rotation; one Newton step of 1/√q mends that.
-    let e1 = flat * (1.5 - 0.5 * flat.length_squared());
-    record.e1 = e1;
-    let e1_mid = (e1_old + e1) * 0.5;
-    let e2_mid = n_mid.cross(e1_mid);
-
-    let slide = (dv - spin.cross(middle)) * dt;
-    let rotation = (b.w - a.w) * dt;
-    let step = BondIncrement {
-        log_strain: log_strain(d, shape),
-        length,
-        shear: [slide.dot(e1_mid), slide.dot(e2_mid)],
-        bend: [rotation.dot(e1_mid), rotation.dot(e2_mid)],
-        twist: rotation.dot(n_mid),
-    };
-    partial.plastic += shared.law.response(shape, &mut record.force, &mut record.state, &step);
-    let mut f = record.force;
-    if let Some(c) = shared.viscosity.get(slot)
-        && dt > 0.0
-    {
-        f.axial += axial_dashpot(c[0], dv.dot(n), dt, &mut record.dashpot, partial);
-        let per = 1.0 / dt;
-        let mut viscous = |f: &mut f64, c: f64, increment: f64| {
-            *f += c * increment * per;
-            partial.damping += c * increment * increment * per;
-        };
-        viscous(&mut f.twist, c[3], step.twist);
-        for axis in 0..2 {
-            viscous(&mut f.shear[axis], c[1], step.shear[axis]);
-            viscous(&mut f.bend[axis], c[2], step.bend[axis]);
+impl<L: BondLaw, R: Real> Step<'_, L, R> {
+    /// Bonds that only stretch.
+    #[inline(always)]
+    fn stretching(
+        &mut self,
+        [a, b]: &[Node<R>; 2],
+        shape: &BondShape<R>,
+        force: &mut BondForce<R>,
+        state: &mut L::State<R>,
+        dashpot: &mut R,
+        viscosity: Option<[R; MODES]>,
+    ) -> Acts<R> {
+        let d = b.x - a.x;
+        let length = d.length_squared().sqrt();
+        let n = d * length.inverse();
+        let zero = length.like(0.0);
+        let log_strain = log_strain(d, shape);
+        let step = BondIncrement { log_strain, length, shear: [zero; 2], bend: [zero; 2], twist: zero };
+        self.plastic = self.law.axial_response(shape, force, state, &step, self.live);
+        let mut axial = force.axial;
+        if let Some(c) = viscosity {
+            axial += self.axial_dashpot(c[0], (b.v - a.v).dot(n), dashpot);
         }
+        let none = Triple { x: zero, y: zero, z: zero };
+        Acts { pull: n * axial, near: none, far: none }
     }
-    let e2 = n.cross(e1);
-    let pull = n * f.axial + (e1 * f.shear[0] + e2 * f.shear[1]);
-    BondAction { pull, moment: n * f.twist + (e1 * f.bend[0] + e2 * f.bend[1]), arm: n.cross(pull) * (0.5 * length) }
+
+    /// Force of the axial dashpot at an elongation rate [m/s]; one formula for both kinds of bond, so that they agree
+    /// to the bit. The first evaluation, before any step (`dt` = 0), has none: its work would go unbooked.
+    ///
+    /// Work is the mean of `last` and present force over the step between them. The present force alone books too much
+    /// where the rate falls from step to step, as in the ringing after a rupture.
+    #[inline(always)]
+    fn axial_dashpot(&mut self, coefficient: R, rate: R, last: &mut R) -> R {
+        let force = coefficient * rate;
+        self.damping += (*last + force) * 0.5 * rate * self.dt;
+        *last = force;
+        force
+    }
+
+    /// Bonds in all modes.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn turning(
+        &mut self,
+        [a, b]: &[Node<R>; 2],
+        shape: &BondShape<R>,
+        e1: &mut Triple<R>,
+        force: &mut BondForce<R>,
+        state: &mut L::State<R>,
+        dashpot: &mut R,
+        viscosity: Option<[R; MODES]>,
+    ) -> Acts<R> {
+        let dt = self.dt;
+        let (d, dv) = (b.x - a.x, b.v - a.v);
+        let length = d.length_squared().sqrt();
+        let n = d * length.inverse();
+
+        // Mid-step geometry.
+        let middle = d - dv * length.like(0.5 * dt);
+        let inv_middle = middle.length_squared().sqrt().inverse();
+        let n_mid = middle * inv_middle;
+        let spin = (a.w + b.w).map(|w| w * 0.5);
+        // The frame turns with the bond's direction and with the mean spin about it.
+        let turn = n_mid.cross(dv) * (inv_middle * dt) + n_mid * (spin.dot(n_mid) * dt);
+        let e1_old = *e1;
+        let carried = e1_old + turn.cross(e1_old);
+        let flat = carried - n * carried.dot(n);
+        // Its length differs from 1 by the square of a step's rotation; one Newton step of 1/√q mends that.
+        *e1 = flat * (flat.length_squared() * -0.5 + 1.5);
+        let e1_mid = (e1_old + *e1).map(|e| e * 0.5);
+        let e2_mid = n_mid.cross(e1_mid);
+
+        let slide = (dv - spin.cross(middle)).map(|s| s * dt);
+        let rotation = (b.w - a.w).map(|w| w * dt);
+        let step = BondIncrement {
+            log_strain: log_strain(d, shape),
+            length,
+            shear: [slide.dot(e1_mid), slide.dot(e2_mid)],
+            bend: [rotation.dot(e1_mid), rotation.dot(e2_mid)],
+            twist: rotation.dot(n_mid),
+        };
+        self.plastic = self.law.response(shape, force, state, &step, self.live);
+        let mut f = *force;
+        if let Some(c) = viscosity {
+            f.axial += self.axial_dashpot(c[0], dv.dot(n), dashpot);
+            let per = 1.0 / dt;
+            let mut viscous = |f: &mut R, c: R, increment: R| {
+                let push = c * increment * per;
+                *f += push;
+                self.damping += push * increment;
+            };
+            viscous(&mut f.twist, c[3], step.twist);
+            for axis in 0..2 {
+                viscous(&mut f.shear[axis], c[1], step.shear[axis]);
+                viscous(&mut f.bend[axis], c[2], step.bend[axis]);
+            }
+        }
+        let e2 = n.cross(*e1);
+        let pull = n * f.axial + (*e1 * f.shear[0] + e2 * f.shear[1]);
+        let moment = n * f.twist + (*e1 * f.bend[0] + e2 * f.bend[1]);
+        let arm = n.cross(pull) * (length * 0.5);
+        Acts { pull, near: arm + moment, far: arm - moment }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_of_a_block_is_contiguous() {
+        assert_eq!(place(5, 0, 0), 0);
+        assert_eq!(place(5, 7, 2), 23);
+        assert_eq!(place(5, 8, 0), 40);
+    }
 }

@@ -1,16 +1,18 @@
 //! Leapfrog: forces gathered per particle in a fixed order, velocities kicked, positions drifted.
 
 use super::neighbours::Reference;
-use super::state::{BondAction, CHUNK, State};
+use super::state::{BondActions, CHUNK, State};
+use crate::base::lanes::{BLOCK, Lanes, Real};
 use crate::base::vectors::Vectors;
 use glam::DVec3;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Adds up what bonds and contacts do to each particle: F_n and torques. Also lets wires thin: the radius of a particle
 /// is the mean over its bonds.
-pub fn gather(state: &mut State, turn: bool, contacts: bool) {
-    let (bond, thinning, radius0, whole) = (&state.bond, &state.thinning, &state.radius0, &state.whole);
-    let (cf, ct) = (&state.contact_force, &state.contact_torque);
+pub fn gather(state: &mut State, turn: bool, contacts: bool, arch: Arch) {
+    let (bond, radius0) = (&state.bond, &state.radius0);
+    let others = contacts.then_some([&state.contact_force, &state.contact_torque]);
     let (f, t) = (&mut state.force, &mut state.torque);
     (
         f.x.par_chunks_mut(CHUNK),
@@ -26,38 +28,71 @@ pub fn gather(state: &mut State, turn: bool, contacts: bool) {
         .enumerate()
         .for_each(|(chunk, (fx, fy, fz, tx, ty, tz, radius))| {
             let first = chunk * CHUNK;
-            let mut last = if first > 0 { bond[first - 1] } else { BondAction::default() };
-            let slots = bond[first..first + fx.len()].iter().zip(radius.iter_mut());
-            for (k, (next, radius)) in slots.enumerate() {
-                let p = first + k;
-                let mut force = next.pull - last.pull;
-                if contacts {
-                    force += cf.get(p);
-                }
-                (fx[k], fy[k], fz[k]) = force.into();
-                if turn {
-                    let mut torque = next.moment - last.moment + (next.arm + last.arm);
-                    if contacts {
-                        torque += ct.get(p);
-                    }
-                    (tx[k], ty[k], tz[k]) = torque.into();
-                }
-                if let Some(factor) = mean_thinning(whole, thinning, p) {
-                    *radius = radius0[p] * factor;
-                }
-                last = *next;
-            }
+            let (force, torque) = ([fx, fy, fz], [tx, ty, tz]);
+            arch.dispatch(Gather { bond, first, others, turn, force, torque, radius, radius0 });
         });
 }
 
-/// Mean factor on the radius over the whole bonds of a particle; `None` keeps what it has.
-#[inline(always)]
-fn mean_thinning(whole: &[bool], thinning: &[f64], p: usize) -> Option<f64> {
-    match (p > 0 && whole[p - 1], whole[p]) {
-        (true, true) => Some(0.5 * (thinning[p - 1] + thinning[p])),
-        (true, false) => Some(thinning[p - 1]),
-        (false, true) => Some(thinning[p]),
-        (false, false) => None,
+/// The particles of one chunk.
+struct Gather<'a> {
+    bond: &'a BondActions,
+    /// The first of them.
+    first: usize,
+    /// Forces and torques from contacts.
+    others: Option<[&'a Vectors; 2]>,
+    turn: bool,
+    force: [&'a mut [f64]; 3],
+    torque: [&'a mut [f64]; 3],
+    radius: &'a mut [f64],
+    radius0: &'a [f64],
+}
+
+impl WithSimd for Gather<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Gather { bond, first, others, turn, force, torque, radius, radius0 } = self;
+        let fields = bond.fields();
+        let actions = &bond.data[first * fields..(first + CHUNK) * fields];
+        let row = |field: usize| &actions[field * CHUNK..(field + 1) * CHUNK];
+        let here = |field: usize, k: usize| Lanes::load(simd, row(field), k);
+        // What the bonds before do; the first one belongs to the chunk before.
+        let before = |field: usize, k: usize| {
+            if k > 0 {
+                return Lanes::load(simd, row(field), k - 1);
+            }
+            let mut numbers = [0.0; BLOCK];
+            numbers[0] = if first > 0 { bond.get(first - 1, field) } else { 0.0 };
+            numbers[1..].copy_from_slice(&row(field)[..BLOCK - 1]);
+            Lanes::load(simd, &numbers, 0)
+        };
+        let add = |out: [&mut [f64]; 3], near: usize, far: usize, sign: f64, others: Option<&Vectors>| {
+            let others = others.map(|o| [&o.x, &o.y, &o.z]);
+            for (axis, out) in out.into_iter().enumerate() {
+                for k in (0..out.len()).step_by(Lanes::<S>::LEN) {
+                    let mut sum = here(near + axis, k) + before(far + axis, k) * sign;
+                    if let Some(others) = others {
+                        sum += Lanes::load_up_to_end(simd, others[axis], first + k);
+                    }
+                    sum.store_up_to_end(out, k);
+                }
+            }
+        };
+        let [push, twist] = others.map_or([None, None], |o| o.map(Some));
+        add(force, BondActions::PULL, BondActions::PULL, -1.0, push);
+        if turn {
+            add(torque, BondActions::NEAR, BondActions::FAR, 1.0, twist);
+        }
+        // Mean over the bonds that hold; a particle without any keeps its radius.
+        for k in (0..radius.len()).step_by(Lanes::<S>::LEN) {
+            let both = |field| here(field, k) + before(field, k);
+            let (live, thinning) = (both(BondActions::LIVE), both(BondActions::THINNING));
+            let undeformed = Lanes::load_up_to_end(simd, radius0, first + k);
+            let kept = Lanes::load_up_to_end(simd, radius, k);
+            let held = live.above(live.like(0.0));
+            Lanes::choose(held, undeformed * (thinning / live), kept).store_up_to_end(radius, k);
+        }
     }
 }
 

@@ -31,6 +31,7 @@ use contacts::Contacts;
 use grips::Holds;
 use measure::Measures;
 use neighbours::Neighbours;
+use pulp::Arch;
 use rupture::RuptureCheck;
 use state::State;
 use std::time::{Duration, Instant};
@@ -89,6 +90,7 @@ pub struct Engine {
     measures: Measures,
     least_radius: f64,
     timings: Timings,
+    arch: Arch,
 }
 
 impl Engine {
@@ -98,7 +100,7 @@ impl Engine {
     /// When there is no stable step because nothing is stiff and the scene fixes none, or a grip holds nothing.
     pub fn new(spec: &Spec, assembly: Assembly) -> Result<Self> {
         let plan = Plan::new(spec);
-        let mut state = State::new(&assembly);
+        let mut state = State::new(&assembly, plan.rotations);
         let holds = Holds::new(spec, &assembly, &mut state)?;
         let bonds = plan.bonds.then(|| build_bonds(spec, &plan, &assembly));
         let measures = Measures::new(spec, &assembly, &holds);
@@ -118,6 +120,7 @@ impl Engine {
             measures,
             least_radius,
             timings: Timings::default(),
+            arch: Arch::new(),
             holds,
             assembly,
         };
@@ -213,7 +216,7 @@ impl Engine {
             self.timings.contacts += after_search.elapsed();
         }
         let before_gather = Instant::now();
-        integrate::gather(&mut self.state, self.plan.rotations, self.contacts.is_some());
+        integrate::gather(&mut self.state, self.plan.rotations, self.contacts.is_some(), self.arch);
         self.timings.integrate += before_gather.elapsed();
     }
 

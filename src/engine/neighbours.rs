@@ -285,7 +285,7 @@ mod tests {
             area: 0.0,
             position,
         };
-        let state = State::new(&assembly);
+        let state = State::new(&assembly, true);
         (assembly, state)
     }
 

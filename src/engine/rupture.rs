@@ -54,15 +54,15 @@ impl RuptureCheck {
     }
 
     /// Slots that broke, in order, with the cause. `bond(slot)` gives (p, forces, section).
-    pub fn broken<'a>(
+    pub fn broken(
         &self,
         whole: &[bool],
         state: &State,
-        bond: impl Fn(usize) -> (f64, &'a BondForce, Section),
+        bond: impl Fn(usize) -> (f64, BondForce, Section),
     ) -> Vec<(usize, Criterion)> {
         let reached = |slot: usize| {
             let (p, force, section) = bond(slot);
-            let demand = self.demand(slot, state, p, force, &section);
+            let demand = self.demand(slot, state, p, &force, &section);
             (demand.value >= demand.limit).then_some((slot, demand.cause))
         };
         (0..whole.len()).filter(|s| whole[*s]).filter_map(reached).collect()

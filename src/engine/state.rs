@@ -7,15 +7,78 @@ use glam::DVec3;
 /// Number of items that one task works on. Fixed, so that partial sums do not depend on the number of threads.
 pub const CHUNK: usize = 256;
 
-/// What a bond does to its two particles.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BondAction {
-    /// Force on the first particle [N]; the second feels minus this.
-    pub pull: DVec3,
-    /// Moment on the first particle [N m]; the second feels minus this.
-    pub moment: DVec3,
-    /// Moment of the shear force about both particles, (l/2) n × pull [N m].
-    pub arm: DVec3,
+/// What bonds do to their two particles, in blocks of [`CHUNK`] slots, field after field.
+pub struct BondActions {
+    /// Per block: 1 where the bond holds and 0 elsewhere; its factor on the radius e^(−ε_p/2) [-]; its pull on the
+    /// first particle [N], of which the second feels the opposite; and where particles turn its moments on the first
+    /// and on the second [N m]. All of them 0 where no bond is.
+    pub data: Vec<f64>,
+    turn: bool,
+}
+
+impl BondActions {
+    /// Places of the fields.
+    pub const LIVE: usize = 0;
+    /// See [`Self::data`].
+    pub const THINNING: usize = 1;
+    /// Three of them.
+    pub const PULL: usize = 2;
+    /// Three of them.
+    pub const NEAR: usize = 5;
+    /// Three of them.
+    pub const FAR: usize = 8;
+
+    /// Nothing done yet to `n` particles.
+    pub fn new(n: usize, turn: bool) -> Self {
+        Self { data: vec![0.0; n.div_ceil(CHUNK) * CHUNK * Self::fields_of(turn)], turn }
+    }
+
+    /// Number of fields.
+    pub fn fields(&self) -> usize {
+        Self::fields_of(self.turn)
+    }
+
+    /// Number of fields with and without rotation.
+    pub const fn fields_of(turn: bool) -> usize {
+        if turn { Self::FAR + 3 } else { Self::NEAR }
+    }
+
+    /// A field of a slot.
+    pub fn get(&self, slot: usize, field: usize) -> f64 {
+        self.data[self.place(slot, field)]
+    }
+
+    fn place(&self, slot: usize, field: usize) -> usize {
+        (slot / CHUNK * self.fields() + field) * CHUNK + slot % CHUNK
+    }
+
+    fn vector(&self, slot: usize, field: usize) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|k| self.get(slot, field + k)))
+    }
+
+    /// Pull of a bond on its first particle [N].
+    pub fn pull(&self, slot: usize) -> DVec3 {
+        self.vector(slot, Self::PULL)
+    }
+
+    /// Moments of a bond on its first and on its second particle [N m].
+    pub fn moments(&self, slot: usize) -> [DVec3; 2] {
+        if self.turn { [self.vector(slot, Self::NEAR), self.vector(slot, Self::FAR)] } else { [DVec3::ZERO; 2] }
+    }
+
+    /// Bending moment and torque of a bond [N m].
+    pub fn moment(&self, slot: usize) -> DVec3 {
+        let [near, far] = self.moments(slot);
+        0.5 * (near - far)
+    }
+
+    /// The bond is not there any more.
+    pub fn clear(&mut self, slot: usize) {
+        for field in 0..self.fields() {
+            let place = self.place(slot, field);
+            self.data[place] = 0.0;
+        }
+    }
 }
 
 /// All particles.
@@ -34,12 +97,10 @@ pub struct State {
     pub contact_force: Vectors,
     /// Torques from contacts [N m].
     pub contact_torque: Vectors,
-    /// What each bond slot does; zero where no bond is.
-    pub bond: Vec<BondAction>,
+    /// What bonds do.
+    pub bond: BondActions,
     /// Whether each bond slot holds.
     pub whole: Vec<bool>,
-    /// Factor on the radius of each bond, e^(−ε_p/2) [-].
-    pub thinning: Vec<f64>,
     /// Current contact radii [m].
     pub radius: Vec<f64>,
     /// Undeformed radii [m].
@@ -65,8 +126,8 @@ pub struct State {
 }
 
 impl State {
-    /// From the assembly, at rest where the scene gives no velocity.
-    pub fn new(a: &Assembly) -> Self {
+    /// From the assembly, at rest where the scene gives no velocity; `turn` says whether particles turn.
+    pub fn new(a: &Assembly, turn: bool) -> Self {
         let n = a.len();
         Self {
             x: a.position.clone(),
@@ -76,9 +137,8 @@ impl State {
             torque: Vectors::zeros(n),
             contact_force: Vectors::zeros(n),
             contact_torque: Vectors::zeros(n),
-            bond: vec![BondAction::default(); n],
+            bond: BondActions::new(n, turn),
             whole: (0..n).map(|i| a.is_bond(i)).collect(),
-            thinning: vec![1.0; n],
             radius: a.radius.clone(),
             radius0: a.radius.clone(),
             mass: a.mass.clone(),

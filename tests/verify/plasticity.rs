@@ -62,7 +62,7 @@ fn limit(name: &str, hardens: bool, elastic_slope: f64, plastic: impl Fn(&Sectio
     let mut checked = [false; 2];
     case.run(|engine| {
         let angle = rate * engine.time();
-        let moment = engine.state().bond[0].moment.length();
+        let moment = engine.state().bond.moment(0).length();
         if !checked[0] && angle > 0.5 * limit / elastic_slope {
             checked[0] = true;
             near(&format!("{name}, elastic"), moment, elastic_slope * angle, 1e-6);

@@ -2,6 +2,7 @@
 
 use super::{BondForce, BondIncrement, BondLaw, BondShape, BondStiffness, Moduli, Section};
 use super::{add_transverse, transverse_energy};
+use crate::base::lanes::Real;
 
 /// Elastic bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,25 +12,47 @@ pub struct Elastic {
 }
 
 impl BondLaw for Elastic {
-    type State = ();
+    type State<R: Real> = ();
+
+    const HISTORY: usize = 0;
+
+    #[inline(always)]
+    fn history<R: Real>(_: impl Fn(usize) -> R) {}
+
+    #[inline(always)]
+    fn each_number<R: Real>((): &(), _: impl FnMut(usize, R)) {}
 
     fn initial(&self) {}
 
     #[inline(always)]
-    fn response(&self, shape: &BondShape, force: &mut BondForce, state: &mut (), step: &BondIncrement) -> f64 {
+    fn response<R: Real>(
+        &self,
+        shape: &BondShape<R>,
+        force: &mut BondForce<R>,
+        state: &mut (),
+        step: &BondIncrement<R>,
+        live: R::Mask,
+    ) -> R {
         let k = self.stiffness(shape, state);
         add_transverse(force, &k, step);
-        self.axial_response(shape, force, state, step)
+        self.axial_response(shape, force, state, step, live)
     }
 
     #[inline(always)]
-    fn axial_response(&self, shape: &BondShape, force: &mut BondForce, _: &mut (), step: &BondIncrement) -> f64 {
-        force.axial = self.moduli.young * Section::round(shape.radius).area * step.log_strain;
-        0.0
+    fn axial_response<R: Real>(
+        &self,
+        shape: &BondShape<R>,
+        force: &mut BondForce<R>,
+        _: &mut (),
+        step: &BondIncrement<R>,
+        _: R::Mask,
+    ) -> R {
+        force.axial = Section::round(shape.radius).area * self.moduli.young * step.log_strain;
+        step.length.like(0.0)
     }
 
     #[inline(always)]
-    fn stiffness(&self, shape: &BondShape, _: &()) -> BondStiffness {
+    fn stiffness<R: Real>(&self, shape: &BondShape<R>, _: &()) -> BondStiffness<R> {
         Section::round(shape.radius).stiffness(&self.moduli, shape.inverse_length)
     }
 
@@ -37,21 +60,23 @@ impl BondLaw for Elastic {
     fn elastic_energy(&self, shape: &BondShape, force: &BondForce, state: &()) -> f64 {
         let stiffness = self.moduli.young * Section::round(shape.radius).area;
         let strain = force.axial / stiffness;
-        let axial = stiffness * shape.rest_length * (strain * strain.exp() - strain.exp_m1());
+        let axial = stiffness * shape.rest_length * (strain * f64::exp(strain) - strain.exp_m1());
         axial + transverse_energy(force, &self.stiffness(shape, state))
     }
 
-    fn section(&self, shape: &BondShape, _: &()) -> Section {
+    #[inline(always)]
+    fn section<R: Real>(&self, shape: &BondShape<R>, _: &()) -> Section<R> {
         Section::round(shape.radius)
     }
 
-    fn plastic_strain(&self, _: &()) -> f64 {
-        0.0
+    #[inline(always)]
+    fn plastic_strain<R: Real>(&self, shape: &BondShape<R>, _: &()) -> R {
+        shape.radius.like(0.0)
     }
 
     #[inline(always)]
-    fn thinning(&self, _: &()) -> f64 {
-        1.0
+    fn thinning<R: Real>(&self, shape: &BondShape<R>, _: &()) -> R {
+        shape.radius.like(1.0)
     }
 }
 
@@ -65,8 +90,8 @@ mod tests {
         let shape = BondShape::new(0.39e-3, 0.195e-3);
         let energy = |l: f64| {
             let mut force = BondForce::default();
-            let step = BondIncrement { log_strain: (l / shape.rest_length).ln(), length: l, ..Default::default() };
-            law.axial_response(&shape, &mut force, &mut (), &step);
+            let step = BondIncrement { log_strain: f64::ln(l / shape.rest_length), length: l, ..Default::default() };
+            law.axial_response(&shape, &mut force, &mut (), &step, true);
             (law.elastic_energy(&shape, &force, &()), force.axial)
         };
         let (l, h) = (0.40e-3, 1e-9);

@@ -7,6 +7,8 @@
 //! | `ludwik` | σ₀ + K p^n | Ludwik 1909 |
 //! | `table` | straight lines between points, last slope kept | – |
 
+use crate::base::lanes::Real;
+
 /// Hardening law with its parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Hardening {
@@ -45,23 +47,29 @@ pub enum Hardening {
 
 impl Hardening {
     /// (σ_y [Pa], dσ_y/dp [Pa]) at equivalent plastic strain `p` [-].
-    #[inline]
-    pub fn evaluate(&self, p: f64) -> (f64, f64) {
+    #[inline(always)]
+    pub fn evaluate<R: Real>(&self, p: R) -> (R, R) {
         match self {
             Hardening::Voce { yield_stress, saturation, rate, linear } => {
-                let decay = (-rate * p).exp();
-                (yield_stress + saturation * (1.0 - decay) + linear * p, saturation * rate * decay + linear)
+                let decay = (p * -rate).exp();
+                let stress = p.like(1.0) - decay;
+                (stress * *saturation + *yield_stress + p * *linear, decay * (saturation * rate) + *linear)
             }
             Hardening::Swift { strength, prestrain, exponent } => {
-                let stress = strength * (prestrain + p).powf(*exponent);
-                (stress, exponent * stress / (prestrain + p))
+                let strain = p + *prestrain;
+                let stress = strain.powf(*exponent) * *strength;
+                (stress, stress * *exponent / strain)
             }
             Hardening::Ludwik { yield_stress, strength, exponent } => {
                 // The slope of p^n is infinite at p = 0; the secant over the first 1e-8 stands in for it there.
-                let p_slope = p.max(1e-8);
-                (yield_stress + strength * p.powf(*exponent), exponent * strength * p_slope.powf(exponent - 1.0))
+                let p_slope = p.greater(p.like(1e-8));
+                let least = p.greater(p.like(f64::MIN_POSITIVE));
+                (
+                    least.powf(*exponent) * *strength + *yield_stress,
+                    p_slope.powf(exponent - 1.0) * (exponent * strength),
+                )
             }
-            Hardening::Table(points) => table(points, p),
+            Hardening::Table(points) => (p.each(|p| table(points, p).0), p.each(|p| table(points, p).1)),
         }
     }
 

@@ -12,6 +12,7 @@ pub mod elasto_plastic;
 pub mod hardening;
 pub mod rupture;
 
+use crate::base::lanes::Real;
 use std::f64::consts::PI;
 
 /// What a bond law knows of the material.
@@ -43,17 +44,17 @@ impl Moduli {
     }
 }
 
-/// Undeformed shape of a bond.
+/// Undeformed shape of a bond, or of several.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BondShape {
+pub struct BondShape<R = f64> {
     /// Stress-free length l₀ [m].
-    pub rest_length: f64,
+    pub rest_length: R,
     /// Radius of the section r₀ [m].
-    pub radius: f64,
+    pub radius: R,
     /// 1/l₀ [1/m] and 1/r₀ [1/m]: divisions are what a bond spends its time on.
-    pub inverse_length: f64,
+    pub inverse_length: R,
     /// See `inverse_length`.
-    pub inverse_radius: f64,
+    pub inverse_radius: R,
 }
 
 impl BondShape {
@@ -65,136 +66,175 @@ impl BondShape {
 
 /// Deformation of a bond over one step, in its co-rotating frame (n, e₁, e₂).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BondIncrement {
+pub struct BondIncrement<R = f64> {
     /// Total log strain ln(l/l₀) at the end of the step [-].
-    pub log_strain: f64,
+    pub log_strain: R,
     /// Length l at the end of the step [m].
-    pub length: f64,
+    pub length: R,
     /// Increment of the relative shear displacement along e₁, e₂ [m].
-    pub shear: [f64; 2],
+    pub shear: [R; 2],
     /// Increment of the relative rotation about e₁, e₂ [rad].
-    pub bend: [f64; 2],
+    pub bend: [R; 2],
     /// Increment of the relative rotation about n [rad].
-    pub twist: f64,
+    pub twist: R,
 }
 
 /// Internal forces of a bond in its co-rotating frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BondForce {
+pub struct BondForce<R = f64> {
     /// Axial force N, tension positive [N].
-    pub axial: f64,
+    pub axial: R,
     /// Shear force V along e₁, e₂ [N].
-    pub shear: [f64; 2],
+    pub shear: [R; 2],
     /// Bending moment M about e₁, e₂ [N m].
-    pub bend: [f64; 2],
+    pub bend: [R; 2],
     /// Torque T about n [N m].
-    pub twist: f64,
+    pub twist: R,
 }
 
 /// Length of a 2-vector; forces are far from the ends of the number range, so no scaling is needed.
 #[inline(always)]
-fn size(v: [f64; 2]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1]).sqrt()
+fn size<R: Real>(v: [R; 2]) -> R {
+    square(v).sqrt()
 }
 
-impl BondForce {
+/// Square of the length of a 2-vector.
+#[inline(always)]
+fn square<R: Real>(v: [R; 2]) -> R {
+    v[0] * v[0] + v[1] * v[1]
+}
+
+impl<R: Real> BondForce<R> {
     /// |V| [N].
-    pub fn shear_size(&self) -> f64 {
+    #[inline(always)]
+    pub fn shear_size(&self) -> R {
         size(self.shear)
     }
 
     /// |M| [N m].
-    pub fn bend_size(&self) -> f64 {
+    #[inline(always)]
+    pub fn bend_size(&self) -> R {
         size(self.bend)
+    }
+
+    /// `yes` where the mask holds, `no` elsewhere.
+    #[inline(always)]
+    pub fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        let pick = |a, b| R::choose(mask, a, b);
+        let both = |a: [R; 2], b: [R; 2]| [pick(a[0], b[0]), pick(a[1], b[1])];
+        Self {
+            axial: pick(yes.axial, no.axial),
+            shear: both(yes.shear, no.shear),
+            bend: both(yes.bend, no.bend),
+            twist: pick(yes.twist, no.twist),
+        }
     }
 }
 
 /// Stiffness of a bond per mode.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BondStiffness {
+pub struct BondStiffness<R = f64> {
     /// Axial EA/l [N/m].
-    pub axial: f64,
+    pub axial: R,
     /// Timoshenko shear 12EI/(l³(1+Φ)) [N/m].
-    pub shear: f64,
+    pub shear: R,
     /// Bending EI/l [N m/rad].
-    pub bend: f64,
+    pub bend: R,
     /// Torsion GJ/l [N m/rad].
-    pub twist: f64,
+    pub twist: R,
 }
 
-/// A bond law. Stateless: forces and history come in and go out.
+/// A bond law. Stateless: forces and history come in and go out, of one bond or of several at once.
 pub trait BondLaw: Clone + Send + Sync + 'static {
     /// History beyond the forces; `()` stores nothing.
-    type State: Copy + Send + Sync + PartialEq + std::fmt::Debug + 'static;
+    type State<R: Real>: Copy;
+
+    /// How many numbers the history is.
+    const HISTORY: usize;
+
+    /// The history from its numbers.
+    fn history<R: Real>(numbers: impl Fn(usize) -> R) -> Self::State<R>;
+
+    /// The numbers of a history, each with its index.
+    fn each_number<R: Real>(state: &Self::State<R>, put: impl FnMut(usize, R));
 
     /// History of a bond that was never loaded.
-    fn initial(&self) -> Self::State;
+    fn initial(&self) -> Self::State<f64>;
 
-    /// Advances forces and history over one step; returns the plastic work of the step [J].
-    fn response(&self, shape: &BondShape, force: &mut BondForce, state: &mut Self::State, step: &BondIncrement) -> f64;
+    /// Advances forces and history over one step; returns the plastic work of the step [J]. Bonds outside `live` are
+    /// not there: what becomes of them does not matter.
+    fn response<R: Real>(
+        &self,
+        shape: &BondShape<R>,
+        force: &mut BondForce<R>,
+        state: &mut Self::State<R>,
+        step: &BondIncrement<R>,
+        live: R::Mask,
+    ) -> R;
 
     /// The axial part alone, for bonds that never bend, shear or twist; same bits as [`BondLaw::response`] there.
-    fn axial_response(
+    fn axial_response<R: Real>(
         &self,
-        shape: &BondShape,
-        force: &mut BondForce,
-        state: &mut Self::State,
-        step: &BondIncrement,
-    ) -> f64;
+        shape: &BondShape<R>,
+        force: &mut BondForce<R>,
+        state: &mut Self::State<R>,
+        step: &BondIncrement<R>,
+        live: R::Mask,
+    ) -> R;
 
     /// Elastic stiffness now.
-    fn stiffness(&self, shape: &BondShape, state: &Self::State) -> BondStiffness;
+    fn stiffness<R: Real>(&self, shape: &BondShape<R>, state: &Self::State<R>) -> BondStiffness<R>;
 
     /// Stored elastic energy [J].
-    fn elastic_energy(&self, shape: &BondShape, force: &BondForce, state: &Self::State) -> f64;
+    fn elastic_energy(&self, shape: &BondShape, force: &BondForce, state: &Self::State<f64>) -> f64;
 
     /// Section now, thinned by plastic stretch.
-    fn section(&self, shape: &BondShape, state: &Self::State) -> Section;
+    fn section<R: Real>(&self, shape: &BondShape<R>, state: &Self::State<R>) -> Section<R>;
 
     /// Equivalent plastic strain p [-]; 0 for elastic laws.
-    fn plastic_strain(&self, state: &Self::State) -> f64;
+    fn plastic_strain<R: Real>(&self, shape: &BondShape<R>, state: &Self::State<R>) -> R;
 
     /// Factor on the undeformed radius, e^(−ε_p/2) [-].
-    fn thinning(&self, state: &Self::State) -> f64;
+    fn thinning<R: Real>(&self, shape: &BondShape<R>, state: &Self::State<R>) -> R;
 }
 
 /// A round section.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Section {
+pub struct Section<R = f64> {
     /// Radius r [m].
-    pub radius: f64,
+    pub radius: R,
     /// Area A = πr² [m²].
-    pub area: f64,
+    pub area: R,
     /// Second moment I = πr⁴/4 [m⁴].
-    pub inertia: f64,
+    pub inertia: R,
 }
 
-impl Section {
+impl<R: Real> Section<R> {
     /// Round section of radius `radius` [m].
     #[inline(always)]
-    pub fn round(radius: f64) -> Self {
+    pub fn round(radius: R) -> Self {
         let r2 = radius * radius;
-        Self { radius, area: PI * r2, inertia: 0.25 * PI * r2 * r2 }
+        Self { radius, area: r2 * PI, inertia: r2 * r2 * (0.25 * PI) }
     }
 
     /// Polar moment J = 2I [m⁴].
     #[inline(always)]
-    pub fn polar(&self) -> f64 {
-        2.0 * self.inertia
+    pub fn polar(&self) -> R {
+        self.inertia * 2.0
     }
 
     /// Beam stiffnesses over a length given by its inverse [1/m] (Timoshenko).
     #[inline(always)]
-    pub fn stiffness(&self, moduli: &Moduli, inverse_length: f64) -> BondStiffness {
-        let bend = moduli.young * self.inertia * inverse_length;
+    pub fn stiffness(&self, moduli: &Moduli, inverse_length: R) -> BondStiffness<R> {
+        let bend = self.inertia * moduli.young * inverse_length;
         // 12EI/(l³(1+Φ)) with Φ = 12EI/(κGAl²), written with one division.
-        let rigid = moduli.kappa * moduli.shear * self.area;
-        let twelve = 12.0 * bend * inverse_length;
+        let rigid = self.area * (moduli.kappa * moduli.shear);
+        let twelve = bend * 12.0 * inverse_length;
         BondStiffness {
-            axial: moduli.young * self.area * inverse_length,
+            axial: self.area * moduli.young * inverse_length,
             shear: twelve * rigid * inverse_length / (rigid + twelve),
             bend,
-            twist: moduli.shear * self.polar() * inverse_length,
+            twist: self.polar() * moduli.shear * inverse_length,
         }
     }
 }
@@ -202,14 +242,12 @@ impl Section {
 /// Half the sum of squares over stiffness: elastic energy of the linear modes [J].
 #[inline(always)]
 pub(crate) fn transverse_energy(force: &BondForce, k: &BondStiffness) -> f64 {
-    let shear = force.shear[0] * force.shear[0] + force.shear[1] * force.shear[1];
-    let bend = force.bend[0] * force.bend[0] + force.bend[1] * force.bend[1];
-    0.5 * (shear / k.shear + bend / k.bend + force.twist * force.twist / k.twist)
+    0.5 * (square(force.shear) / k.shear + square(force.bend) / k.bend + force.twist * force.twist / k.twist)
 }
 
 /// Adds the elastic increments of shear, bending and torsion to `force`.
 #[inline(always)]
-pub(crate) fn add_transverse(force: &mut BondForce, k: &BondStiffness, step: &BondIncrement) {
+pub(crate) fn add_transverse<R: Real>(force: &mut BondForce<R>, k: &BondStiffness<R>, step: &BondIncrement<R>) {
     for axis in 0..2 {
         force.shear[axis] += k.shear * step.shear[axis];
         force.bend[axis] += k.bend * step.bend[axis];
