@@ -38,8 +38,6 @@ pub trait Bonds: Send {
     fn plastic_strain(&self, slot: usize) -> f64;
     /// Share of its rupture limit that a bond has reached [-]: it breaks at 1. 0 without a rupture criterion.
     fn utilisation(&self, slot: usize, state: &State) -> f64;
-    /// What the stage keeps of each bond [bytes].
-    fn bytes_per_bond(&self) -> usize;
 }
 
 /// Bonds with law `L`; `TURN` says whether particles turn.
@@ -260,11 +258,6 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
         let Some(check) = &self.rupture else { return 0.0 };
         check.utilisation(slot, state, self.plastic_strain(slot), &self.force(slot), &self.section(slot))
     }
-
-    fn bytes_per_bond(&self) -> usize {
-        let modes = if self.viscosity.is_empty() { 0 } else { MODES };
-        (Self::FIELDS + modes) * size_of::<f64>()
-    }
 }
 
 /// The bonds of one chunk at one step.
@@ -383,14 +376,12 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
 
     #[inline(always)]
     fn node<S: Simd>(&self, simd: S, p: usize) -> Node<Lanes<S>> {
-        let load = |v: &Vectors| Triple {
-            x: Lanes::load_up_to_end(simd, &v.x, p),
-            y: Lanes::load_up_to_end(simd, &v.y, p),
-            z: Lanes::load_up_to_end(simd, &v.z, p),
-        };
-        let v = load(self.v);
-        let still = v.x.like(0.0);
-        Node { x: load(self.x), v, w: if TURN { load(self.w) } else { Triple { x: still, y: still, z: still } } }
+        let still = Lanes::splat(simd, 0.0);
+        Node {
+            x: vector(simd, self.x, p),
+            v: vector(simd, self.v, p),
+            w: if TURN { vector(simd, self.w, p) } else { Triple { x: still, y: still, z: still } },
+        }
     }
 
     /// Writes what the bonds do, and zeros for those that are not there.
@@ -417,6 +408,16 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
             put_all(BondActions::NEAR, &acts.near);
             put_all(BondActions::FAR, &acts.far);
         }
+    }
+}
+
+/// The vectors from particle `p` on.
+#[inline(always)]
+fn vector<S: Simd>(simd: S, v: &Vectors, p: usize) -> Triple<Lanes<S>> {
+    Triple {
+        x: Lanes::load_up_to_end(simd, &v.x, p),
+        y: Lanes::load_up_to_end(simd, &v.y, p),
+        z: Lanes::load_up_to_end(simd, &v.z, p),
     }
 }
 

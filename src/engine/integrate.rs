@@ -53,42 +53,69 @@ impl WithSimd for Gather<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Gather { bond, first, others, turn, force, torque, radius, radius0 } = self;
-        let fields = bond.fields();
-        let actions = &bond.data[first * fields..(first + CHUNK) * fields];
-        let row = |field: usize| &actions[field * CHUNK..(field + 1) * CHUNK];
-        let here = |field: usize, k: usize| Lanes::load(simd, row(field), k);
-        // What the bonds before do; the first one belongs to the chunk before.
-        let before = |field: usize, k: usize| {
-            if k > 0 {
-                return Lanes::load(simd, row(field), k - 1);
-            }
-            let mut numbers = [0.0; BLOCK];
-            numbers[0] = if first > 0 { bond.get(first - 1, field) } else { 0.0 };
-            numbers[1..].copy_from_slice(&row(field)[..BLOCK - 1]);
-            Lanes::load(simd, &numbers, 0)
-        };
-        let add = |out: [&mut [f64]; 3], near: usize, far: usize, sign: f64, others: Option<&Vectors>| {
-            let others = others.map(|o| [&o.x, &o.y, &o.z]);
-            for (axis, out) in out.into_iter().enumerate() {
-                for k in (0..out.len()).step_by(Lanes::<S>::LEN) {
-                    let mut sum = here(near + axis, k) + before(far + axis, k) * sign;
-                    if let Some(others) = others {
-                        sum += Lanes::load_up_to_end(simd, others[axis], first + k);
-                    }
-                    sum.store_up_to_end(out, k);
-                }
-            }
-        };
-        let [push, twist] = others.map_or([None, None], |o| o.map(Some));
-        add(force, BondActions::PULL, BondActions::PULL, -1.0, push);
-        if turn {
-            add(torque, BondActions::NEAR, BondActions::FAR, 1.0, twist);
+        let rows = Rows { bond, first, actions: &bond.data[first * bond.fields()..(first + CHUNK) * bond.fields()] };
+        let [push, twist] = others.map_or([None, None], |o| o.map(|v| Some([&v.x[..], &v.y[..], &v.z[..]])));
+        for (axis, out) in force.into_iter().enumerate() {
+            rows.add(simd, out, BondActions::PULL + axis, BondActions::PULL + axis, -1.0, push.map(|p| p[axis]));
         }
-        // Mean over the bonds that hold; a particle without any keeps its radius.
+        if turn {
+            for (axis, out) in torque.into_iter().enumerate() {
+                rows.add(simd, out, BondActions::NEAR + axis, BondActions::FAR + axis, 1.0, twist.map(|t| t[axis]));
+            }
+        }
+        rows.thin(simd, radius, &radius0[first..]);
+    }
+}
+
+/// What the bonds of one chunk do.
+struct Rows<'a> {
+    bond: &'a BondActions,
+    first: usize,
+    actions: &'a [f64],
+}
+
+impl Rows<'_> {
+    #[inline(always)]
+    fn row(&self, field: usize) -> &[f64] {
+        &self.actions[field * CHUNK..(field + 1) * CHUNK]
+    }
+
+    #[inline(always)]
+    fn here<S: Simd>(&self, simd: S, field: usize, k: usize) -> Lanes<S> {
+        Lanes::load(simd, self.row(field), k)
+    }
+
+    /// What the bonds before do; the very first one belongs to the chunk before.
+    #[inline(always)]
+    fn before<S: Simd>(&self, simd: S, field: usize, k: usize) -> Lanes<S> {
+        if k > 0 {
+            return Lanes::load(simd, self.row(field), k - 1);
+        }
+        let mut numbers = [0.0; BLOCK];
+        numbers[0] = if self.first > 0 { self.bond.get(self.first - 1, field) } else { 0.0 };
+        numbers[1..].copy_from_slice(&self.row(field)[..BLOCK - 1]);
+        Lanes::load(simd, &numbers, 0)
+    }
+
+    /// One axis: the bond behind a particle, the bond before it, and what contacts do.
+    #[inline(always)]
+    fn add<S: Simd>(&self, simd: S, out: &mut [f64], near: usize, far: usize, sign: f64, others: Option<&[f64]>) {
+        for k in (0..out.len()).step_by(Lanes::<S>::LEN) {
+            let mut sum = self.here(simd, near, k) + self.before(simd, far, k) * sign;
+            if let Some(others) = others {
+                sum += Lanes::load_up_to_end(simd, others, self.first + k);
+            }
+            sum.store_up_to_end(out, k);
+        }
+    }
+
+    /// Radius as the mean over the bonds that hold; a particle without any keeps its own.
+    #[inline(always)]
+    fn thin<S: Simd>(&self, simd: S, radius: &mut [f64], radius0: &[f64]) {
         for k in (0..radius.len()).step_by(Lanes::<S>::LEN) {
-            let both = |field| here(field, k) + before(field, k);
-            let (live, thinning) = (both(BondActions::LIVE), both(BondActions::THINNING));
-            let undeformed = Lanes::load_up_to_end(simd, radius0, first + k);
+            let live = self.here(simd, BondActions::LIVE, k) + self.before(simd, BondActions::LIVE, k);
+            let thinning = self.here(simd, BondActions::THINNING, k) + self.before(simd, BondActions::THINNING, k);
+            let undeformed = Lanes::load_up_to_end(simd, radius0, k);
             let kept = Lanes::load_up_to_end(simd, radius, k);
             let held = live.above(live.like(0.0));
             Lanes::choose(held, undeformed * (thinning / live), kept).store_up_to_end(radius, k);
