@@ -212,6 +212,8 @@ pub struct DeepestContact {
     pub pressure: f64,
     /// Step.
     pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
     /// Strain of the body [-].
     pub strain: f64,
 }

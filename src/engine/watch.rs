@@ -144,6 +144,7 @@ impl Engine {
             force: now.force,
             pressure,
             step: self.state.step,
+            time: self.state.time,
             strain: self.strain(),
         };
         self.watch.deepest = Some((now, at));

@@ -28,6 +28,8 @@ pub struct Deepest {
     pub z_mm: f64,
     /// Strain of the body [%].
     pub strain_percent: f64,
+    /// Simulated time [s].
+    pub time_s: f64,
     /// Step.
     pub step: u64,
     /// Normal force [N].
@@ -58,6 +60,7 @@ impl Findings {
                 between: at.bodies,
                 z_mm: mm(at.position[2]),
                 strain_percent: percent(at.strain),
+                time_s: at.time,
                 step: at.step,
                 force_n: at.force,
                 pressure_mpa: mpa(at.pressure),

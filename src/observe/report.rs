@@ -38,13 +38,13 @@ pub fn report(summary: &RunSummary) -> String {
         line("grip force mismatch", format!("{mismatch:.3} % before the first rupture, {overall:.3} % overall"));
     }
     if let Some(deep) = &summary.findings.deepest_contact {
-        line(
-            "deepest contact",
-            format!(
-                "{:.2} % of the radius, {} on {}, z = {:.1} mm, strain {:.2} %",
-                deep.overlap_percent_of_radius, deep.between[0], deep.between[1], deep.z_mm, deep.strain_percent
-            ),
-        );
+        let [a, b] = &deep.between;
+        let when = match summary.final_strain_percent {
+            Some(_) => format!("strain {:.2} %", deep.strain_percent),
+            None => format!("t = {:.3e} s", deep.time_s),
+        };
+        let depth = deep.overlap_percent_of_radius;
+        line("deepest contact", format!("{depth:.2} % of the radius, {a} on {b}, z = {:.1} mm, {when}", deep.z_mm));
     }
     line("time step", time_step(summary));
     if summary.mass_scale != 1.0 || summary.inertia_scale != 1.0 {
