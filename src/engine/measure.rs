@@ -126,6 +126,13 @@ impl Engine {
         }
     }
 
+    /// An energy that is nothing [J]: what an elastic strain of 1e-9 everywhere would store.
+    pub fn negligible_energy(&self) -> f64 {
+        const STRAIN: f64 = 1e-9;
+        let volume = self.assembly.mass.iter().sum::<f64>() / (self.spec.material.density * self.spec.time.mass_scale);
+        0.5 * self.spec.material.young * STRAIN * STRAIN * volume
+    }
+
     /// Every particle.
     pub fn snapshot(&self) -> Snapshot {
         let state = &self.state;

@@ -6,9 +6,15 @@
 use super::integrate::larger;
 use super::state::{CHUNK, State};
 use crate::base::vectors::Vectors;
+use crate::scene::spec::Shape;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
 use rayon::prelude::*;
+
+/// The search follows bonds up to this multiple of the longest stress-free length [-]: one bond that necks without end
+/// must not make every particle a neighbour of every other.
+pub const MOST_STRETCH: f64 = 3.0;
+const SQRT_HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Candidate pairs (i < j), sorted.
 #[derive(Debug, Default)]
@@ -55,10 +61,16 @@ impl Reference<'_> {
 pub struct Neighbours {
     /// Skin beyond the sum of the undeformed radii [m].
     skin: f64,
-    /// Extra reach, for contacts that are not between particle centres [m].
+    /// Extra reach, for contacts that are not between particle centres [m]; from the bonds at the last search.
     margin: f64,
-    /// Largest undeformed radius [m].
+    /// What touches.
+    shape: Shape,
+    /// Largest and least undeformed radius [m].
     largest: f64,
+    least: f64,
+    /// Longest stress-free bond, and longest bond at the last search [m].
+    rest: f64,
+    longest: f64,
     /// Bonded neighbours along a wire that cannot touch: |i − j| below this per wire.
     apart: Vec<u32>,
     wire_of: Vec<u32>,
@@ -92,12 +104,16 @@ pub fn apart(assembly: &Assembly) -> Vec<u32> {
 }
 
 impl Neighbours {
-    /// For `assembly`; `skin` and `margin` in m.
-    pub fn new(assembly: &Assembly, skin: f64, margin: f64) -> Self {
+    /// For `assembly`; `skin` in m.
+    pub fn new(assembly: &Assembly, skin: f64, shape: Shape) -> Self {
         Self {
             skin,
-            margin,
+            margin: 0.0,
+            shape,
             largest: assembly.radius.iter().copied().fold(0.0, f64::max),
+            least: assembly.radius.iter().copied().fold(f64::MAX, f64::min),
+            rest: assembly.rest_length.iter().copied().fold(0.0, f64::max),
+            longest: 0.0,
             apart: apart(assembly),
             wire_of: assembly.wire_of.clone(),
             reference: Vectors::default(),
@@ -137,6 +153,8 @@ impl Neighbours {
         self.reference.clone_from(&state.x);
         self.stretch = now;
         self.rebuilds += 1;
+        self.longest = longest_bond(state);
+        self.margin = self.needed_margin();
         self.cells.fill(state, 2.0 * self.largest + self.margin + self.skin);
         let chunks = state.len().div_ceil(CHUNK);
         self.found.resize_with(chunks, Vec::new);
@@ -161,6 +179,43 @@ impl Neighbours {
         &self.list
     }
 
+    /// Extra reach for what touches between particle centres, until the next search [m].
+    ///
+    /// The nearest point of a capsule's segment of length l lies nearer than its ends do: √(D² + l²/4) − D at touching
+    /// distance D, most for the thinnest pair. Spheres need none of that, but two segments that cross in the middle of
+    /// their gaps have their ends √½ l apart, and must be seen to cross ([`super::crossing`]).
+    fn needed_margin(&self) -> f64 {
+        // Until it is time for the next search the affine strain grows by less than skin over reach, and particles move
+        // by less than the skin beside it.
+        let reach = 2.0 * self.least;
+        let grown = self.longest * (1.0 + self.skin / (reach + self.skin)) + self.skin;
+        match self.shape {
+            Shape::Capsule => reach.hypot(0.5 * grown.min(MOST_STRETCH * self.rest)) - reach,
+            Shape::Sphere => (SQRT_HALF * self.longest.min(MOST_STRETCH * self.rest) - reach).max(0.0),
+        }
+    }
+
+    /// The list, and the positions, of the last search.
+    pub fn last(&self) -> (&PairList, &Vectors) {
+        (&self.list, &self.reference)
+    }
+
+    /// Skin [m].
+    pub fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// Longest bond at the last search [m].
+    pub fn longest(&self) -> f64 {
+        self.longest
+    }
+
+    /// Longest bond at the last search over the longest stress-free one [-]; contacts on bonds beyond [`MOST_STRETCH`]
+    /// are not all found.
+    pub fn stretched(&self) -> f64 {
+        if self.rest > 0.0 { self.longest / self.rest } else { 0.0 }
+    }
+
     fn can_touch(&self, i: usize, j: usize, state: &State, broken: &[u32]) -> bool {
         let reach = state.radius0[i] + state.radius0[j] + self.margin + self.skin;
         if (state.x.get(j) - state.x.get(i)).length_squared() >= reach * reach {
@@ -168,7 +223,7 @@ impl Neighbours {
         }
         if state.hold[i] != 0 && state.hold[i] == state.hold[j] {
             // Points between particles move where one of the two is free, so particles at the edge of a hold count.
-            let edge = self.margin > 0.0 && (on_edge(state, i) || on_edge(state, j));
+            let edge = self.shape == Shape::Capsule && (on_edge(state, i) || on_edge(state, j));
             if !edge {
                 return false;
             }
@@ -180,6 +235,12 @@ impl Neighbours {
         }
         true
     }
+}
+
+/// Length of the longest bond that holds [m].
+fn longest_bond(state: &State) -> f64 {
+    let bonds = (0..state.len()).filter(|slot| state.whole[*slot]);
+    bonds.map(|slot| (state.x.get(slot + 1) - state.x.get(slot)).length_squared()).fold(0.0, f64::max).sqrt()
 }
 
 /// Whether a particle is bonded to one that is not in the same hold.
@@ -292,7 +353,7 @@ mod tests {
     #[test]
     fn search_finds_what_brute_force_finds() {
         let (assembly, state) = cloud(700, 1.0, 0.04);
-        let mut neighbours = Neighbours::new(&assembly, 0.01, 0.0);
+        let mut neighbours = Neighbours::new(&assembly, 0.01, Shape::Sphere);
         let found = neighbours.search(&state, Stretch::default()).pairs.clone();
         let mut expected = Vec::new();
         for i in 0..state.len() {
@@ -306,11 +367,26 @@ mod tests {
         assert!(found.len() > 300);
     }
 
+    /// A thin wire's particle rests on the middle of a bond that is three times as long as at rest: as far from both ends
+    /// as can be.
+    #[test]
+    fn a_stretched_segment_is_found_from_its_middle() {
+        let (mut assembly, _) = cloud(3, 1.0, 0.1);
+        assembly.radius[2] = 0.02;
+        assembly.rest_length[0] = 0.2;
+        assembly.position =
+            [0.0, 0.6, 0.3].map(|x| DVec3::new(x, if x == 0.3 { 0.119 } else { 0.0 }, 0.0)).into_iter().collect();
+        let state = State::new(&assembly);
+        let found = |shape| Neighbours::new(&assembly, 0.01, shape).search(&state, Stretch::default()).pairs.clone();
+        assert!(found(Shape::Capsule).contains(&(0, 2)) && found(Shape::Capsule).contains(&(1, 2)));
+        assert!(!found(Shape::Sphere).contains(&(0, 2)));
+    }
+
     #[test]
     fn a_far_flung_particle_does_not_blow_up_the_grid() {
         let (assembly, mut state) = cloud(200, 1.0, 0.04);
         state.x.set(0, DVec3::splat(1e6));
-        let mut neighbours = Neighbours::new(&assembly, 0.01, 0.0);
+        let mut neighbours = Neighbours::new(&assembly, 0.01, Shape::Sphere);
         neighbours.search(&state, Stretch::default());
         assert!(neighbours.cells.start.len() < 8 * 200 + 128);
     }
@@ -320,7 +396,7 @@ mod tests {
         let stretch = |d: f64| Stretch { gauge: [0.01, 0.11], displacement: d };
         let (assembly, mut state) = cloud(50, 0.1, 0.0002);
         let start = state.x.clone();
-        let mut neighbours = Neighbours::new(&assembly, 6e-5, 0.0);
+        let mut neighbours = Neighbours::new(&assembly, 6e-5, Shape::Sphere);
         for k in 0..=270 {
             let d = k as f64 * 1e-4;
             let now = stretch(d);

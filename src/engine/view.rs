@@ -186,6 +186,53 @@ pub struct Notice {
     pub text: String,
 }
 
+/// What an engine has seen of its own limits over a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Findings {
+    /// The deepest contact; `None` when nothing touched.
+    pub deepest: Option<DeepestContact>,
+    /// The least time step.
+    pub least_step: StepAt,
+    /// The greatest time step.
+    pub greatest_step: StepAt,
+}
+
+/// The deepest contact of a run, when it was deepest.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DeepestContact {
+    /// Overlap over the smaller of the two radii [-].
+    pub ratio: f64,
+    /// The two bodies, such as "wire 3 (outer layer)".
+    pub bodies: [String; 2],
+    /// Where [m].
+    pub position: [f64; 3],
+    /// Normal force [N].
+    pub force: f64,
+    /// Force over the area πR*δ of the contact [Pa].
+    pub pressure: f64,
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Strain of the body [-].
+    pub strain: f64,
+}
+
+/// A time step, and when it was chosen.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StepAt {
+    /// The time step [s].
+    pub seconds: f64,
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Strain of the body [-].
+    pub strain: f64,
+    /// What limited it, in words.
+    pub limit: String,
+}
+
 /// Why a bond broke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

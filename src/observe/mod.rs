@@ -1,6 +1,7 @@
 //! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
 
 pub mod files;
+pub mod findings;
 pub mod guard;
 pub mod partial;
 pub mod planned;
