@@ -127,7 +127,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
             None => self.area.draw(&PathElement::new(points, style)),
             Some([dash, gap]) => {
                 let (dash, gap) = (self.px(dash), self.px(gap));
-                self.area.draw(&DashedPathElement::new(points.into_iter(), dash, gap, style))
+                self.area.draw(&DashedPathElement::new(points, dash, gap, style))
             }
         }
     }
