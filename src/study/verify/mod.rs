@@ -1,0 +1,198 @@
+//! Verification: the engine against closed forms (physics page, section 8). A case is a scene `verify/…`, a formula of
+//! [`crate::reference`] and a function here that runs the one and compares it with the other; [`CASES`] lists them.
+
+mod beams;
+mod conservation;
+mod contacts;
+mod critical_step;
+mod damping;
+pub mod finding;
+mod modes;
+mod plasticity;
+pub mod plots;
+pub mod report;
+mod snapping;
+mod strands;
+pub mod support;
+mod vibration;
+mod waves;
+
+use crate::base::error::{Error, Result};
+use crate::run::in_pool;
+use crate::scene::suggest::nearest;
+use finding::{Finding, Outcome};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+pub use support::Effort;
+use support::Lab;
+
+/// A case: one claim about the engine that a closed form decides.
+pub struct Case {
+    /// What the user calls it.
+    pub name: &'static str,
+    /// The claim in one line.
+    pub about: &'static str,
+    /// Where the equation comes from.
+    pub source: &'static str,
+    /// Runs what the case needs and compares.
+    pub run: fn(&Lab) -> Result<Vec<Finding>>,
+}
+
+/// All cases, by theme.
+pub const CASES: &[Case] = &[
+    // Bars and beams
+    beams::CANTILEVER,
+    beams::STOCKY,
+    beams::SHARED,
+    beams::TORSION,
+    // Vibration and waves
+    vibration::AXIAL_WAVE,
+    waves::PULLED_BAR,
+    vibration::BENDING_FREQUENCY,
+    vibration::BUCKLING,
+    vibration::BUCKLING_BRACKET,
+    damping::AXIAL,
+    damping::BENDING,
+    // Contacts of spheres
+    contacts::HERTZ,
+    contacts::THORNTON,
+    contacts::TANGENTIAL,
+    contacts::ROLLING,
+    // Plasticity and rupture
+    plasticity::PULLED,
+    plasticity::YOUNG,
+    plasticity::BENT,
+    plasticity::TWISTED,
+    plasticity::WIRE_TWISTED,
+    snapping::SNAPPED,
+    // Strands
+    strands::PITCHES,
+    strands::FINER,
+    // What must stay
+    conservation::WIRE,
+    conservation::COLLISION,
+    conservation::STRAND,
+    conservation::ENERGY,
+    // The stable step
+    critical_step::CHAIN,
+    critical_step::CANTILEVER,
+    critical_step::FREE_WIRE,
+    critical_step::DAMPED,
+];
+
+/// The cases of these names, each once, in the order of [`CASES`]; all of them when no name is given.
+///
+/// # Errors
+/// A name that no case has; the nearest is suggested.
+pub fn select(names: &[String]) -> Result<Vec<&'static Case>> {
+    for name in names {
+        if !CASES.iter().any(|case| case.name == *name) {
+            let near = nearest(name, CASES.iter().map(|case| case.name));
+            let guess = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
+            return Err(Error::input(
+                format!("there is no verification case `{name}`"),
+                format!("{guess}`strandsnap verify --list` names them all"),
+            ));
+        }
+    }
+    Ok(CASES.iter().filter(|case| names.is_empty() || names.iter().any(|name| name == case.name)).collect())
+}
+
+/// What became of one case.
+pub struct Report {
+    /// The case.
+    pub case: &'static Case,
+    /// What it found, its energy ledger last; or why it could not be run.
+    pub result: Result<Vec<Finding>>,
+    /// Wall time [s].
+    pub wall_s: f64,
+}
+
+impl Report {
+    /// Whether the case ran and every finding agrees with its closed form.
+    pub fn passes(&self) -> bool {
+        self.result.as_ref().is_ok_and(|findings| findings.iter().all(|f| f.outcome() == Outcome::Pass))
+    }
+}
+
+/// Runs one case on the present thread pool. `stop` ends it early, as an error.
+pub fn run_one(case: &'static Case, effort: Effort, stop: &AtomicBool) -> Report {
+    let began = Instant::now();
+    let lab = Lab::new(effort, stop);
+    let result = (case.run)(&lab).map(|mut findings| {
+        findings.extend(lab.ledger());
+        findings
+    });
+    Report { case, result, wall_s: began.elapsed().as_secs_f64() }
+}
+
+/// Runs cases side by side, each on a thread of its own: they are small, and sharing one out over threads would only
+/// cost. Calls `done` after each. Reports come in the order of `cases`; those that `stop` cut short are left out.
+///
+/// # Errors
+/// When a thread cannot be started.
+pub fn run_all(
+    cases: &[&'static Case],
+    effort: Effort,
+    threads: usize,
+    stop: &AtomicBool,
+    done: &(dyn Fn(&Report) + Sync),
+) -> Result<Vec<Report>> {
+    let next = AtomicUsize::new(0);
+    let reports = Mutex::new(Vec::new());
+    let work = || -> Result<()> {
+        while !stop.load(Ordering::Relaxed) {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(case) = cases.get(index) else { break };
+            let report = in_pool(Some(1), || run_one(case, effort, stop))?;
+            if report.result.is_ok() || !stop.load(Ordering::Relaxed) {
+                done(&report);
+                reports.lock().unwrap_or_else(PoisonError::into_inner).push((index, report));
+            }
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads.clamp(1, cases.len().max(1))).map(|_| scope.spawn(work)).collect();
+        workers
+            .into_iter()
+            .try_for_each(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })?;
+    let mut reports = reports.into_inner().unwrap_or_else(PoisonError::into_inner);
+    reports.sort_by_key(|(index, _)| *index);
+    Ok(reports.into_iter().map(|(_, report)| report).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn cases_are_selected_by_name_and_slips_are_corrected() {
+        let names = |given: &[&str]| {
+            let given: Vec<String> = given.iter().map(|name| name.to_string()).collect();
+            select(&given).map(|cases| cases.iter().map(|case| case.name).collect::<Vec<_>>())
+        };
+        assert_eq!(names(&["thornton", "hertz", "hertz"]).unwrap(), ["hertz", "thornton"]);
+        assert_eq!(names(&[]).unwrap().len(), CASES.len());
+        let error = names(&["hertzz"]).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(format!("{:?}", miette::Report::new(error)).contains("did you mean `hertz`"));
+    }
+
+    #[test]
+    fn names_are_unique_and_every_case_says_what_it_claims() {
+        let mut seen = HashSet::new();
+        for case in CASES {
+            assert!(seen.insert(case.name), "{} is there twice", case.name);
+            assert!(
+                case.name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'),
+                "{}",
+                case.name
+            );
+            assert!(!case.about.is_empty() && !case.source.is_empty(), "{}", case.name);
+        }
+    }
+}
