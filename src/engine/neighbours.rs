@@ -376,7 +376,7 @@ mod tests {
         assembly.rest_length[0] = 0.2;
         assembly.position =
             [0.0, 0.6, 0.3].map(|x| DVec3::new(x, if x == 0.3 { 0.119 } else { 0.0 }, 0.0)).into_iter().collect();
-        let state = State::new(&assembly);
+        let state = State::new(&assembly, true);
         let found = |shape| Neighbours::new(&assembly, 0.01, shape).search(&state, Stretch::default()).pairs.clone();
         assert!(found(Shape::Capsule).contains(&(0, 2)) && found(Shape::Capsule).contains(&(1, 2)));
         assert!(!found(Shape::Sphere).contains(&(0, 2)));
