@@ -1,3 +1,5 @@
 //! Floor 8: studies, made of many runs.
 
 pub mod calibrate;
+pub mod plot;
+pub mod verify;
