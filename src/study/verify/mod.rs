@@ -1,8 +1,16 @@
 //! Verification: the engine against closed forms (physics page, section 8). A case is a scene `verify/…`, a formula of
 //! [`crate::reference`] and a function here that runs the one and compares it with the other; [`CASES`] lists them.
 
+mod capstan;
+mod capsules;
 mod contacts;
+mod elastica;
 pub mod finding;
+mod frame;
+mod oblique;
+mod repeated;
+mod section;
+mod spring;
 pub mod support;
 
 use crate::base::error::Result;
@@ -30,6 +38,16 @@ pub struct Case {
 pub const CASES: &[Case] = &[
     // Contacts of spheres
     contacts::HERTZ,
+    oblique::OBLIQUE,
+    repeated::REPEATED,
+    capsules::SLIDING_WIRES,
+    capsules::SPHERE_ON_WIRE,
+    capsules::CROSSED_WIRES,
+    capstan::CAPSTAN,
+    elastica::ELASTICA,
+    spring::SPRING,
+    section::SECTION,
+    frame::FRAME,
 ];
 
 /// The case of this name.
