@@ -9,6 +9,7 @@ mod run;
 mod say;
 mod scene;
 mod values;
+mod verify;
 
 use crate::base::error::Result;
 use clap::{Parser, Subcommand};
@@ -37,6 +38,8 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Draw the frames of a finished run again, without simulating
     Render(render::Args),
+    /// Compare the engine with closed forms
+    Verify(verify::Args),
 }
 
 /// How a command ended when nothing went wrong.
@@ -44,13 +47,16 @@ enum Ended {
     Well,
     /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
     Interrupted,
+    /// Verification ran, and a case misses its closed form.
+    Missed,
 }
 
 /// Runs the program on its arguments. Exit codes: 0 well; 1 the file system refused; 2 bad input;
-/// 3 the machine lacks something; 4 the simulation had to stop; 130 interrupted.
+/// 3 the machine lacks something; 4 the simulation had to stop, or a case misses its closed form; 130 interrupted.
 pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(Ended::Well) => ExitCode::SUCCESS,
+        Ok(Ended::Missed) => ExitCode::from(4),
         Ok(Ended::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
         Err(error) => {
             let code = error.exit_code();
@@ -68,6 +74,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
         Command::Render(args) => render::render(args),
+        Command::Verify(args) => verify::verify(&args),
     }
 }
 

@@ -131,7 +131,7 @@ impl ValueFormatter<f64> for Span {
         }
         let decimals = match self.scale {
             Scale::Linear => ticks(self.low, self.high, TICKS).decimals,
-            Scale::Log => (-value.log10() + 1e-9).ceil().max(0.0) as usize,
+            Scale::Log => (-value.log10() - 1e-9).ceil().max(0.0) as usize,
         };
         label(*value, decimals)
     }

@@ -117,7 +117,7 @@ fn sphere_on_wire(lab: &Lab) -> Result<Vec<Finding>> {
         trial.run(|_| {})?;
         let s = trial.engine.state();
         let force = s.contact_force.x[s.len() - 1];
-        let spent = trial.spent();
+        let spent = trial.finish();
         let what = "force at the geometric mean of the radii of curvature";
         own.push(Finding::new(what, "N", force, pair.force(depth), spent).within(1e-9));
         let exact = pair.force(depth) * elliptical_factor(sphere / round);
@@ -148,7 +148,8 @@ fn first_touch(lab: &Lab, spacing: f64) -> Result<(f64, Spent)> {
     let (diameter, end) = (trial.bar().diameter, trial.spec.stop.time.expect("the scene says when it ends"));
     trial.run_while(|engine| engine.contact_counts().2 == 0 && engine.time() < end, |_| {})?;
     let s = trial.engine.state();
-    Ok((s.x.x[s.len() - 1] / diameter, trial.spent()))
+    let distance = s.x.x[s.len() - 1] / diameter;
+    Ok((distance, trial.finish()))
 }
 
 /// The crossing is half way between particles, where it is worst: an odd number of bonds in each wire.

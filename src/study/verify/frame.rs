@@ -9,7 +9,7 @@ use crate::scene::spec::{PathSpec, Spec};
 use glam::{DMat3, DVec3};
 
 pub const FRAME: Case = Case {
-    name: "frame",
+    name: "frame-indifference",
     about: "a rod is twisted, bent and pulled, and two wires collide, in turned, shifted and flying frames: nothing changes",
     source: "Galilean relativity, isotropy of space",
     run: frame,

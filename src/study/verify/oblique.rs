@@ -10,7 +10,7 @@ use crate::scene;
 use glam::DVec3;
 
 pub const OBLIQUE: Case = Case {
-    name: "oblique",
+    name: "oblique-impact",
     about: "two elastic spheres collide obliquely with friction: rebound and spin over the angle of impact",
     source: "Maw, Barber & Fawcett, Wear 38 (1976) 101 and J. Lubr. Technol. 103 (1981) 74; sliding rigid bodies",
     run: oblique,

@@ -10,7 +10,7 @@ use crate::scene::spec::{DriveSpec, NormalSpec};
 use std::f64::consts::TAU;
 
 pub const REPEATED: Case = Case {
-    name: "repeated",
+    name: "thornton-repeated",
     about: "an elastoplastic contact is loaded, unloaded and loaded again, deeper each time: force and lost energy",
     source: "Thornton, J. Appl. Mech. 64 (1997) 383",
     run: repeated,

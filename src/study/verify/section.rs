@@ -12,7 +12,7 @@ use crate::scene::spec::BondLawSpec;
 use glam::DVec3;
 
 pub const SECTION: Case = Case {
-    name: "section",
+    name: "section-plasticity",
     about: "a plastic bond under a constant tension is bent, twisted, or both: what it carries and how it flows",
     source: "Lubliner, Plasticity Theory, 1990, ch. 4: yield surface (N/N_p)^2 + |M|/M_p + (T/T_p)^2 = 1 and its normal",
     run: section,

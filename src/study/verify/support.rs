@@ -7,6 +7,7 @@ use crate::reference::beam::RoundBar;
 use crate::scene;
 use crate::scene::spec::Spec;
 use crate::strand;
+use crate::strand::assembly::Assembly;
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -59,15 +60,29 @@ impl<'a> Lab<'a> {
     /// # Errors
     /// What is wrong in the scene or the options.
     pub fn trial(&self, scene: &str, options: &[String]) -> Result<Trial<'_>> {
-        self.trial_of(scene::load(scene, options)?.spec)
+        self.changed(scene, options, |_| {})
     }
 
-    /// A trial of a scene that was changed where options do not reach.
+    /// The same with its bodies changed where options do not reach, such as the velocity of single particles.
+    ///
+    /// # Errors
+    /// What is wrong in the scene or the options.
+    pub fn changed(&self, scene: &str, options: &[String], change: impl FnOnce(&mut Assembly)) -> Result<Trial<'_>> {
+        self.set_up(scene::load(scene, options)?.spec, change)
+    }
+
+    /// A trial of a scene that was changed where options do not reach, such as by a rotation.
     ///
     /// # Errors
     /// When the bodies cannot be built.
     pub fn trial_of(&self, spec: Spec) -> Result<Trial<'_>> {
-        let engine = Engine::new(&spec, strand::build(&spec)?)?;
+        self.set_up(spec, |_| {})
+    }
+
+    fn set_up(&self, spec: Spec, change: impl FnOnce(&mut Assembly)) -> Result<Trial<'_>> {
+        let mut assembly = strand::build(&spec)?;
+        change(&mut assembly);
+        let engine = Engine::new(&spec, assembly)?;
         Ok(Trial { spec, engine, lab: self, wall_s: 0.0 })
     }
 
