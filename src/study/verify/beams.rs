@@ -60,7 +60,7 @@ fn cantilever_tip(lab: &Lab) -> Result<Vec<Finding>> {
     let mut findings = Vec::new();
     for spacing in lab.pick(&[20.0, 5.0, 2.0][..], &[20.0, 10.0, 5.0, 2.0, 1.0]) {
         let (bar, deflection, spent) = settled_tip(lab, "verify/tip-load", &[set("spacing", spacing)])?;
-        let what = format!("tip deflection, worst of all spacings (a/L = {})", spacing / LENGTH);
+        let what = format!("tip deflection, worst: a/L = {}", spacing / LENGTH);
         findings.push(Finding::new(what, "m", deflection, bar.cantilever_tip(LOAD), spent).within(1e-4));
     }
     Ok(vec![Finding::worst(findings)])
@@ -91,7 +91,7 @@ fn cantilever_shared(lab: &Lab) -> Result<Vec<Finding>> {
         let shear = bar.cantilever_tip(1.0) / l - l * l / (3.0 * stiffness);
         let at = |x: f64| share * (x * x * (3.0 * l - x) / (6.0 * stiffness) + x * shear);
         let sum: f64 = (1..=n).map(|i| at(l * i as f64 / n as f64)).sum();
-        let what = "tip deflection against the sum over particles, worst of all spacings";
+        let what = "tip deflection, against the sum over particles";
         sums.push(Finding::new(what, "m", deflection, sum, spent).within(1e-4));
         exact = LOAD * l * (l * l / (8.0 * stiffness) + shear / 2.0);
         points.push(Point { resolution: spacing / LENGTH, error: deflection / exact - 1.0, spent });
@@ -117,7 +117,7 @@ fn torsion_bar(lab: &Lab) -> Result<Vec<Finding>> {
             angle
         })?;
         let exact = trial.bar().twist(0.12e-3);
-        let what = format!("angle of the end, worst of all spacings (a/L = {})", spacing / LENGTH);
+        let what = format!("angle of the end, worst: a/L = {}", spacing / LENGTH);
         findings.push(Finding::new(what, "rad", mean, exact, trial.finish()).within(1e-4));
     }
     Ok(vec![Finding::worst(findings)])

@@ -8,6 +8,7 @@ use crate::base::random::uniform;
 use crate::engine::Engine;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
+use std::f64::consts::PI;
 
 pub const WIRE: Case = Case {
     name: "momenta-wire",
@@ -79,7 +80,7 @@ fn follow(trial: &mut Trial, steps: u64, interval: u64) -> Result<([f64; 2], usi
 fn changes(worst: [f64; 2], what: &str, trial: Trial) -> [Finding; 2] {
     let spent = trial.finish();
     let finding = |k: usize, name: &str| {
-        let what = format!("change of {name} over what the particles carry{what}");
+        let what = format!("change of {name} over its size{what}");
         Finding::new(what, "-", worst[k], 0.0, spent).relative_to(1.0).within(ROUNDING)
     };
     [finding(0, "momentum"), finding(1, "angular momentum")]
@@ -110,7 +111,7 @@ fn collision(lab: &Lab) -> Result<Vec<Finding>> {
             let steps = (0.3e-3 / trial.engine.time_step()) as u64;
             let (worst, touching) = follow(&mut trial, steps, 1)?;
             fewest = fewest.min(touching);
-            all.push(changes(worst, ", worst of 6 collisions", trial));
+            all.push(changes(worst, ", worst of 6", trial));
         }
     }
     let mut findings = worst_of_each(all);
@@ -120,36 +121,35 @@ fn collision(lab: &Lab) -> Result<Vec<Finding>> {
 
 /// That bodies touched at all, or the case says nothing about contacts.
 fn touched(count: usize, least: usize, like: &Finding) -> Finding {
-    Finding::new("contacts at once, at least", "-", count as f64, least as f64, like.spent).between(0.0, f64::INFINITY)
+    Finding::at_least("contacts at once", "-", count as f64, least as f64, like.spent)
 }
 
-/// Seven helical wires, each particle given a velocity of its own on top of the strand's: they ring, rub, yield, and
-/// hold each other by their lay.
+/// Seven helical wires, each thrown on its own way on top of the strand's: they ring, rub, yield, and hold each other by
+/// their lay. Half the default step keeps the ledger of so violent a start closed; it is of order 2 in the step.
 fn isolated_strand(lab: &Lab) -> Result<Vec<Finding>> {
     let steps = lab.pick(100_000, 1_000_000);
-    let mut trial = lab.changed("verify/free-strand", &[], |a| throw(a))?;
+    let mut trial = lab.changed("verify/free-strand", &[set("time.safety", 0.4)], throw)?;
     let (worst, touching) = follow(&mut trial, steps, 100)?;
     let energy = trial.engine.energy();
     let yielded = energy.plastic_bonds > 0.0 && energy.plastic_contacts > 0.0 && energy.friction > 0.0;
     let mut findings = Vec::from(changes(worst, &format!(", {steps} steps"), trial));
     findings.push(touched(touching, 6, &findings[0]));
-    let lost = Finding::new(
-        "kinds of loss at work: bonds, contacts, friction",
-        "-",
-        f64::from(yielded),
-        1.0,
-        findings[0].spent,
-    );
+    let lost =
+        Finding::new("bonds and contacts yield and rub (1: all do)", "-", f64::from(yielded), 1.0, findings[0].spent);
     findings.push(lost);
     Ok(findings)
 }
 
-/// A common velocity and spin of the whole strand, and a random part up to 3 m/s.
+/// A common velocity and spin of the whole strand, and waves of random direction up to 5 m/s in every wire.
 fn throw(a: &mut Assembly) {
     let (common, spin) = (DVec3::new(1.0, -0.5, 2.0), DVec3::new(100.0, 50.0, 1000.0));
     for i in 0..a.len() {
-        let random = |axis: u64| 3.0 * (2.0 * uniform(1, axis, i as u64) - 1.0);
-        let own = DVec3::new(random(0), random(1), random(2));
+        let wave = |number: u64| {
+            let random = |axis: u64| 2.0 * uniform(number, axis, u64::from(a.wire_of[i])) - 1.0;
+            let phase = number as f64 * PI * a.position.z[i] / a.length;
+            DVec3::new(random(0), random(1), random(2)) * (5.0 * phase.cos())
+        };
+        let own = (wave(1) + wave(2) + wave(3)) / 3.0;
         let turned = spin.cross(a.position.get(i));
         a.velocity.set(i, common + turned + own);
     }

@@ -145,7 +145,7 @@ fn constant_load(lab: &Lab) -> Result<Vec<Finding>> {
         let points = seen.len();
         let compare = |(slip, force): (f64, f64)| {
             let exact = if law == "mindlin" { held.no_slip_force(slip) } else { held.partial_slip_force(slip) };
-            let what = format!("{law}: force, worst of {points} displacements ({:.2} of sliding)", slip / whole);
+            let what = format!("{law}: force, worst of {points}: {:.1} of sliding", slip / whole);
             Finding::new(what, "N", force, exact, Spent::default()).within(5e-3)
         };
         Ok(Finding { spent, ..Finding::worst(seen.into_iter().map(compare).collect()) })
@@ -181,8 +181,8 @@ fn sliding_to_rolling(lab: &Lab) -> Result<Vec<Finding>> {
         })?;
         let (mean, spent) = (sum / f64::from(count), trial.finish());
         let exact = sliding::rolling_speed(speed);
-        findings.push(Finding::new(format!("{law}: time at which it rolls"), "s", rolls, start, spent).within(1e-2));
-        findings.push(Finding::new(format!("{law}: speed from then on"), "m/s", mean, exact, spent).within(2e-3));
+        findings.push(Finding::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2));
+        findings.push(Finding::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3));
     }
     Ok(findings)
 }

@@ -99,7 +99,7 @@ fn cantilever(lab: &Lab) -> Result<Vec<Finding>> {
         let options =
             [set("spacing", spacing), set("wire.0.to", r#"["0 mm", "0 mm", "6 mm"]"#), set("stop.time", "1 s")];
         let edge = edge(lab, "verify/free-vibration", &options)?;
-        findings.push(edge.bound_below(format!("the engine's bound, worst of all spacings ({spacing} d)"), 0.2));
+        findings.push(edge.bound_below(format!("the engine's bound, worst spacing: {spacing} d"), 0.2));
     }
     Ok(vec![Finding::worst(findings)])
 }
@@ -111,7 +111,7 @@ fn free_wire(lab: &Lab) -> Result<Vec<Finding>> {
     for spacing in [1.0, 2.0] {
         let options = [set("spacing", spacing), set("wire.0.spin", r#"["2 rad/s", "1 rad/s", "-1 rad/s"]"#)];
         let edge = edge(lab, "verify/free-wire", &options)?;
-        findings.push(edge.bound_below(format!("the engine's bound, worst of all spacings ({spacing} d)"), 0.2));
+        findings.push(edge.bound_below(format!("the engine's bound, worst spacing: {spacing} d"), 0.2));
     }
     Ok(vec![Finding::worst(findings)])
 }

@@ -70,16 +70,13 @@ fn wire_pulled(lab: &Lab) -> Result<Vec<Finding>> {
             let p = f64::from(shot.plastic_strain[middle]);
             let true_stress = f64::from(shot.bond_stress[middle]) * 1e6;
             let none = Spent::default();
-            let at = |what: &str| format!("{what}, worst of five strains (at {:.0} %)", 100.0 * strain);
+            let at = |what: &str| format!("{what}, worst of five: at {:.0} %", 100.0 * strain);
             findings[0].push(
                 Finding::new(at("engineering stress"), "Pa", engine.stress(), point.engineering_stress, none)
                     .within(5e-3),
             );
             findings[1].push(Finding::new(at("plastic strain"), "-", p, point.plastic_strain, none).within(1e-2));
-            findings[2].push(
-                Finding::new(at("true stress at that plastic strain"), "Pa", true_stress, law.stress(p), none)
-                    .within(1e-3),
-            );
+            findings[2].push(Finding::new(at("true stress"), "Pa", true_stress, law.stress(p), none).within(1e-3));
         }
     })?;
     let spent = trial.finish();
@@ -169,7 +166,7 @@ fn bond_bent(lab: &Lab) -> Result<Vec<Finding>> {
     findings.push(Finding::new("moment at first yield", "N m", at_first, exact(angle), spent).within(1e-3));
     let excess = bent.limit / exact(corner) - 1.0;
     findings.push(
-        Finding::new("moment where elastic line and plastic moment meet", "N m", at_corner, exact(corner), spent)
+        Finding::new("moment where elastic line meets M_p", "N m", at_corner, exact(corner), spent)
             .between(excess - 1e-3, excess + 1e-3)
             .note(format!(
                 "the bond's section yields as one at M_p; fibres of a round section yield from M_e = 0.589 M_p on, and \

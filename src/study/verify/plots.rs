@@ -47,8 +47,8 @@ fn figures(name: &str, finding: &Finding, convergence: &Convergence) -> [Figure;
     let points = |x: fn(&super::finding::Point) -> f64| {
         convergence.points.iter().map(|p| [x(p), p.error.abs()]).collect::<Vec<_>>()
     };
-    by_resolution.series.push(Series::new("strandsnap", Mark::LineAndPoints, points(|p| p.resolution)));
-    by_time.series.push(Series::new("strandsnap", Mark::LineAndPoints, points(|p| p.spent.wall_s)));
+    by_resolution.series.push(Series::new("error", Mark::LineAndPoints, points(|p| p.resolution)));
+    by_time.series.push(Series::new("", Mark::LineAndPoints, points(|p| p.spent.wall_s)));
     if let (Some(order), Some(last)) = (finding.order, convergence.points.last()) {
         by_resolution.slopes.push(Slope {
             order: order.theory,
@@ -57,7 +57,9 @@ fn figures(name: &str, finding: &Finding, convergence: &Convergence) -> [Figure;
         });
     }
     let target = finding.allowed.iter().map(|limit| limit.abs()).fold(0.0, f64::max);
-    if target.is_finite() && target > 0.0 {
+    // The target is for the finding: where that is extrapolated, or of another quantity, no point has to meet it.
+    let finest = convergence.points.last().is_some_and(|p| (p.error - finding.error()).abs() < 1e-9);
+    if finest && target.is_finite() && target > 0.0 {
         for figure in [&mut by_resolution, &mut by_time] {
             figure.limits.push(Limit::Y(target, format!("target {} %", 100.0 * target)));
         }

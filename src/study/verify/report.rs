@@ -183,12 +183,14 @@ fn cells(f: &Finding) -> [String; 8] {
         Outcome::Pass => "pass".into(),
         Outcome::Miss => format!("MISS (allowed {target} %)"),
     };
+    // A least value has no error.
+    let least = high.is_infinite();
     let order = f.order.map_or(String::new(), |o| format!("{:.2} ({:.2})", o.observed, o.theory));
     [
         format!("{}{unit}", f.what),
         number(f.computed),
-        number(f.exact),
-        percent(100.0 * f.error()),
+        if least { format!("≥ {}", number(f.exact)) } else { number(f.exact) },
+        if least { String::new() } else { percent(100.0 * f.error()) },
         order,
         f.spent.steps.to_string(),
         format!("{:.2}", f.spent.wall_s),
@@ -214,13 +216,19 @@ fn number(value: f64) -> String {
         size if (1e-3..1e6).contains(&size) => {
             let decimals = (5.0 - size.log10().floor()).clamp(0.0, 8.0) as usize;
             let text = format!("{value:.decimals$}");
-            match text.contains('.') {
-                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-                false => text,
-            }
+            without_zeros(&text).to_owned()
         }
-        _ => format!("{value:.5e}"),
+        _ => {
+            let text = format!("{value:.5e}");
+            let (mantissa, exponent) = text.split_once('e').expect("Rust writes an exponent");
+            format!("{}e{exponent}", without_zeros(mantissa))
+        }
     }
+}
+
+/// Without zeros at the end of its decimals.
+fn without_zeros(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
 fn percent(value: f64) -> String {
@@ -280,8 +288,7 @@ mod tests {
 
     #[test]
     fn numbers_have_six_figures() {
-        for (value, text) in [(0.658558123, "0.658558"), (115e9, "1.15000e11"), (20.0, "20"), (1234567.0, "1.23457e6")]
-        {
+        for (value, text) in [(0.658558123, "0.658558"), (115e9, "1.15e11"), (20.0, "20"), (1234567.0, "1.23457e6")] {
             assert_eq!(number(value), text);
         }
         assert_eq!(number(123456.7), "123457");

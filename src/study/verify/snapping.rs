@@ -55,7 +55,7 @@ fn snapped_bond(lab: &Lab) -> Result<Vec<Finding>> {
         count(&format!("numbers that differ after {steps} steps"), differing, 0),
         count("bonds broken before the first step", broken, 1),
         count("bonds broken later", later, 0),
-        count("contacts at once, at least", touching, 1).between(0.0, f64::INFINITY),
+        Finding::at_least("contacts at once", "-", touching as f64, 1.0, a + b),
     ])
 }
 

@@ -91,8 +91,8 @@ impl<'a> Lab<'a> {
         let Ledger { runs, worst, spent } = self.ledger.get();
         let what = match runs {
             0 => return None,
-            1 => "energy ledger: missing over work done".into(),
-            _ => format!("energy ledger: missing over work done, worst of {runs} runs"),
+            1 => "energy ledger: missing over work".into(),
+            _ => format!("energy ledger: missing over work, worst of {runs}"),
         };
         Some(Finding::new(what, "-", worst, 0.0, spent).relative_to(1.0).within(LEDGER_TARGET))
     }
