@@ -75,7 +75,7 @@ fn law(lab: &Lab, law: &str, target: f64, note: &str) -> Result<Vec<Finding>> {
         );
         spin.push(Finding::new(what("I w/(R mu J_n)"), "-", r.spin, 1.0, r.spent).within(5e-3));
     }
-    let (mut impulse, mut angle) = (Vec::new(), Vec::new());
+    let (mut impulse, mut angle, mut table) = (Vec::new(), Vec::new(), Vec::new());
     for psi1 in lab.pick(&[0.5, 1.5, 3.0][..], &[0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5]) {
         let r = collide(lab, law, *psi1)?;
         let exact = r.theory.rebound(*psi1, SPRINGS);
@@ -83,6 +83,7 @@ fn law(lab: &Lab, law: &str, target: f64, note: &str) -> Result<Vec<Finding>> {
         let found = Finding::new(what("J_t/(mu J_n)"), "-", r.impulse, r.theory.impulse(*psi1, exact), r.spent);
         impulse.push(found.relative_to(1.0).within(target));
         let scale = 4.0 * r.theory.chi();
+        table.push(format!("{psi1}: {:+.3} ({exact:+.3})", r.psi));
         angle.push(Finding::new(what("psi2"), "-", r.psi, exact, r.spent).relative_to(scale).within(target));
     }
     Ok(vec![Finding::worst(sliding), Finding::worst(spin), Finding::worst(impulse).note(note), Finding::worst(angle)])
