@@ -2,6 +2,7 @@
 //!
 //! Source: Hertz 1882; Johnson, *Contact Mechanics*, 1985, section 11.4.
 
+use crate::reference::elliptic;
 use std::f64::consts::PI;
 
 /// The pair's effective values.
@@ -42,6 +43,33 @@ impl Pair {
     }
 }
 
+/// Factor on the force (4/3) E* √R_e δ^(3/2), R_e = √(R′R″), that Hertz's elliptical contact gives for relative radii of
+/// curvature of ratio `ratio` R′/R″ ≥ 1 [-]: F₂^(−3/2).
+///
+/// With e² = 1 − (b/a)² from R′/R″ = [(a/b)² E(e) − K(e)]/[K(e) − E(e)],
+/// F₁³ = 4/(π e²) (b/a)^(3/2) {[(a/b)² E − K][K − E]}^(1/2) and F₂ = (2/π) (b/a)^(1/2) K/F₁
+/// (Johnson 1985, equations 4.25 and 4.26).
+pub fn elliptical_factor(ratio: f64) -> f64 {
+    if ratio <= 1.0 + 1e-9 {
+        return 1.0;
+    }
+    let parts = |slim: f64| {
+        let e2 = 1.0 - slim * slim;
+        let (k, e) = (elliptic::first(PI / 2.0, e2.sqrt()), elliptic::second(PI / 2.0, e2.sqrt()));
+        (e2, k, e / (slim * slim) - k, k - e)
+    };
+    let (mut low, mut high) = (1e-6, 1.0 - 1e-9);
+    for _ in 0..100 {
+        let slim = 0.5 * (low + high);
+        let (_, _, above, below) = parts(slim);
+        if above / below > ratio { low = slim } else { high = slim }
+    }
+    let slim: f64 = 0.5 * (low + high);
+    let (e2, k, above, below) = parts(slim);
+    let f1 = (4.0 / (PI * e2) * slim.powf(1.5) * (above * below).sqrt()).cbrt();
+    (2.0 / PI * slim.sqrt() * k / f1).powf(-1.5)
+}
+
 /// The 2.868 of the contact time: 2 (15/16)^(2/5) ∫₀¹ dx/√(1 − x^(5/2)) [-], where the integral is
 /// √π Γ(7/5)/Γ(9/10) (Johnson 1985, section 11.4).
 fn contact_time_factor() -> f64 {
@@ -55,6 +83,17 @@ mod tests {
 
     fn pair() -> Pair {
         Pair::equal_spheres(0.195e-3, 115e9, 0.34, 8940.0)
+    }
+
+    /// Johnson's approximation of F₂ (Greenwood 1985, as quoted there): 1 − [(R′/R″)^0.0684 − 1]^1.531.
+    #[test]
+    fn elliptical_contacts_are_stiffer_than_circular_ones() {
+        assert_eq!(elliptical_factor(1.0), 1.0);
+        for ratio in [1.5f64, 2.0, 5.0] {
+            let approximate = 1.0 - (ratio.powf(0.0684) - 1.0).powf(1.531);
+            let exact = elliptical_factor(ratio).powf(-2.0 / 3.0);
+            assert!((exact - approximate).abs() < 4e-3, "{ratio}: {exact} {approximate}");
+        }
     }
 
     /// Substituting x = 1 − s² takes the root's singularity out of the integrand, which the midpoint rule then

@@ -54,6 +54,46 @@ impl Section {
     }
 }
 
+/// What a perfectly plastic section carries when it is under a constant axial force and is bent and twisted on and on,
+/// by the yield surface (N/N_p)² + |M|/M_p + (T/T_p)² = 1 with the associated flow rule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flow {
+    /// Bending moment M [N m].
+    pub moment: f64,
+    /// Torque T [N m].
+    pub torque: f64,
+    /// Plastic elongation per bending angle [m/rad]; per angle of twist where it is only twisted.
+    pub elongation: f64,
+}
+
+impl Section {
+    /// Plastic flow under `axial` N [N] with `twist` ≥ 0 radians of torsion per radian of bending [-]; infinite
+    /// where it is only twisted.
+    ///
+    /// Normality: u′ : θ′ : φ′ = 2N/N_p² : 1/M_p : 2T/T_p². So T = T_p² φ′/(2 M_p θ′) while that leaves room for a
+    /// moment, and the moment is what the surface leaves.
+    pub fn flow(&self, axial: f64, twist: f64) -> Flow {
+        let (n_p, m_p, t_p) = (self.plastic_force(), self.plastic_moment(), self.plastic_torque());
+        let left = 1.0 - (axial / n_p).powi(2);
+        let along = 2.0 * axial / n_p.powi(2);
+        let wanted = 0.5 * twist * t_p / m_p;
+        if wanted * wanted >= left {
+            let torque = t_p * left.sqrt();
+            return Flow { moment: 0.0, torque, elongation: along / (2.0 * torque / t_p.powi(2)) };
+        }
+        let (moment, torque, elongation) = (m_p * (left - wanted * wanted), t_p * wanted, along * m_p);
+        Flow { moment, torque, elongation }
+    }
+
+    /// Bending moment [N m] at which every fibre yields in tension or compression under `axial` N ≥ 0 [N]: the exact
+    /// limit of a round section, N/N_p = (2/π)(θ + sin θ cos θ), M/M_p = cos³θ.
+    pub fn exact_moment(&self, axial: f64) -> f64 {
+        let share = axial / self.plastic_force();
+        let angle = bisect(0.0, PI / 2.0, |t| 2.0 / PI * (t + t.sin() * t.cos()) - share);
+        self.plastic_moment() * angle.cos().powi(3)
+    }
+}
+
 /// One point of a uniform tension test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TensionPoint {
@@ -151,6 +191,45 @@ mod tests {
         near(section.plastic_torque() * root3, sum(|r| 2.0 * PI * r * r));
         near(section.plastic_shear() * root3, sum(|r| 2.0 * PI * r));
         near(section.plastic_moment() / section.first_yield_moment(), 16.0 / (3.0 * PI));
+    }
+
+    /// The exact limit is an integral too: fibres above the neutral axis −r sin θ pull, those below push.
+    #[test]
+    fn exact_moment_is_an_integral_over_the_section() {
+        let section = Section { radius: 0.2e-3, yield_stress: 100e6 };
+        let n = 20_000;
+        for sine in [0.0f64, 0.3, 0.7, 0.95] {
+            let (mut force, mut moment) = (0.0, 0.0);
+            for i in 0..n {
+                let y = ((i as f64 + 0.5) / n as f64 * 2.0 - 1.0) * section.radius;
+                let area = 2.0 * (section.radius.powi(2) - y * y).sqrt() * 2.0 * section.radius / n as f64;
+                let stress = if y > -sine * section.radius { section.yield_stress } else { -section.yield_stress };
+                force += area * stress;
+                moment += area * stress * y;
+            }
+            assert!((section.exact_moment(force) - moment).abs() < 2e-4 * section.plastic_moment(), "{sine}");
+        }
+    }
+
+    /// Plastic flow is normal to the surface: no other state on it does more work on the same flow.
+    #[test]
+    fn flow_does_the_most_work() {
+        let section = Section { radius: 0.2e-3, yield_stress: 100e6 };
+        for (share, twist) in [(0.3, 0.0), (0.6, 0.4), (0.5, 3.0)] {
+            let axial = share * section.plastic_force();
+            let flow = section.flow(axial, twist);
+            let work = |n: f64, m: f64, t: f64| n * flow.elongation + m + t * twist;
+            let here = work(axial, flow.moment, flow.torque);
+            for a in 0..20 {
+                for b in 0..20 {
+                    let (n, t) = (a as f64 / 20.0, b as f64 / 20.0);
+                    let m = 1.0 - n * n - t * t;
+                    let other =
+                        work(n * section.plastic_force(), m * section.plastic_moment(), t * section.plastic_torque());
+                    assert!(m < 0.0 || flow.moment <= 0.0 || other <= here * (1.0 + 1e-12), "{n} {m} {t}");
+                }
+            }
+        }
     }
 
     /// Half elastic, half plastic, summed over the fibres; and the two ends of the formula.

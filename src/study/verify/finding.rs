@@ -154,11 +154,16 @@ impl Finding {
 
     /// Asks for an order of convergence of `theory` ± `tolerance` [-] between all neighbours, and counts what the
     /// points took as spent.
-    pub fn converging(mut self, axis: &'static str, points: Vec<Point>, theory: f64, tolerance: f64) -> Self {
-        let convergence = Convergence { axis, points };
-        self.order = Some(Order::worst(&convergence.orders(), theory, tolerance));
-        self.spent = convergence.points.iter().map(|p| p.spent).sum();
-        self.convergence = Some(convergence);
+    pub fn converging(self, axis: &'static str, points: Vec<Point>, theory: f64, tolerance: f64) -> Self {
+        let found = self.over(axis, points);
+        let orders = found.convergence.as_ref().map(Convergence::orders).unwrap_or_default();
+        Self { order: Some(Order::worst(&orders, theory, tolerance)), ..found }
+    }
+
+    /// Shows the error over resolution where theory knows no order, and counts what the points took as spent.
+    pub fn over(mut self, axis: &'static str, points: Vec<Point>) -> Self {
+        self.spent = points.iter().map(|p| p.spent).sum();
+        self.convergence = Some(Convergence { axis, points });
         self
     }
 

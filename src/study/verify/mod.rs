@@ -2,16 +2,24 @@
 //! [`crate::reference`] and a function here that runs the one and compares it with the other; [`CASES`] lists them.
 
 mod beams;
+mod capstan;
+mod capsules;
 mod conservation;
 mod contacts;
 mod critical_step;
 mod damping;
+mod elastica;
 pub mod finding;
+mod frame;
 mod modes;
+mod oblique;
 mod plasticity;
 pub mod plots;
+mod repeated;
 pub mod report;
+mod section;
 mod snapping;
+mod spring;
 mod strands;
 pub mod support;
 mod vibration;
@@ -46,6 +54,8 @@ pub const CASES: &[Case] = &[
     beams::STOCKY,
     beams::SHARED,
     beams::TORSION,
+    elastica::ELASTICA,
+    spring::SPRING,
     // Vibration and waves
     vibration::AXIAL_WAVE,
     waves::PULLED_BAR,
@@ -57,14 +67,22 @@ pub const CASES: &[Case] = &[
     // Contacts of spheres
     contacts::HERTZ,
     contacts::THORNTON,
+    repeated::REPEATED,
     contacts::TANGENTIAL,
     contacts::ROLLING,
+    oblique::OBLIQUE,
+    // Contacts of wires
+    capsules::SLIDING_WIRES,
+    capsules::SPHERE_ON_WIRE,
+    capsules::CROSSED_WIRES,
+    capstan::CAPSTAN,
     // Plasticity and rupture
     plasticity::PULLED,
     plasticity::YOUNG,
     plasticity::BENT,
     plasticity::TWISTED,
     plasticity::WIRE_TWISTED,
+    section::SECTION,
     snapping::SNAPPED,
     // Strands
     strands::PITCHES,
@@ -73,6 +91,7 @@ pub const CASES: &[Case] = &[
     conservation::WIRE,
     conservation::COLLISION,
     conservation::STRAND,
+    frame::FRAME,
     conservation::ENERGY,
     // The stable step
     critical_step::CHAIN,

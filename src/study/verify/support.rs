@@ -68,7 +68,18 @@ impl<'a> Lab<'a> {
     /// # Errors
     /// What is wrong in the scene or the options.
     pub fn changed(&self, scene: &str, options: &[String], change: impl FnOnce(&mut Assembly)) -> Result<Trial<'_>> {
-        let spec = scene::load(scene, options)?.spec;
+        self.set_up(scene::load(scene, options)?.spec, change)
+    }
+
+    /// A trial of a scene that was changed where options do not reach, such as by a rotation.
+    ///
+    /// # Errors
+    /// When the bodies cannot be built.
+    pub fn trial_of(&self, spec: Spec) -> Result<Trial<'_>> {
+        self.set_up(spec, |_| {})
+    }
+
+    fn set_up(&self, spec: Spec, change: impl FnOnce(&mut Assembly)) -> Result<Trial<'_>> {
         let mut assembly = strand::build(&spec)?;
         change(&mut assembly);
         let engine = Engine::new(&spec, assembly)?;

@@ -1,0 +1,102 @@
+//! Oblique impact of two spheres with friction.
+
+use super::Case;
+use super::finding::{Finding, Spent};
+use super::support::{Lab, set};
+use crate::base::error::Result;
+use crate::reference::hertz::Pair;
+use crate::reference::oblique::Spheres;
+use crate::scene;
+use glam::DVec3;
+
+pub const OBLIQUE: Case = Case {
+    name: "oblique-impact",
+    about: "two elastic spheres collide obliquely with friction: rebound and spin over the angle of impact",
+    source: "Maw, Barber & Fawcett, Wear 38 (1976) 101 and J. Lubr. Technol. 103 (1981) 74; sliding rigid bodies",
+    run: oblique,
+};
+
+/// Springs of the elastic theory; twice as many change its results by less than 1e-3.
+const SPRINGS: usize = 800;
+/// k² = I/(m R²) of the spheres [-].
+const GYRATION: f64 = 0.4;
+
+/// Outcome of one impact.
+struct Rebound {
+    theory: Spheres,
+    /// ψ₂ [-].
+    psi: f64,
+    /// Tangential impulse over μ times the normal one [-].
+    impulse: f64,
+    /// The same as the spin tells it, I ω/(R μ J_n) [-].
+    spin: f64,
+    spent: Spent,
+}
+
+/// Two spheres meet at ψ₁ = `psi1` under the tangential law `law`.
+fn collide(lab: &Lab, law: &str, psi1: f64) -> Result<Rebound> {
+    let mut spec = scene::load("verify/oblique", &[set("contact.tangential", law)])?.spec;
+    let (radius, m) = (0.5 * spec.spheres[0].diameter, spec.material);
+    let theory = Spheres { poisson: m.poisson, gyration: GYRATION };
+    let friction = spec.contact.as_ref().expect("the spheres touch").friction;
+    let approach = spec.spheres[0].velocity.z - spec.spheres[1].velocity.z;
+    let across = psi1 * friction / theory.stiffness_ratio() * approach;
+    (spec.spheres[0].velocity.x, spec.spheres[1].velocity.x) = (-0.5 * across, 0.5 * across);
+    let whole = Pair::equal_spheres(radius, m.young, m.poisson, m.density).contact_time(approach);
+    spec.time.step = Some(whole / 4000.0);
+    let mut trial = lab.trial_of(spec)?;
+    trial.run_to(1.1 * whole, |_| {})?;
+    let s = trial.engine.state();
+    // The contact has turned a little while it lasted.
+    let normal = (s.x.get(1) - s.x.get(0)).normalize();
+    let tangent = DVec3::Y.cross(normal);
+    let centres = s.v.get(1) - s.v.get(0);
+    let surfaces = centres - (s.w.get(0) + s.w.get(1)).cross(normal) * radius;
+    let limit = friction * (centres.dot(normal) + approach);
+    let spin = 0.5 * (s.w.get(0) + s.w.get(1)).length();
+    Ok(Rebound {
+        theory,
+        psi: theory.stiffness_ratio() * surfaces.dot(tangent) / (friction * approach),
+        impulse: (across - centres.dot(tangent)) / limit,
+        spin: 2.0 * GYRATION * radius * spin / limit,
+        spent: trial.finish(),
+    })
+}
+
+/// One law: sliding throughout, then where parts of the contact stick.
+fn law(lab: &Lab, law: &str, target: f64, note: &str) -> Result<Vec<Finding>> {
+    let (mut sliding, mut spin) = (Vec::new(), Vec::new());
+    for psi1 in lab.pick(&[6.0][..], &[5.5, 7.0, 9.0]) {
+        let r = collide(lab, law, *psi1)?;
+        let what = |what: &str| format!("{law}: {what} at psi1 = {psi1}, sliding");
+        let exact = r.theory.sliding(*psi1);
+        sliding.push(
+            Finding::new(what("psi2"), "-", r.psi, exact, r.spent).relative_to(4.0 * r.theory.chi()).within(5e-3),
+        );
+        spin.push(Finding::new(what("I w/(R mu J_n)"), "-", r.spin, 1.0, r.spent).within(5e-3));
+    }
+    let (mut impulse, mut angle, mut table) = (Vec::new(), Vec::new(), Vec::new());
+    for psi1 in lab.pick(&[0.5, 1.5, 3.0][..], &[0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5]) {
+        let r = collide(lab, law, *psi1)?;
+        let exact = r.theory.rebound(*psi1, SPRINGS);
+        let what = |what: &str| format!("{law}: {what} at psi1 = {psi1}, partly sticking");
+        let found = Finding::new(what("J_t/(mu J_n)"), "-", r.impulse, r.theory.impulse(*psi1, exact), r.spent);
+        impulse.push(found.relative_to(1.0).within(target));
+        let scale = 4.0 * r.theory.chi();
+        table.push(format!("{psi1}: {:+.3} ({exact:+.3})", r.psi));
+        angle.push(Finding::new(what("psi2"), "-", r.psi, exact, r.spent).relative_to(scale).within(target));
+    }
+    Ok(vec![Finding::worst(sliding), Finding::worst(spin), Finding::worst(impulse).note(note), Finding::worst(angle)])
+}
+
+fn oblique(lab: &Lab) -> Result<Vec<Finding>> {
+    let partial = "Errors are in units of what friction can give, mu J_n (psi: 4 chi). The law remembers one turning \
+                   point each way. A normal force that falls shrinks what it remembers with the contact radius, where \
+                   the annuli of the theory keep their own traction until their own limit reaches it.";
+    let single = "Errors are in units of what friction can give, mu J_n (psi: 4 chi). A single spring sticks or slides \
+                  as a whole, and drops its pull with the contact radius when the normal force falls; in the theory \
+                  the outer annuli slip first and the inner ones give back what they store.";
+    let mut found = law(lab, "mindlin-deresiewicz", 5e-2, partial)?;
+    found.extend(law(lab, "mindlin", 8e-2, single)?);
+    Ok(found)
+}
