@@ -8,6 +8,7 @@ mod render;
 mod run;
 mod say;
 mod scene;
+mod stability;
 mod values;
 
 use crate::base::error::Result;
@@ -35,6 +36,8 @@ enum Command {
     Export(export::Args),
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
+    /// Run stiff and extreme cases: each must be stable, or be refused or stopped with its reason
+    Stability(stability::Args),
     /// Draw the frames of a finished run again, without simulating
     Render(render::Args),
 }
@@ -44,13 +47,16 @@ enum Ended {
     Well,
     /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
     Interrupted,
+    /// The study ran, and something in it failed.
+    Failed,
 }
 
 /// Runs the program on its arguments. Exit codes: 0 well; 1 the file system refused; 2 bad input;
-/// 3 the machine lacks something; 4 the simulation had to stop; 130 interrupted.
+/// 3 the machine lacks something; 4 the simulation had to stop, or a case of a study failed; 130 interrupted.
 pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(Ended::Well) => ExitCode::SUCCESS,
+        Ok(Ended::Failed) => ExitCode::from(4),
         Ok(Ended::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
         Err(error) => {
             let code = error.exit_code();
@@ -67,6 +73,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
+        Command::Stability(args) => stability::run(&args),
         Command::Render(args) => render::render(args),
     }
 }

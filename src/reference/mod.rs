@@ -14,6 +14,7 @@
 //! | [`paper`] | what the reference paper prints |
 
 pub mod beam;
+pub mod column;
 pub mod helix;
 pub mod hertz;
 pub mod mindlin;
