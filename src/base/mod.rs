@@ -1,6 +1,7 @@
-//! Floor 0: units, vectors, seeded randomness, errors. Imports nothing of this crate.
+//! Floor 0: units, vectors, seeded randomness, errors, ticks of axes. Imports nothing of this crate.
 
 pub mod error;
 pub mod random;
+pub mod ticks;
 pub mod units;
 pub mod vectors;

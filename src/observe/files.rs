@@ -6,12 +6,12 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes `text` to `path` through a temporary file in the same folder, so that a full disk or an
+/// Writes `content` to `path` through a temporary file in the same folder, so that a full disk or an
 /// interruption never leaves half a file under that name.
 ///
 /// # Errors
 /// [`Error::Io`] when the folder cannot be written or the disk is full.
-pub fn write_whole(path: &Path, text: &str) -> Result<()> {
+pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     let refuse = |source| Error::io("cannot write", path, source);
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -26,7 +26,7 @@ pub fn write_whole(path: &Path, text: &str) -> Result<()> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder).map_err(refuse)?;
-    file.write_all(text.as_bytes()).map_err(refuse)?;
+    file.write_all(content.as_ref()).map_err(refuse)?;
     file.persist(path).map_err(|e| refuse(e.error))?;
     Ok(())
 }

@@ -20,12 +20,13 @@ pub mod png;
 pub mod solid;
 pub mod style;
 pub mod target;
-pub mod ticks;
 pub mod timings;
 pub mod unrolled;
 pub mod viewpoint;
 pub mod wires;
 pub mod writer;
+
+use crate::base::ticks;
 
 pub use adapter::check;
 pub use frame::Renderer;

@@ -14,14 +14,45 @@ macro_rules! scenes {
 const SCENES: &[(&str, &str)] =
     scenes!["ka4", "jaw-grip", "strand-1x7", "single-wire", "cantilever", "torsion", "two-spheres"];
 
-/// All built-in scenes: name and TOML text.
+/// Name and text of the scenes that `strandsnap verify` runs, in alphabetical order.
+const VERIFICATION: &[(&str, &str)] = scenes![
+    "verify/axial-wave",
+    "verify/bond-bent",
+    "verify/bond-twisted",
+    "verify/buckling",
+    "verify/chain",
+    "verify/crossing-wires",
+    "verify/free-vibration",
+    "verify/free-wire",
+    "verify/hertz",
+    "verify/pull",
+    "verify/rolling",
+    "verify/shared-load",
+    "verify/strand-elastic",
+    "verify/tangential",
+    "verify/thornton",
+    "verify/tip-load",
+    "verify/torque",
+];
+
+/// Scenes of `strandsnap verify`: name, which starts with `verify/`, and TOML text.
+pub fn verification() -> &'static [(&'static str, &'static str)] {
+    VERIFICATION
+}
+
+/// Whether a name is meant for one of [`verification`].
+pub(super) fn is_verification(name: &str) -> bool {
+    name.starts_with("verify/")
+}
+
+/// All built-in scenes that show something to users: name and TOML text.
 pub fn list() -> &'static [(&'static str, &'static str)] {
     SCENES
 }
 
 /// The TOML text of a built-in scene. Errors: an unknown name; the nearest is suggested.
 pub fn find(name: &str) -> Result<&'static str> {
-    match SCENES.iter().find(|(known, _)| *known == name) {
+    match SCENES.iter().chain(VERIFICATION).find(|(known, _)| *known == name) {
         Some((_, text)) => Ok(text),
         None => Err(Error::input(format!("there is no built-in scene `{name}`"), suggestion(name))),
     }
@@ -41,7 +72,8 @@ pub(super) fn no_such_file(path: &Path) -> Error {
 fn suggestion(name: &str) -> String {
     let names: Vec<&str> = SCENES.iter().map(|(name, _)| *name).collect();
     let all = format!("built-in scenes: {}; a file is given by its path", names.join(", "));
-    match nearest(name, names) {
+    let verification = VERIFICATION.iter().map(|(name, _)| *name);
+    match nearest(name, names.iter().copied().chain(verification)) {
         Some(near) => format!("did you mean `{near}`? {all}"),
         None => all,
     }

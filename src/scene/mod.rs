@@ -38,7 +38,8 @@ pub struct Scene {
 
 /// Loads a scene by built-in name or by path, with `--set` options.
 ///
-/// What ends in `.toml`, holds a path separator or names an existing file is a path. Errors: an unknown name (with the
+/// What ends in `.toml`, holds a path separator or names an existing file is a path; `verify/NAME` without `.toml` is
+/// a scene of `strandsnap verify`. Errors: an unknown name (with the
 /// nearest), a file that cannot be read, anything wrong in the scene or in an option.
 pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Scene> {
     let path = Path::new(name_or_path);
@@ -56,7 +57,8 @@ pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Scene> {
 
 /// Whether a scene argument means a file.
 fn is_path(argument: &str) -> bool {
-    argument.ends_with(".toml") || argument.contains(std::path::is_separator) || Path::new(argument).is_file()
+    let in_folder = argument.contains(std::path::is_separator) && !builtin::is_verification(argument);
+    argument.ends_with(".toml") || in_folder || Path::new(argument).is_file()
 }
 
 /// Reads a scene from its text. `file_name` is shown in errors, and its stem names the scene where the text does not;

@@ -1,4 +1,6 @@
 //! Floor 8: studies, made of many runs.
 
 pub mod calibrate;
+pub mod plot;
 pub mod stability;
+pub mod verify;

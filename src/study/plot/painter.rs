@@ -1,0 +1,299 @@
+//! Draws one figure: axes by plotters, everything else in pixels.
+
+use super::axis::{Span, can_show};
+use super::draw::FONT;
+use super::{Figure, Limit, Mark, Series};
+use plotters::coord::Shift;
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+
+/// Text: axes, ticks and legend; titles [px].
+const TEXT: f64 = 14.0;
+const TITLE: f64 = 17.0;
+/// Radius of a marker, width of a line, gap beside text [px].
+const MARKER: f64 = 4.5;
+const LINE: f64 = 1.8;
+const GAP: f64 = 5.0;
+/// Height of a line of the legend, and width of its sample of a line [px].
+const ROW: f64 = 19.0;
+const SAMPLE: f64 = 28.0;
+/// Dash and gap of reference lines [px].
+const DASH: [f64; 2] = [7.0, 5.0];
+
+const INK: RGBColor = RGBColor(40, 40, 40);
+const GREY: RGBColor = RGBColor(110, 110, 110);
+const GRID: RGBColor = RGBColor(218, 218, 218);
+const FINE_GRID: RGBColor = RGBColor(240, 240, 240);
+/// Okabe & Ito's palette, which the colour-blind can tell apart.
+const PALETTE: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(0, 0, 0),
+];
+
+type Pixel = (i32, i32);
+type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+
+/// One figure in one part of a sheet.
+pub struct Painter<'a, B: DrawingBackend> {
+    figure: &'a Figure,
+    area: &'a DrawingArea<B, Shift>,
+    /// Pixels per pixel of an SVG [-].
+    scale: f64,
+    x: Span,
+    y: Span,
+    /// Left, top, right and bottom of the frame; known once the axes are drawn.
+    frame: [i32; 4],
+}
+
+/// A line of the legend.
+struct Entry<'a> {
+    name: &'a str,
+    mark: Mark,
+    colour: RGBColor,
+    index: usize,
+}
+
+impl<'a, B: DrawingBackend> Painter<'a, B> {
+    /// `figure` in `area`, with `scale` pixels per pixel of an SVG.
+    pub fn new(figure: &'a Figure, area: &'a DrawingArea<B, Shift>, scale: f64) -> Self {
+        let [x, y] = spans(figure);
+        Self { figure, area, scale, x, y, frame: [0; 4] }
+    }
+
+    /// Draws everything.
+    pub fn paint(&mut self) -> Drawn<B> {
+        self.axes()?;
+        self.limits()?;
+        self.slopes()?;
+        for (index, series) in self.figure.series.iter().enumerate() {
+            self.series(index, series)?;
+        }
+        self.legend()
+    }
+
+    fn px(&self, size: f64) -> i32 {
+        (size * self.scale).round() as i32
+    }
+
+    fn text(&self, size: f64, colour: &RGBColor) -> TextStyle<'static> {
+        (FONT, size * self.scale).into_font().color(colour)
+    }
+
+    fn stroke(&self, colour: RGBColor, width: f64) -> ShapeStyle {
+        ShapeStyle::from(&colour).stroke_width(self.px(width).max(1) as u32)
+    }
+
+    fn axes(&mut self) -> Drawn<B> {
+        let f = self.figure;
+        let title = (FONT, TITLE * self.scale).into_font().style(FontStyle::Bold).color(&INK);
+        let mut chart = ChartBuilder::on(self.area)
+            .margin(self.px(10.0))
+            .margin_right(self.px(18.0))
+            .caption(&f.title, title)
+            .x_label_area_size(self.px(48.0))
+            .y_label_area_size(self.px(72.0))
+            .build_cartesian_2d(self.x, self.y)?;
+        chart
+            .configure_mesh()
+            .x_desc(&f.x.label)
+            .y_desc(&f.y.label)
+            .axis_desc_style(self.text(TEXT, &INK))
+            .label_style(self.text(TEXT, &INK))
+            .axis_style(self.stroke(INK, 1.0))
+            .bold_line_style(self.stroke(GRID, 1.0))
+            .light_line_style(self.stroke(FINE_GRID, 1.0))
+            .set_all_tick_mark_size(self.px(4.0))
+            .draw()?;
+        let (width, height) = chart.plotting_area().get_pixel_range();
+        let (left, top) = self.area.get_base_pixel();
+        self.frame = [width.start - left, height.start - top, width.end - left, height.end - top];
+        Ok(())
+    }
+
+    /// Where a point lies.
+    fn at(&self, point: [f64; 2]) -> Pixel {
+        let [left, top, right, bottom] = self.frame;
+        let along = |share: f64, from: i32, to: i32| from + (share * f64::from(to - from)).round() as i32;
+        (along(self.x.share(point[0]), left, right), along(self.y.share(point[1]), bottom, top))
+    }
+
+    fn line(&self, points: Vec<Pixel>, style: ShapeStyle, dash: Option<[f64; 2]>) -> Drawn<B> {
+        match dash {
+            None => self.area.draw(&PathElement::new(points, style)),
+            Some([dash, gap]) => {
+                let (dash, gap) = (self.px(dash), self.px(gap));
+                self.area.draw(&DashedPathElement::new(points.into_iter(), dash, gap, style))
+            }
+        }
+    }
+
+    fn limits(&self) -> Drawn<B> {
+        let [left, top, right, bottom] = self.frame;
+        let gap = self.px(GAP);
+        for limit in &self.figure.limits {
+            let (ends, name, place) = match limit {
+                Limit::X(value, name) => {
+                    let x = self.at([*value, self.y.low()]).0;
+                    (vec![(x, top), (x, bottom)], name, (x + gap, top + gap))
+                }
+                Limit::Y(value, name) => {
+                    let y = self.at([self.x.low(), *value]).1;
+                    (vec![(left, y), (right, y)], name, (left + gap, y - self.px(TEXT) - gap / 2))
+                }
+            };
+            self.line(ends, self.stroke(GREY, 1.2), Some(DASH))?;
+            self.area.draw(&Text::new(name.as_str(), place, self.text(TEXT, &GREY)))?;
+        }
+        Ok(())
+    }
+
+    fn slopes(&self) -> Drawn<B> {
+        for slope in &self.figure.slopes {
+            let [x0, y0] = slope.through;
+            let at = |x: f64| y0 * (x / x0).powf(slope.order);
+            let back = |y: f64| x0 * (y / y0).powf(1.0 / slope.order);
+            // Clipped to the frame.
+            let (a, b) = (back(self.y.low()), back(self.y.high()));
+            let ends = [self.x.low().max(a.min(b)), self.x.high().min(a.max(b))];
+            let points = ends.map(|x| self.at([x, at(x)])).to_vec();
+            self.line(points, self.stroke(GREY, 1.4), Some(SHORT_DASH))?;
+        }
+        Ok(())
+    }
+
+    fn series(&self, index: usize, series: &Series) -> Drawn<B> {
+        let colour = PALETTE[index % PALETTE.len()];
+        let style = self.stroke(colour, LINE);
+        let shown: Vec<(usize, [f64; 2])> = self.shown(series).collect();
+        let points: Vec<Pixel> = shown.iter().map(|(_, p)| self.at(*p)).collect();
+        match series.mark {
+            Mark::Line | Mark::LineAndPoints => self.line(points.clone(), style, None)?,
+            Mark::Dashed => self.line(points.clone(), style, Some(DASH))?,
+            Mark::Points => {}
+        }
+        if has_markers(series.mark) {
+            for ((i, point), at) in shown.iter().zip(points) {
+                if let Some(half) = series.errors.get(*i) {
+                    let [low, high] = [point[1] - half, point[1] + half].map(|y| y.clamp(self.y.low(), self.y.high()));
+                    self.line(vec![self.at([point[0], low]), self.at([point[0], high])], style, None)?;
+                }
+                self.marker(index, at, colour)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Points of a series that lie within the frame, with their numbers.
+    fn shown<'s>(&self, series: &'s Series) -> impl Iterator<Item = (usize, [f64; 2])> + use<'s, B> {
+        let (x, y) = (self.x, self.y);
+        series.points.iter().copied().enumerate().filter(move |(_, p)| x.shows(p[0]) && y.shows(p[1]))
+    }
+
+    /// A marker whose shape goes with the series' number, so that series differ without colour, too.
+    fn marker(&self, index: usize, at: Pixel, colour: RGBColor) -> Drawn<B> {
+        let size = MARKER * self.scale;
+        let fill = colour.filled();
+        let corners: &[(f64, f64)] = match index % 4 {
+            0 => return self.area.draw(&Circle::new(at, size.round() as i32, fill)),
+            1 => &[(0.0, -1.25), (1.15, 0.85), (-1.15, 0.85)],
+            2 => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+            _ => &[(0.0, -1.35), (1.35, 0.0), (0.0, 1.35), (-1.35, 0.0)],
+        };
+        let corner = |(x, y): &(f64, f64)| (at.0 + (x * size).round() as i32, at.1 + (y * size).round() as i32);
+        self.area.draw(&Polygon::new(corners.iter().map(corner).collect::<Vec<_>>(), fill))
+    }
+
+    fn entries(&self) -> Vec<Entry<'a>> {
+        let f = self.figure;
+        let series = f.series.iter().enumerate().map(|(index, s)| Entry {
+            name: &s.name,
+            mark: s.mark,
+            colour: PALETTE[index % PALETTE.len()],
+            index,
+        });
+        let slopes = f.slopes.iter().map(|s| Entry { name: &s.name, mark: Mark::Dashed, colour: GREY, index: 0 });
+        series.chain(slopes).filter(|entry| !entry.name.is_empty()).collect()
+    }
+
+    fn legend(&self) -> Drawn<B> {
+        let entries = self.entries();
+        if entries.is_empty() {
+            return Ok(());
+        }
+        let font = (FONT, TEXT * self.scale).into_font();
+        let width = |e: &Entry| font.box_size(e.name).map_or(0, |(width, _)| width as i32);
+        let widest = entries.iter().map(width).max().unwrap_or(0);
+        let (gap, row, sample) = (self.px(GAP), self.px(ROW), self.px(SAMPLE));
+        let size = (widest + sample + 3 * gap, row * entries.len() as i32 + gap);
+        let (left, top) = self.emptiest_corner(size);
+        let back = Rectangle::new([(left, top), (left + size.0, top + size.1)], WHITE.mix(0.85).filled());
+        self.area.draw(&back)?;
+        for (k, entry) in entries.iter().enumerate() {
+            let middle = top + gap / 2 + row * k as i32 + row / 2;
+            let ends = vec![(left + gap, middle), (left + gap + sample, middle)];
+            match entry.mark {
+                Mark::Line | Mark::LineAndPoints => self.line(ends, self.stroke(entry.colour, LINE), None)?,
+                Mark::Dashed if entry.colour == GREY => self.line(ends, self.stroke(GREY, 1.4), Some(SHORT_DASH))?,
+                Mark::Dashed => self.line(ends, self.stroke(entry.colour, LINE), Some(DASH))?,
+                Mark::Points => {}
+            }
+            if has_markers(entry.mark) {
+                self.marker(entry.index, (left + gap + sample / 2, middle), entry.colour)?;
+            }
+            let place = (left + 2 * gap + sample, middle - self.px(0.55 * TEXT));
+            self.area.draw(&Text::new(entry.name, place, self.text(TEXT, &INK)))?;
+        }
+        Ok(())
+    }
+
+    /// Upper left of a box of this size in the corner of the frame where it hides the fewest points.
+    fn emptiest_corner(&self, size: (i32, i32)) -> Pixel {
+        let [left, top, right, bottom] = self.frame;
+        let gap = 2 * self.px(GAP);
+        let (xs, ys) = ([right - gap - size.0, left + gap], [top + gap, bottom - gap - size.1]);
+        let corners = ys.iter().flat_map(|y| xs.iter().map(move |x| (*x, *y)));
+        let hidden = |corner: &Pixel| {
+            let inside =
+                |p: Pixel| (corner.0..corner.0 + size.0).contains(&p.0) && (corner.1..corner.1 + size.1).contains(&p.1);
+            let all = self.figure.series.iter().flat_map(|s| self.shown(s));
+            all.filter(|(_, p)| inside(self.at(*p))).count()
+        };
+        corners.min_by_key(hidden).expect("a frame has corners")
+    }
+}
+
+/// Dash and gap of reference slopes [px].
+const SHORT_DASH: [f64; 2] = [3.0, 4.0];
+
+fn has_markers(mark: Mark) -> bool {
+    matches!(mark, Mark::Points | Mark::LineAndPoints)
+}
+
+/// Ranges of both axes, which hold series, error bars and limits.
+fn spans(figure: &Figure) -> [Span; 2] {
+    let across = |vertical: bool| {
+        figure.limits.iter().filter_map(move |limit| match limit {
+            Limit::X(at, _) if vertical => Some(*at),
+            Limit::Y(at, _) if !vertical => Some(*at),
+            _ => None,
+        })
+    };
+    let shown = |p: &[f64; 2]| can_show(figure.x.scale, p[0]) && can_show(figure.y.scale, p[1]);
+    let (mut xs, mut ys) = (Vec::new(), Vec::new());
+    for series in &figure.series {
+        for (i, point) in series.points.iter().enumerate().filter(|(_, p)| shown(p)) {
+            let half = series.errors.get(i).copied().unwrap_or(0.0);
+            xs.push(point[0]);
+            ys.extend([point[1], point[1] - half, point[1] + half]);
+        }
+    }
+    [
+        Span::new(&figure.x, xs.into_iter().chain(across(true))),
+        Span::new(&figure.y, ys.into_iter().chain(across(false))),
+    ]
+}
