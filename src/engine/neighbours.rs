@@ -6,6 +6,7 @@
 use super::integrate::larger;
 use super::state::{CHUNK, State};
 use crate::base::vectors::Vectors;
+use crate::scene::spec::Shape;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -55,7 +56,9 @@ impl Reference<'_> {
 pub struct Neighbours {
     /// Skin beyond the sum of the undeformed radii [m].
     skin: f64,
-    /// Extra reach, for contacts that are not between particle centres [m].
+    /// Shape of wires in contact.
+    shape: Shape,
+    /// Extra reach, for contacts that are not between particle centres [m]; see [`Neighbours::reach_beyond`].
     margin: f64,
     /// Largest undeformed radius [m].
     largest: f64,
@@ -92,11 +95,12 @@ pub fn apart(assembly: &Assembly) -> Vec<u32> {
 }
 
 impl Neighbours {
-    /// For `assembly`; `skin` and `margin` in m.
-    pub fn new(assembly: &Assembly, skin: f64, margin: f64) -> Self {
+    /// For `assembly` with wires of this shape; `skin` in m.
+    pub fn new(assembly: &Assembly, skin: f64, shape: Shape) -> Self {
         Self {
             skin,
-            margin,
+            shape,
+            margin: 0.0,
             largest: assembly.radius.iter().copied().fold(0.0, f64::max),
             apart: apart(assembly),
             wire_of: assembly.wire_of.clone(),
@@ -137,6 +141,7 @@ impl Neighbours {
         self.reference.clone_from(&state.x);
         self.stretch = now;
         self.rebuilds += 1;
+        self.margin = self.reach_beyond(state);
         self.cells.fill(state, 2.0 * self.largest + self.margin + self.skin);
         let chunks = state.len().div_ceil(CHUNK);
         self.found.resize_with(chunks, Vec::new);
@@ -159,6 +164,20 @@ impl Neighbours {
         self.list.pairs.clear();
         self.found.iter().for_each(|f| self.list.pairs.extend_from_slice(f));
         &self.list
+    }
+
+    /// How much further than its surface the nearest end of a segment may lie when another body touches it [m]: half of
+    /// the longest bond, and of what it can grow by until the next search, which a stretch of the whole or a motion of
+    /// two particles by the skin brings about.
+    fn reach_beyond(&self, state: &State) -> f64 {
+        if self.shape == Shape::Sphere {
+            return 0.0;
+        }
+        let length = |slot: usize| (state.x.get(slot + 1) - state.x.get(slot)).length();
+        let longest = (0..state.len()).filter(|slot| state.whole[*slot]).map(length).fold(0.0, f64::max);
+        let diameter = 2.0 * self.largest;
+        let grown = longest * (1.0 + self.skin / diameter) + self.skin;
+        diameter.hypot(0.5 * grown) - diameter
     }
 
     fn can_touch(&self, i: usize, j: usize, state: &State, broken: &[u32]) -> bool {
@@ -292,7 +311,7 @@ mod tests {
     #[test]
     fn search_finds_what_brute_force_finds() {
         let (assembly, state) = cloud(700, 1.0, 0.04);
-        let mut neighbours = Neighbours::new(&assembly, 0.01, 0.0);
+        let mut neighbours = Neighbours::new(&assembly, 0.01, Shape::Sphere);
         let found = neighbours.search(&state, Stretch::default()).pairs.clone();
         let mut expected = Vec::new();
         for i in 0..state.len() {
@@ -310,7 +329,7 @@ mod tests {
     fn a_far_flung_particle_does_not_blow_up_the_grid() {
         let (assembly, mut state) = cloud(200, 1.0, 0.04);
         state.x.set(0, DVec3::splat(1e6));
-        let mut neighbours = Neighbours::new(&assembly, 0.01, 0.0);
+        let mut neighbours = Neighbours::new(&assembly, 0.01, Shape::Sphere);
         neighbours.search(&state, Stretch::default());
         assert!(neighbours.cells.start.len() < 8 * 200 + 128);
     }
@@ -320,7 +339,7 @@ mod tests {
         let stretch = |d: f64| Stretch { gauge: [0.01, 0.11], displacement: d };
         let (assembly, mut state) = cloud(50, 0.1, 0.0002);
         let start = state.x.clone();
-        let mut neighbours = Neighbours::new(&assembly, 6e-5, 0.0);
+        let mut neighbours = Neighbours::new(&assembly, 6e-5, Shape::Sphere);
         for k in 0..=270 {
             let d = k as f64 * 1e-4;
             let now = stretch(d);

@@ -16,6 +16,9 @@ const LEAST_INTERNAL_SHARE: f64 = 0.05;
 /// Unbalanced share of the energy ledger above which a run warns [-].
 const ENERGY_LIMIT: f64 = 0.01;
 
+/// Energy of a run below which its ledger says nothing [J]: rounding alone stirs a body at rest by about 1e-25 J.
+pub const LEAST_ENERGY: f64 = 1e-16;
+
 /// How far loading was from quasi-static. `None` for free bodies, which are not loaded by grips.
 ///
 /// The quasi-static stage ends with the first rupture: a wire that snaps always throws energy about,
@@ -165,7 +168,7 @@ impl Observer for Guard {
         });
         // The work of the two signs may cancel (a cyclic drive), so the scale is the greatest term seen.
         let scale = sample.energy.work.abs().max(sample.energy.internal().abs());
-        self.residual = (scale > 0.0).then(|| sample.energy.residual() / scale);
+        self.residual = (scale > LEAST_ENERGY).then(|| sample.energy.residual() / scale);
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use crate::base::error::{Error, Result};
 use crate::engine::Engine;
 use crate::engine::view::{Energy, Sample};
 use crate::observe::Observer;
-use crate::observe::guard::Guard;
+use crate::observe::guard::{Guard, LEAST_ENERGY};
 use crate::observe::planned::PlannedEnd;
 use crate::run::{Schedule, StopRule, assemble, in_pool};
 use crate::scene::Scene;
@@ -97,7 +97,8 @@ fn once(case: &Case, scene: &Scene, leash: &Leash) -> Result<Ended> {
     let mut wrong = Vec::new();
     let answer = case.check.map(|check| check(&seen));
     wrong.extend(ledger_faults(&seen.rows));
-    let residual = residual(&seen.rows);
+    wrong.extend(seen.passed_through());
+    let residual = Some(residual(&seen.rows));
     Ok(Ended::Ran { answer, residual, wrong, warnings: guard.warnings(&scene.spec.time) })
 }
 
@@ -144,20 +145,16 @@ fn take_row(engine: &Engine, guard: &mut Guard, rule: &mut StopRule, seen: &mut 
     Ok(())
 }
 
-/// The energy that a run had to do with [J].
+/// The energy that a run had to do with [J]; rounding alone does not count.
 fn scale(rows: &[Sample]) -> f64 {
     let of = |e: &Energy| e.work.abs().max(e.internal().abs()).max(e.kinetic.abs());
-    rows.iter().map(|row| of(&row.energy)).fold(0.0, f64::max)
+    rows.iter().map(|row| of(&row.energy)).fold(LEAST_ENERGY, f64::max)
 }
 
-/// Greatest residual of the ledger over the greatest work done [-]; `None` when nothing was done at all.
-pub fn residual(rows: &[Sample]) -> Option<f64> {
-    let scale = scale(rows);
-    let worst = rows
-        .iter()
-        .map(|row| row.energy.residual().abs())
-        .fold(0.0, |a, b| if b.is_nan() { b } else { f64::max(a, b) });
-    (scale > 0.0).then(|| worst / scale)
+/// Greatest residual of the ledger over the greatest work done [-].
+fn residual(rows: &[Sample]) -> f64 {
+    let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+    rows.iter().map(|row| row.energy.residual().abs()).fold(0.0, larger) / scale(rows)
 }
 
 /// Terms of the ledger that no closed balance would betray: dissipation that falls, energy stored that is negative.

@@ -4,17 +4,17 @@ use super::super::case::{Base, Case};
 use super::super::critical::Critical;
 use super::{LIGHT_ON_HEAVY, SEVEN};
 
-const CHAIN: Base = Base::Text(include_str!("../../../../assets/scenes/verify/chain.toml"));
-const FREE_WIRE: Base = Base::Text(include_str!("../../../../assets/scenes/verify/free-wire.toml"));
-const VIBRATION: Base = Base::Text(include_str!("../../../../assets/scenes/verify/free-vibration.toml"));
-const CROSSING: Base = Base::Text(include_str!("../../../../assets/scenes/verify/crossing-wires.toml"));
+const CHAIN: Base = Base::Builtin("verify/chain");
+const FREE_WIRE: Base = Base::Builtin("verify/free-wire");
+const VIBRATION: Base = Base::Builtin("verify/free-vibration");
+const CROSSING: Base = Base::Builtin("verify/crossing-wires");
 
 /// All of them.
 pub fn cases() -> Vec<Case> {
     let near = Critical { within: Some(0.2), ..Critical::ELASTIC };
     let gentle = [r#"wire.0.spin=["2 rad/s", "1 rad/s", "-1 rad/s"]"#, "stop.steps=4000"];
     let short = [r#"wire.0.to=["0 mm", "0 mm", "6 mm"]"#, "stop.time=", "stop.steps=4000"];
-    let pulled = ["stop.strain=2 %"];
+    let pulled = ["stop.strain=0.5 %"];
     let mut cases = vec![
         Case::new("step-chain", "critical step of an axial chain", CHAIN).critical(near),
         Case::new("step-bent", "critical step of a bent wire, clamped at one end", VIBRATION).set(short).critical(near),
@@ -51,7 +51,7 @@ pub fn cases() -> Vec<Case> {
         cases.push(
             Case::new(name, format!("critical step of seven wires with hard elastic contacts, E = {young}"), SEVEN)
                 .set(pulled)
-                .set(["contact.normal=hertz", "contact.hardness_strain=", "stop.strain=1 %", "grip.speed=5 m/s"])
+                .set(["contact.normal=hertz", "contact.hardness_strain=", "bond.law=elastic", "bond.hardening="])
                 .set([format!("material.young={young}")])
                 .critical(Critical::DISSIPATIVE),
         );
