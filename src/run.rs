@@ -21,7 +21,7 @@ use crate::engine::Engine;
 use crate::observe::Observer;
 use crate::observe::files::write_whole;
 use crate::observe::progress::Progress;
-use crate::observe::summary::{Cost, Summariser};
+use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
 use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
@@ -171,21 +171,22 @@ fn drive_and_summarise(
     let mut summariser = Summariser::new();
     let mut tables = Tables::new(&job.options.out);
     let mut progress = (!job.options.quiet).then(|| Progress::new(&spec.stop));
-    // The summariser comes first: a row that is not finite must not reach the files.
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
     observers.extend(written.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(progress.as_mut().map(|o| o as &mut dyn Observer));
     let (outcome, trouble) = drive::drive(engine, spec, &mut observers, stop)?;
-    let summary = summariser.summary(
-        spec,
-        job.bonds,
-        outcome.reason.to_string(),
-        trouble.as_ref().map(Error::to_string),
-        job.clock.cost(&outcome),
-    );
+    let cost = job.clock.cost(&outcome);
+    let closing = Closing {
+        because: outcome.reason.to_string(),
+        trouble: trouble.as_ref().map(Error::to_string),
+        quasi_static: outcome.quasi_static,
+        findings: outcome.findings,
+        cost,
+    };
+    let summary = summariser.summary(spec, job.bonds, closing);
     let kept = write_summary(&job.folder.file(folder::SUMMARY), &summary);
     match trouble {
-        Some(error) => Err(with_place(error, &job.options.out)),
+        Some(error) => Err(with_place(error, &job.options.out, summary.warnings.len() - 1)),
         None => kept.map(|()| summary),
     }
 }
@@ -196,11 +197,14 @@ fn write_summary(path: &Path, summary: &RunSummary) -> Result<()> {
     write_whole(path, &(text + "\n"))
 }
 
-/// Says where the results so far are.
-fn with_place(error: Error, out: &Path) -> Error {
+/// Says where the results so far are, and that `earlier` warnings in them may tell why.
+fn with_place(error: Error, out: &Path, earlier: usize) -> Error {
     match error {
         Error::Trouble { step, what, help } => {
-            let kept = format!("the results up to there are in {}", out.display());
+            let mut kept = format!("the results up to there are in {}", out.display());
+            if earlier > 0 {
+                kept += &format!("; its summary.json has {earlier} earlier warnings");
+            }
             let help = Some(help.map_or(kept.clone(), |help| format!("{help}; {kept}")));
             Error::Trouble { step, what, help }
         }

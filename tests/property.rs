@@ -10,5 +10,7 @@ mod conservation;
 mod drive;
 #[path = "property/ledger.rs"]
 mod ledger;
+#[path = "property/random.rs"]
+mod random;
 #[path = "property/time.rs"]
 mod time;

@@ -4,7 +4,7 @@ use super::say::say;
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run;
-use crate::scene::{self, plan::Plan};
+use crate::scene::{self, caution, plan::Plan};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -19,6 +19,7 @@ pub fn plan(args: &Args) -> Result<()> {
     let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
     say!("{}: {}\n", scene.spec.name, scene.spec.about);
     say!("{}", Plan::new(&scene.spec));
+    caution::cautions(&scene.spec).iter().for_each(|caution| say!("WARNING: {caution}\n"));
     let assembly = run::assemble(&scene)?;
     let threads = args.threads.map(usize::from);
     let estimate = run::in_pool(threads, || run::estimate::estimate(&scene.spec, assembly))??;

@@ -70,13 +70,13 @@ fn note_what_was_not_built(args: &Args) {
 }
 
 fn print(summary: &RunSummary, options: &RunOptions) {
+    for warning in &summary.warnings {
+        eprintln!("WARNING: {warning}");
+    }
     if options.quiet {
         say!("{}", one_line(summary));
     } else {
         say!("{}\n{}", summary.scene, report(summary));
-    }
-    for warning in &summary.warnings {
-        eprintln!("WARNING: {warning}");
     }
     if !options.quiet {
         say!("Results are in {}:", options.out.display());

@@ -4,7 +4,7 @@ use super::say::{self, say};
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run;
-use crate::scene::{self, builtin};
+use crate::scene::{self, builtin, caution};
 
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
@@ -51,5 +51,6 @@ fn check(args: &SceneArgs) -> Result<()> {
         assembly.len(),
         assembly.bond_count()
     );
+    caution::cautions(&scene.spec).iter().for_each(|caution| say!("WARNING: {caution}"));
     Ok(())
 }

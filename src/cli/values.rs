@@ -31,6 +31,10 @@ pub enum Colour {
     Stress,
     /// Equivalent plastic strain
     PlasticStrain,
+    /// Share of the rupture limit
+    Utilisation,
+    /// Contact pressure
+    ContactPressure,
     /// Layer
     Layer,
     /// Wire
@@ -44,6 +48,8 @@ impl From<Colour> for ColourBy {
         match colour {
             Colour::Stress => ColourBy::Stress,
             Colour::PlasticStrain => ColourBy::PlasticStrain,
+            Colour::Utilisation => ColourBy::Utilisation,
+            Colour::ContactPressure => ColourBy::ContactPressure,
             Colour::Layer => ColourBy::Layer,
             Colour::Wire => ColourBy::Wire,
             Colour::Velocity => ColourBy::Velocity,

@@ -30,6 +30,8 @@ pub trait Bonds: Send {
     fn axial_force(&self, slot: usize) -> f64;
     /// Equivalent plastic strain of a bond [-].
     fn plastic_strain(&self, slot: usize) -> f64;
+    /// Share of its rupture limit that a bond has reached [-]: it breaks at 1. 0 without a rupture criterion.
+    fn utilisation(&self, slot: usize, state: &State) -> f64;
 }
 
 /// One bond's frame, forces and history.
@@ -195,7 +197,7 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     }
 
     fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64 {
-        let Some(check) = &mut self.rupture else { return 0.0 };
+        let Some(check) = &self.rupture else { return 0.0 };
         if !self.due.iter().any(|due| *due) {
             return 0.0;
         }
@@ -250,6 +252,13 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
 
     fn plastic_strain(&self, slot: usize) -> f64 {
         self.law.plastic_strain(&self.records[slot].state)
+    }
+
+    fn utilisation(&self, slot: usize, state: &State) -> f64 {
+        let Some(check) = &self.rupture else { return 0.0 };
+        let r = &self.records[slot];
+        let section = self.law.section(&self.shape[slot], &r.state);
+        check.utilisation(slot, state, self.law.plastic_strain(&r.state), &r.force, &section)
     }
 }
 

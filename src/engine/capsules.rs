@@ -8,7 +8,7 @@
 use super::contacts::Contacts;
 use super::neighbours::{PairList, apart};
 use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, normal_energy, part, touch};
-use super::state::{CHUNK, Partial, State};
+use super::state::{CHUNK, Deepest, Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::reduced_radius;
@@ -74,6 +74,8 @@ pub struct CapsuleContacts<N: NormalLaw, T: TangentialLaw> {
     contacts: Vec<Contact<N::State, T::State>>,
     old: Vec<Contact<N::State, T::State>>,
     partial: Vec<Partial>,
+    /// The deepest contact so far.
+    deepest: Deepest,
     /// Directed candidates (particle, other particle), kept for their memory.
     directed: Vec<(u32, u32)>,
 }
@@ -87,6 +89,7 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             contacts: Vec::new(),
             old: Vec::new(),
             partial: Vec::new(),
+            deepest: Deepest::default(),
             directed: Vec::new(),
         }
     }
@@ -228,25 +231,37 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
     }
 
     fn compute(&mut self, state: &mut State) -> Partial {
-        let (laws, shared, chains) = (&self.laws, &*state, &self.chains);
+        let (laws, shared, chains, deepest) = (&self.laws, &*state, &self.chains, self.deepest);
         (self.contacts.par_chunks_mut(CHUNK), self.partial.par_iter_mut()).into_par_iter().for_each(
             |(contacts, partial)| {
-                *partial = Partial::default();
+                *partial = Partial::beyond(deepest);
                 for c in contacts {
-                    let mut own = Partial::default();
+                    let mut own = Partial::beyond(partial.deepest);
                     capsule_pair(laws, shared, chains, c, &mut own);
                     partial.add(&own.scaled(c.share));
                 }
             },
         );
         self.scatter(state);
-        let mut sum = Partial::default();
+        let mut sum = Partial::beyond(deepest);
         self.partial.iter().for_each(|p| sum.add(p));
+        self.deepest = sum.deepest;
         sum
     }
 
     fn elastic_energy(&self) -> f64 {
         self.contacts.iter().map(|c| c.share * elastic_energy(&self.laws, &c.history)).sum()
+    }
+
+    fn add_normal_forces(&self, onto: &mut [f64]) {
+        for c in self.contacts.iter().filter(|c| c.history.touching) {
+            let force = c.share * c.history.normal_force;
+            onto[c.i as usize] += force;
+            onto[c.j as usize] += force * (1.0 - c.t);
+            if c.segment {
+                onto[c.j as usize + 1] += force * c.t;
+            }
+        }
     }
 
     fn active(&self) -> usize {
@@ -278,7 +293,9 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
 }
 
 fn reduced_mass<N, S>(state: &State, c: &Contact<N, S>) -> f64 {
-    let (a, b) = (state.mass[c.i as usize], state.mass[c.j as usize]);
+    let (j, next) = (c.j as usize, c.j as usize + usize::from(c.segment));
+    // A segment weighs what its point does, from whichever end one counts: the last particle of a wire has half a mass.
+    let (a, b) = (state.mass[c.i as usize], state.mass[j] * (1.0 - c.t) + state.mass[next] * c.t);
     a * b / (a + b)
 }
 
@@ -380,4 +397,6 @@ fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
     let meeting = Meeting { normal, overlap, reach, velocity, mass, dt: state.dt };
     c.action = touch(laws, &mut c.history, &meeting, partial);
     c.twist = normal.cross(c.action.friction);
+    let least = state.radius[i].min(touching - state.radius[i]);
+    partial.deepest.meet([c.i, c.j], overlap, least, c.history.reduced_radius, c.history.normal_force);
 }

@@ -25,6 +25,8 @@ pub trait Contacts: Send {
     fn compute(&mut self, state: &mut State) -> Partial;
     /// Stored elastic energy [J].
     fn elastic_energy(&self) -> f64;
+    /// Adds to each particle the normal forces of its contacts, without regard to direction [N].
+    fn add_normal_forces(&self, onto: &mut [f64]);
     /// Number of touching pairs.
     fn active(&self) -> usize;
     /// Number of candidate pairs.

@@ -3,7 +3,8 @@
 use super::Engine;
 use super::grips::{Holds, Reaction};
 use super::view::{BondState, Energy, RunInfo, Sample, Snapshot, WireInfo};
-use crate::scene::spec::{BondLawSpec, DriveSpec, RuptureCriterion, Spec};
+use crate::reference::helix;
+use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, RuptureCriterion, Spec};
 use crate::strand::assembly::Assembly;
 
 /// Running means of the grip forces, and who is broken.
@@ -125,6 +126,13 @@ impl Engine {
         }
     }
 
+    /// An energy that is nothing [J]: what an elastic strain of 1e-9 everywhere would store.
+    pub fn negligible_energy(&self) -> f64 {
+        const STRAIN: f64 = 1e-9;
+        let volume = self.assembly.mass.iter().sum::<f64>() / (self.spec.material.density * self.spec.time.mass_scale);
+        0.5 * self.spec.material.young * STRAIN * STRAIN * volume
+    }
+
     /// Every particle.
     pub fn snapshot(&self) -> Snapshot {
         let state = &self.state;
@@ -132,11 +140,13 @@ impl Engine {
         let mut bond_state = vec![BondState::Absent; n];
         let mut bond_stress = vec![0.0; n];
         let mut plastic_strain = vec![0.0; n];
+        let mut utilisation = vec![0.0; n];
         if let Some(bonds) = &self.bonds {
             for slot in (0..n).filter(|s| self.assembly.is_bond(*s)) {
                 let p = bonds.plastic_strain(slot);
                 plastic_strain[slot] = p as f32;
                 bond_stress[slot] = (bonds.stress(slot) * 1e-6) as f32;
+                utilisation[slot] = if state.whole[slot] { bonds.utilisation(slot, state) as f32 } else { 1.0 };
                 bond_state[slot] = match (state.whole[slot], p > 0.0) {
                     (false, _) => BondState::Broken,
                     (true, true) => BondState::Yielding,
@@ -152,7 +162,18 @@ impl Engine {
             bond_state,
             bond_stress,
             plastic_strain,
+            utilisation,
+            contact_pressure: self.contact_pressure(),
         }
+    }
+
+    /// [`Snapshot::contact_pressure`] [MPa].
+    fn contact_pressure(&self) -> Vec<f32> {
+        let mut force = vec![0.0; self.state.len()];
+        if let Some(contacts) = &self.contacts {
+            contacts.stage.add_normal_forces(&mut force);
+        }
+        force.iter().enumerate().map(|(i, f)| (f / shown_area(&self.assembly, i) * 1e-6) as f32).collect()
     }
 
     /// What does not change during the run.
@@ -177,6 +198,7 @@ impl Engine {
             stress_range,
             plastic_strain_range,
             speed_range: [0.0, self.greatest_speed() as f32],
+            contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
             strain_end: self.strain_end(),
         }
     }
@@ -231,6 +253,30 @@ impl Engine {
         }
     }
 
+    /// Upper end of a range of contact pressure [MPa], with wires under an axial stress [MPa].
+    ///
+    /// A wire under tension N presses inwards with N κ per length, κ = sin²β/R its curvature; a layer carries what
+    /// all layers from itself outwards press, and feels it from both sides. A jaw adds its own pressure.
+    fn contact_pressure_range(&self, stress: f32) -> f32 {
+        let a = &self.assembly;
+        let (mut press, mut deepest) = (0.0, 0.0f64);
+        for (k, layer) in a.layers.iter().enumerate().rev() {
+            let wires = a.wires.iter().filter(|w| w.layer == k);
+            let (count, Some(wire)) = (wires.clone().count(), wires.clone().next()) else { continue };
+            if layer.lay_radius > 0.0 && layer.pitch.is_finite() {
+                let curvature = helix::curvature(layer.lay_radius, layer.pitch);
+                press += count as f64 * f64::from(stress.abs()) * wire.area() * curvature;
+            }
+            deepest = deepest.max(2.0 * press / (count as f64 * wire.diameter));
+        }
+        let jaw = match self.spec.grip.as_ref().map(|g| g.kind) {
+            Some(GripKind::Jaw { pressure }) => 2e-6 * pressure,
+            _ => 0.0,
+        };
+        let top = deepest.max(jaw);
+        round_up(if top > 0.0 { top } else { 0.1 * f64::from(stress.abs()) }) as f32
+    }
+
     fn greatest_speed(&self) -> f64 {
         let prescribed = self.spec.grip.as_ref().map_or(0.0, |g| match g.drive {
             DriveSpec::Speed(v) => v.abs(),
@@ -241,6 +287,17 @@ impl Engine {
         let fastest = prescribed.max(free).max(held);
         if fastest > 0.0 { fastest } else { 1.0 }
     }
+}
+
+/// Area that particle `i` shows to its neighbours [m²]: d a in a wire, π r² for a free sphere.
+fn shown_area(a: &Assembly, i: usize) -> f64 {
+    let d = 2.0 * a.radius[i];
+    if i >= a.wire_particles {
+        return std::f64::consts::FRAC_PI_4 * d * d;
+    }
+    // The last particle of a wire has its bond before it.
+    let spacing = if a.is_bond(i) || i == 0 { a.rest_length[i] } else { a.rest_length[i - 1] };
+    d * spacing
 }
 
 fn millimetres(p: glam::DVec3) -> [f32; 3] {

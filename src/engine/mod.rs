@@ -7,6 +7,7 @@
 pub mod bonds;
 pub mod capsules;
 pub mod contacts;
+pub mod crossing;
 pub mod grips;
 pub mod integrate;
 pub mod measure;
@@ -17,6 +18,7 @@ pub mod spheres;
 pub mod state;
 pub mod time_step;
 pub mod view;
+pub mod watch;
 
 use crate::base::error::{Error, Result};
 use crate::law::bond::Moduli;
@@ -36,6 +38,7 @@ use state::State;
 use std::time::{Duration, Instant};
 use time_step::{Bound, Stiffness};
 use view::{Energy, Rupture};
+use watch::Watch;
 
 /// Steps between two evaluations of the bound on the time step.
 const BOUND_INTERVAL: u64 = 64;
@@ -94,6 +97,7 @@ pub struct Engine {
     measures: Measures,
     least_radius: f64,
     timings: Timings,
+    watch: Watch,
 }
 
 impl Engine {
@@ -123,13 +127,14 @@ impl Engine {
             measures,
             least_radius,
             timings: Timings::default(),
+            watch: Watch::new(spec, &assembly),
             holds,
             assembly,
         };
         if engine.plan.contacts == ContactPlan::Present {
             engine.add_contacts();
         }
-        engine.forces();
+        engine.forces()?;
         // Bodies may overlap from the start; what that stores is there before any work is done.
         engine.holds.work += engine.energy().internal();
         engine.choose_step()?;
@@ -150,10 +155,13 @@ impl Engine {
     /// Advances by one step.
     ///
     /// # Errors
-    /// [`Error::Trouble`] when a value stops being finite or runs away.
+    /// [`Error::Trouble`] when a value stops being finite or runs away, when wires pass through each other, and when a
+    /// stage that was left out turns out to be needed.
     pub fn step(&mut self) -> Result<()> {
         if self.state.step.is_multiple_of(BOUND_INTERVAL) && self.state.step > 0 {
             self.choose_step()?;
+            self.watch_stages()?;
+            self.watch_necking();
         }
         let began = Instant::now();
         let kicked = 0.5 * (self.state.dt + self.next_dt);
@@ -175,12 +183,11 @@ impl Engine {
         if let Some(c) = &mut self.contacts {
             c.stale |= c.neighbours.stale(drifted.residual2, &stretch);
         }
-        self.forces();
-        Ok(())
+        self.forces()
     }
 
     /// Forces at the present positions.
-    fn forces(&mut self) {
+    fn forces(&mut self) -> Result<()> {
         let began = Instant::now();
         if let Some(bonds) = &mut self.bonds {
             let partial = bonds.compute(&mut self.state);
@@ -192,6 +199,10 @@ impl Engine {
         }
         let after_bonds = Instant::now();
         self.timings.bonds += after_bonds - began;
+        let stale = self.contacts.as_ref().is_some_and(|c| c.stale);
+        if stale {
+            self.inspect()?;
+        }
         if let Some(c) = &mut self.contacts {
             if c.stale {
                 let list = c.neighbours.search(&self.state, self.holds.stretch);
@@ -208,10 +219,15 @@ impl Engine {
             self.energy.friction += partial.friction;
             self.energy.damping += partial.damping;
             self.timings.contacts += after_search.elapsed();
+            self.watch_contacts(partial.deepest);
+            if stale {
+                self.watch_stretch();
+            }
         }
         let before_gather = Instant::now();
         integrate::gather(&mut self.state, self.plan.rotations, self.contacts.is_some());
         self.timings.integrate += before_gather.elapsed();
+        Ok(())
     }
 
     /// Breaks what has reached its limit and books it.
@@ -269,9 +285,15 @@ impl Engine {
         let hold = &self.state.hold;
         self.bound = self.stiffness.bound(&self.state, |p| hold[p] != 0);
         self.timings.time_step += began.elapsed();
+        self.next_dt = self.wanted_step()?;
+        self.watch_step();
+        Ok(())
+    }
+
+    /// The step to take from here on [s].
+    fn wanted_step(&self) -> Result<f64> {
         if let Some(step) = self.spec.time.step {
-            self.next_dt = step;
-            return Ok(());
+            return Ok(step);
         }
         let stiff = (self.spec.time.safety * self.bound.step).min(self.impact_step());
         let wanted = if self.bonds.is_some() && stiff.is_finite() { stiff } else { stiff.min(self.flight_step()) };
@@ -284,10 +306,8 @@ impl Engine {
         }
         // What is foreseen at one step may not hold for a much longer one.
         let wanted = if self.next_dt > 0.0 { wanted.min(GROWTH * self.next_dt) } else { wanted * self.start() };
-        if wanted.is_finite() && (self.next_dt == 0.0 || (wanted / self.next_dt - 1.0).abs() > 0.01) {
-            self.next_dt = wanted;
-        }
-        Ok(())
+        let changes = wanted.is_finite() && (self.next_dt == 0.0 || (wanted / self.next_dt - 1.0).abs() > 0.01);
+        Ok(if changes { wanted } else { self.next_dt })
     }
 
     /// Share of the step that the first steps take [-]: bodies that overlap from the start are thrown apart in a few
@@ -341,10 +361,10 @@ impl Engine {
             })
             .unwrap_or(0);
         let place = match self.assembly.wire_of[worst] {
-            u32::MAX => format!("free particle {worst}"),
+            u32::MAX => self.body(worst),
             wire => {
                 let first = self.assembly.wires[wire as usize].first;
-                format!("bond {} of wire {}", worst - first, wire + 1)
+                format!("particle {} of {}", worst - first + 1, self.body(worst))
             }
         };
         let moved = far(worst);
@@ -411,11 +431,7 @@ impl Engine {
         if !self.bound.step.is_finite() {
             return "nothing is stiff".into();
         }
-        let kind = if self.bound.bond { "a bond" } else { "a contact" };
-        let place = match self.assembly.wire_of[self.bound.particle] {
-            u32::MAX => "a free sphere".to_string(),
-            wire => format!("wire {}", wire + 1),
-        };
+        let (kind, place) = (self.bound.kind(), self.body(self.bound.particle));
         format!(
             "{} of {kind} in {place}; bound {:.3e} s × safety {}",
             self.bound.mode, self.bound.step, self.spec.time.safety

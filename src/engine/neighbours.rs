@@ -11,6 +11,11 @@ use crate::strand::assembly::Assembly;
 use glam::DVec3;
 use rayon::prelude::*;
 
+/// The search follows bonds up to this multiple of the longest stress-free length [-]: one bond that necks without end
+/// must not make every particle a neighbour of every other.
+pub const MOST_STRETCH: f64 = 3.0;
+const SQRT_HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
 /// Candidate pairs (i < j), sorted.
 #[derive(Debug, Default)]
 pub struct PairList {
@@ -56,12 +61,16 @@ impl Reference<'_> {
 pub struct Neighbours {
     /// Skin beyond the sum of the undeformed radii [m].
     skin: f64,
-    /// Shape of wires in contact.
-    shape: Shape,
-    /// Extra reach, for contacts that are not between particle centres [m]; see [`Neighbours::reach_beyond`].
+    /// Extra reach, for contacts that are not between particle centres [m]; from the bonds at the last search.
     margin: f64,
-    /// Largest undeformed radius [m].
+    /// What touches.
+    shape: Shape,
+    /// Largest and least undeformed radius [m].
     largest: f64,
+    least: f64,
+    /// Longest stress-free bond, and longest bond at the last search [m].
+    rest: f64,
+    longest: f64,
     /// Bonded neighbours along a wire that cannot touch: |i − j| below this per wire.
     apart: Vec<u32>,
     wire_of: Vec<u32>,
@@ -95,13 +104,16 @@ pub fn apart(assembly: &Assembly) -> Vec<u32> {
 }
 
 impl Neighbours {
-    /// For `assembly` with wires of this shape; `skin` in m.
+    /// For `assembly`; `skin` in m.
     pub fn new(assembly: &Assembly, skin: f64, shape: Shape) -> Self {
         Self {
             skin,
-            shape,
             margin: 0.0,
+            shape,
             largest: assembly.radius.iter().copied().fold(0.0, f64::max),
+            least: assembly.radius.iter().copied().fold(f64::MAX, f64::min),
+            rest: assembly.rest_length.iter().copied().fold(0.0, f64::max),
+            longest: 0.0,
             apart: apart(assembly),
             wire_of: assembly.wire_of.clone(),
             reference: Vectors::default(),
@@ -141,7 +153,8 @@ impl Neighbours {
         self.reference.clone_from(&state.x);
         self.stretch = now;
         self.rebuilds += 1;
-        self.margin = self.reach_beyond(state);
+        self.longest = longest_bond(state);
+        self.margin = self.needed_margin();
         self.cells.fill(state, 2.0 * self.largest + self.margin + self.skin);
         let chunks = state.len().div_ceil(CHUNK);
         self.found.resize_with(chunks, Vec::new);
@@ -166,18 +179,41 @@ impl Neighbours {
         &self.list
     }
 
-    /// How much further than its surface the nearest end of a segment may lie when another body touches it [m]: half of
-    /// the longest bond, and of what it can grow by until the next search, which a stretch of the whole or a motion of
-    /// two particles by the skin brings about.
-    fn reach_beyond(&self, state: &State) -> f64 {
-        if self.shape == Shape::Sphere {
-            return 0.0;
+    /// Extra reach for what touches between particle centres, until the next search [m].
+    ///
+    /// The nearest point of a capsule's segment of length l lies nearer than its ends do: √(D² + l²/4) − D at touching
+    /// distance D, most for the thinnest pair. Spheres need none of that, but two segments that cross in the middle of
+    /// their gaps have their ends √½ l apart, and must be seen to cross ([`super::crossing`]).
+    fn needed_margin(&self) -> f64 {
+        // Until it is time for the next search the affine strain grows by less than skin over reach, and particles move
+        // by less than the skin beside it.
+        let reach = 2.0 * self.least;
+        let grown = self.longest * (1.0 + self.skin / (reach + self.skin)) + self.skin;
+        match self.shape {
+            Shape::Capsule => reach.hypot(0.5 * grown.min(MOST_STRETCH * self.rest)) - reach,
+            Shape::Sphere => (SQRT_HALF * self.longest.min(MOST_STRETCH * self.rest) - reach).max(0.0),
         }
-        let length = |slot: usize| (state.x.get(slot + 1) - state.x.get(slot)).length();
-        let longest = (0..state.len()).filter(|slot| state.whole[*slot]).map(length).fold(0.0, f64::max);
-        let diameter = 2.0 * self.largest;
-        let grown = longest * (1.0 + self.skin / diameter) + self.skin;
-        diameter.hypot(0.5 * grown) - diameter
+    }
+
+    /// The list, and the positions, of the last search.
+    pub fn last(&self) -> (&PairList, &Vectors) {
+        (&self.list, &self.reference)
+    }
+
+    /// Skin [m].
+    pub fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// Longest bond at the last search [m].
+    pub fn longest(&self) -> f64 {
+        self.longest
+    }
+
+    /// Longest bond at the last search over the longest stress-free one [-]; contacts on bonds beyond [`MOST_STRETCH`]
+    /// are not all found.
+    pub fn stretched(&self) -> f64 {
+        if self.rest > 0.0 { self.longest / self.rest } else { 0.0 }
     }
 
     fn can_touch(&self, i: usize, j: usize, state: &State, broken: &[u32]) -> bool {
@@ -187,7 +223,7 @@ impl Neighbours {
         }
         if state.hold[i] != 0 && state.hold[i] == state.hold[j] {
             // Points between particles move where one of the two is free, so particles at the edge of a hold count.
-            let edge = self.margin > 0.0 && (on_edge(state, i) || on_edge(state, j));
+            let edge = self.shape == Shape::Capsule && (on_edge(state, i) || on_edge(state, j));
             if !edge {
                 return false;
             }
@@ -199,6 +235,12 @@ impl Neighbours {
         }
         true
     }
+}
+
+/// Length of the longest bond that holds [m].
+fn longest_bond(state: &State) -> f64 {
+    let bonds = (0..state.len()).filter(|slot| state.whole[*slot]);
+    bonds.map(|slot| (state.x.get(slot + 1) - state.x.get(slot)).length_squared()).fold(0.0, f64::max).sqrt()
 }
 
 /// Whether a particle is bonded to one that is not in the same hold.
@@ -323,6 +365,21 @@ mod tests {
         }
         assert_eq!(found, expected);
         assert!(found.len() > 300);
+    }
+
+    /// A thin wire's particle rests on the middle of a bond that is three times as long as at rest: as far from both ends
+    /// as can be.
+    #[test]
+    fn a_stretched_segment_is_found_from_its_middle() {
+        let (mut assembly, _) = cloud(3, 1.0, 0.1);
+        assembly.radius[2] = 0.02;
+        assembly.rest_length[0] = 0.2;
+        assembly.position =
+            [0.0, 0.6, 0.3].map(|x| DVec3::new(x, if x == 0.3 { 0.119 } else { 0.0 }, 0.0)).into_iter().collect();
+        let state = State::new(&assembly);
+        let found = |shape| Neighbours::new(&assembly, 0.01, shape).search(&state, Stretch::default()).pairs.clone();
+        assert!(found(Shape::Capsule).contains(&(0, 2)) && found(Shape::Capsule).contains(&(1, 2)));
+        assert!(!found(Shape::Sphere).contains(&(0, 2)));
     }
 
     #[test]

@@ -51,7 +51,7 @@ pub struct History<N, T> {
     /// Overlap [m], sum of radii [m] and elastic normal force [N] at the last step.
     pub overlap: f64,
     reach: f64,
-    normal_force: f64,
+    pub normal_force: f64,
     /// Force of the dashpot at the last step [N].
     viscous: f64,
     /// Tangent stiffnesses at the last step [N/m]: greatest normal, tangential.

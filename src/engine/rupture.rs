@@ -55,44 +55,54 @@ impl RuptureCheck {
 
     /// Slots that broke, in order, with the cause. `bond(slot)` gives (p, forces, section).
     pub fn broken<'a>(
-        &mut self,
+        &self,
         whole: &[bool],
         state: &State,
         bond: impl Fn(usize) -> (f64, &'a BondForce, Section),
     ) -> Vec<(usize, Criterion)> {
-        let factor = |slot: usize| self.factor.get(slot).copied().unwrap_or(1.0);
-        let slots = (0..whole.len()).filter(|s| whole[*s]);
+        let reached = |slot: usize| {
+            let (p, force, section) = bond(slot);
+            let demand = self.demand(slot, state, p, force, &section);
+            (demand.value >= demand.limit).then_some((slot, demand.cause))
+        };
+        (0..whole.len()).filter(|s| whole[*s]).filter_map(reached).collect()
+    }
+
+    /// Share of its limit that a bond has reached [-]; it breaks at 1.
+    pub fn utilisation(&self, slot: usize, state: &State, p: f64, force: &BondForce, section: &Section) -> f64 {
+        let demand = self.demand(slot, state, p, force, section);
+        demand.value / demand.limit
+    }
+
+    /// What the criterion looks at in a bond with equivalent plastic strain `p` [-], and its limit there.
+    fn demand(&self, slot: usize, state: &State, p: f64, force: &BondForce, section: &Section) -> Demand {
+        let factor = self.factor.get(slot).copied().unwrap_or(1.0);
         match &self.criterion {
-            RuptureCriterion::PlasticStrain { .. } => slots
-                .filter(|s| bond(*s).0 >= self.plastic_limit[*s])
-                .map(|s| (s, RuptureCause::PlasticStrain))
-                .collect(),
+            RuptureCriterion::PlasticStrain { .. } => {
+                Demand { value: p, limit: self.plastic_limit[slot], cause: RuptureCause::PlasticStrain }
+            }
             RuptureCriterion::BeamStress { tensile, shear, moment_share } => {
                 let law = BeamStress { tensile: *tensile, shear: *shear, moment_share: *moment_share };
-                slots
-                    .filter_map(|s| {
-                        let (_, force, section) = bond(s);
-                        let [tension, shear] = law.utilisation(force, &section);
-                        let limit = factor(s);
-                        if tension >= limit {
-                            Some((s, RuptureCause::Tension))
-                        } else {
-                            (shear >= limit).then_some((s, RuptureCause::Shear))
-                        }
-                    })
-                    .collect()
+                let [tension, shear] = law.utilisation(force, section);
+                let (value, cause) =
+                    if tension >= shear { (tension, RuptureCause::Tension) } else { (shear, RuptureCause::Shear) };
+                Demand { value, limit: factor, cause }
             }
-            RuptureCriterion::FibreStrain { strain } => slots
-                .filter(|s| {
-                    let (_, _, section) = bond(*s);
-                    let d = state.x.get(s + 1) - state.x.get(*s);
-                    let axial = d.length() / self.rest_length[*s] - 1.0;
-                    fibre_strain(axial, curvature(state, *s, d), section.radius) >= strain * factor(*s)
-                })
-                .map(|s| (s, RuptureCause::FibreStrain))
-                .collect(),
+            RuptureCriterion::FibreStrain { strain } => {
+                let d = state.x.get(slot + 1) - state.x.get(slot);
+                let axial = d.length() / self.rest_length[slot] - 1.0;
+                let value = fibre_strain(axial, curvature(state, slot, d), section.radius);
+                Demand { value, limit: strain * factor, cause: RuptureCause::FibreStrain }
+            }
         }
     }
+}
+
+/// What a criterion looks at in one bond, against its limit there, in the same unit.
+struct Demand {
+    value: f64,
+    limit: f64,
+    cause: Criterion,
 }
 
 /// Curvature of the wire at bond `slot` [1/m], counted from a straight wire: the mean over the angles with its two

@@ -3,7 +3,7 @@
 use super::contacts::Contacts;
 use super::neighbours::PairList;
 use super::pair::{History, Laws, Meeting, elastic_energy, foreseen_stiffness, part, touch};
-use super::state::{CHUNK, Partial, State};
+use super::state::{CHUNK, Deepest, Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::reduced_radius;
@@ -42,6 +42,8 @@ pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     of_particle: Vec<u32>,
     start: Vec<u32>,
     partial: Vec<Partial>,
+    /// The deepest contact so far.
+    deepest: Deepest,
 }
 
 impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
@@ -55,6 +57,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
             of_particle: Vec::new(),
             start: Vec::new(),
             partial: Vec::new(),
+            deepest: Deepest::default(),
         }
     }
 
@@ -143,27 +146,35 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     }
 
     fn compute(&mut self, state: &mut State) -> Partial {
-        let laws = &self.laws;
+        let (laws, deepest) = (&self.laws, self.deepest);
         let shared = &*state;
         (self.contacts.par_chunks_mut(CHUNK), self.actions.par_chunks_mut(CHUNK), self.partial.par_iter_mut())
             .into_par_iter()
             .with_max_len(1)
             .for_each(|(contacts, actions, partial)| {
                 // The sum stays on this thread's stack: its neighbours in memory belong to other threads.
-                let mut sum = Partial::default();
+                let mut sum = Partial::beyond(deepest);
                 for (contact, action) in contacts.iter_mut().zip(actions) {
                     *action = sphere_pair(laws, shared, contact, &mut sum);
                 }
                 *partial = sum;
             });
         self.gather(state);
-        let mut sum = Partial::default();
+        let mut sum = Partial::beyond(deepest);
         self.partial.iter().for_each(|p| sum.add(p));
+        self.deepest = sum.deepest;
         sum
     }
 
     fn elastic_energy(&self) -> f64 {
         self.contacts.iter().map(|c| elastic_energy(&self.laws, &c.history)).sum()
+    }
+
+    fn add_normal_forces(&self, onto: &mut [f64]) {
+        for c in &self.contacts {
+            onto[c.i as usize] += c.history.normal_force;
+            onto[c.j as usize] += c.history.normal_force;
+        }
     }
 
     fn active(&self) -> usize {
@@ -236,5 +247,7 @@ fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
     let mass = 1.0 / (state.inverse_mass[i] + state.inverse_mass[j]);
     let meeting = Meeting { normal, overlap, reach, velocity, mass, dt: state.dt };
     let pair = touch(laws, &mut c.history, &meeting, partial);
+    let least = state.radius[i].min(state.radius[j]);
+    partial.deepest.meet([c.i, c.j], overlap, least, c.history.reduced_radius, c.history.normal_force);
     Action { force: pair.force, twist: normal.cross(pair.friction), sunk: 0.5 * sunk(&c.history) }
 }

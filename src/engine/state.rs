@@ -148,9 +148,41 @@ pub struct Partial {
     pub thinning: f64,
     /// Elastic energy of contacts on wires that broke under them [J].
     pub released: f64,
+    /// The deepest contact.
+    pub deepest: Deepest,
+}
+
+/// The deepest of some contacts.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Deepest {
+    /// Overlap over the smaller of the two current radii [-].
+    pub ratio: f64,
+    /// The particle and the other one, or the first particle of the segment touched.
+    pub pair: [u32; 2],
+    /// Normal force [N].
+    pub force: f64,
+    /// Area πR*δ of the contact [m²].
+    pub area: f64,
+}
+
+impl Deepest {
+    /// Takes in a touching pair with its overlap, the smaller radius [m], R* [m] and the normal force [N]. No division
+    /// unless it is the deepest so far: every contact comes by at every step.
+    #[inline(always)]
+    pub fn meet(&mut self, pair: [u32; 2], overlap: f64, radius: f64, reduced_radius: f64, force: f64) {
+        if overlap > self.ratio * radius {
+            let area = std::f64::consts::PI * reduced_radius * overlap;
+            *self = Self { ratio: overlap / radius, pair, force, area };
+        }
+    }
 }
 
 impl Partial {
+    /// Nothing yet, but a contact counts as deepest only beyond `deepest`: while a run has seen deeper ones, none does.
+    pub fn beyond(deepest: Deepest) -> Self {
+        Self { deepest, ..Self::default() }
+    }
+
     /// Adds another partial sum.
     pub fn add(&mut self, other: &Partial) {
         self.plastic += other.plastic;
@@ -158,9 +190,13 @@ impl Partial {
         self.friction += other.friction;
         self.thinning += other.thinning;
         self.released += other.released;
+        // The first of equals wins, in the order of chunks.
+        if other.deepest.ratio > self.deepest.ratio {
+            self.deepest = other.deepest;
+        }
     }
 
-    /// All terms times `factor`.
+    /// All energies times `factor`.
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
             plastic: self.plastic * factor,
@@ -168,6 +204,7 @@ impl Partial {
             friction: self.friction * factor,
             thinning: self.thinning * factor,
             released: self.released * factor,
+            deepest: self.deepest,
         }
     }
 }

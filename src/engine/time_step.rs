@@ -64,6 +64,13 @@ pub struct Bound {
     pub mode: &'static str,
 }
 
+impl Bound {
+    /// "a bond" or "a contact".
+    pub fn kind(&self) -> &'static str {
+        if self.bond { "a bond" } else { "a contact" }
+    }
+}
+
 /// Collects stiffnesses and turns them into the bound. Kept between calls so that it does not allocate.
 #[derive(Default)]
 pub struct Stiffness {

@@ -45,6 +45,8 @@ pub struct RunInfo {
     pub plastic_strain_range: [f32; 2],
     /// The same for particle speed [m/s].
     pub speed_range: [f32; 2],
+    /// A range of contact pressure for a colour scale [MPa]; single particles may exceed it.
+    pub contact_pressure_range: [f32; 2],
     /// The strain at which the run is expected to end [-], for axes and progress; `None` when unknown.
     pub strain_end: Option<f64>,
 }
@@ -163,6 +165,72 @@ pub struct Snapshot {
     pub bond_stress: Vec<f32>,
     /// Equivalent plastic strain [-], one per bond slot.
     pub plastic_strain: Vec<f32>,
+    /// Share of its rupture limit that a bond has reached [-], one per bond slot: it breaks at 1; 0 without a rupture
+    /// criterion or without a bond.
+    pub utilisation: Vec<f32>,
+    /// Normal forces of a particle's contacts over the area that it shows to its neighbours [MPa], one per particle:
+    /// ΣF_n / (d a) in a wire of diameter d with spacing a, ΣF_n / (π r²) for a free sphere.
+    pub contact_pressure: Vec<f32>,
+}
+
+/// Something that the user must know about a run, found while it goes on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Notice {
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Strain of the body [-].
+    pub strain: f64,
+    /// What was found, with numbers and place, and what to do about it: one or two sentences.
+    pub text: String,
+}
+
+/// What an engine has seen of its own limits over a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Findings {
+    /// The deepest contact; `None` when nothing touched.
+    pub deepest: Option<DeepestContact>,
+    /// The least time step.
+    pub least_step: StepAt,
+    /// The greatest time step.
+    pub greatest_step: StepAt,
+}
+
+/// The deepest contact of a run, when it was deepest.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DeepestContact {
+    /// Overlap over the smaller of the two radii [-].
+    pub ratio: f64,
+    /// The two bodies, such as "wire 3 (outer layer)".
+    pub bodies: [String; 2],
+    /// Where [m].
+    pub position: [f64; 3],
+    /// Normal force [N].
+    pub force: f64,
+    /// Force over the area πR*δ of the contact [Pa].
+    pub pressure: f64,
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Strain of the body [-].
+    pub strain: f64,
+}
+
+/// A time step, and when it was chosen.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StepAt {
+    /// The time step [s].
+    pub seconds: f64,
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Strain of the body [-].
+    pub strain: f64,
+    /// What limited it, in words.
+    pub limit: String,
 }
 
 /// Why a bond broke.

@@ -1,23 +1,26 @@
-//! Watches whether the run can be trusted: every value finite, and loading quasi-static.
+//! Watches whether the run can be trusted: every value finite, energy accounted for, loading quasi-static.
 
-use super::Observer;
 use super::units::percent;
 use crate::base::error::{Error, Result};
-use crate::engine::view::{RunInfo, Rupture, Sample};
+use crate::engine::view::{Notice, RunInfo, Rupture, Sample};
 use crate::scene::spec::TimeSpec;
 use serde::Serialize;
-use std::sync::Arc;
 
 /// Rows whose internal energy is below this share of the run's greatest one say nothing about kinetic over internal
 /// energy [-]: a pull starts with kinetic energy and no strain, where the ratio is infinite. The usual demand on
 /// quasi-static analyses by explicit integration is a small ratio throughout most of the process, not at its start.
 const LEAST_INTERNAL_SHARE: f64 = 0.05;
 
+/// Share of the expected strain from which a row is judged as it comes [-]: even an elastic body, whose energy goes with
+/// the square of its strain, then has [`LEAST_INTERNAL_SHARE`] of its greatest energy.
+const TELLING_STRAIN: f64 = 0.25;
+
 /// Unbalanced share of the energy ledger above which a run warns [-].
 const ENERGY_LIMIT: f64 = 0.01;
 
-/// Energy of a run below which its ledger says nothing [J]: rounding alone stirs a body at rest by about 1e-25 J.
-pub const LEAST_ENERGY: f64 = 1e-16;
+/// The same, above which it stops [-]. A step that is not stable feeds energy in without end; everything else that was
+/// tried, jaws that crush loose pieces included, stays below the warning.
+const ENERGY_STOP: f64 = 0.2;
 
 /// How far loading was from quasi-static. `None` for free bodies, which are not loaded by grips.
 ///
@@ -43,22 +46,114 @@ struct Row {
     before_rupture: bool,
 }
 
-/// The observer. It stops a run whose values stop being finite.
-#[derive(Default)]
+/// Where a run stands, for a notice.
+#[derive(Default, Clone, Copy)]
+struct Now {
+    step: u64,
+    time: f64,
+    strain: f64,
+}
+
+/// Judges the rows of a run. What must stop the run is an error, what the user must know is a [`Notice`].
 pub struct Guard {
+    limits: TimeSpec,
+    /// Energies below this one are nothing [J].
+    negligible: f64,
     rows: Vec<Row>,
     gripped: bool,
+    strain_end: f64,
     ruptured: bool,
+    /// Greatest unbalanced share of the ledger [-].
     residual: Option<f64>,
+    now: Now,
+    notices: Vec<Notice>,
+    said: Vec<Said>,
+}
+
+/// What is said once in a run.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Said {
+    Kinetic,
+    Mismatch,
+    Ledger,
 }
 
 impl Guard {
-    /// A guard that has seen nothing.
-    pub fn new() -> Self {
-        Self::default()
+    /// A guard with the limits of a scene. Energies below `negligible` [J] are rounding: a body at rest has no ledger to
+    /// close.
+    pub fn new(limits: &TimeSpec, negligible: f64) -> Self {
+        Self {
+            limits: limits.clone(),
+            negligible,
+            rows: Vec::new(),
+            gripped: false,
+            strain_end: f64::INFINITY,
+            ruptured: false,
+            residual: None,
+            now: Now::default(),
+            notices: Vec::new(),
+            said: Vec::new(),
+        }
     }
 
-    /// What it has seen so far.
+    /// Before the first row.
+    pub fn start(&mut self, info: &RunInfo) {
+        self.gripped = info.is_pulled();
+        self.strain_end = info.strain_end.unwrap_or(f64::INFINITY);
+    }
+
+    /// Refuses a row that nobody should see.
+    ///
+    /// # Errors
+    /// [`Error::Trouble`] that names the first value that is not finite.
+    pub fn check(&self, sample: &Sample) -> Result<()> {
+        first_not_finite(sample).map_or(Ok(()), |what| {
+            Err(Error::Trouble {
+                step: sample.step,
+                what,
+                help: Some("try a smaller time.safety, or stronger damping".into()),
+            })
+        })
+    }
+
+    /// Takes in a row.
+    ///
+    /// # Errors
+    /// [`Error::Trouble`] when a fifth of the energy is unaccounted for.
+    pub fn row(&mut self, sample: &Sample) -> Result<()> {
+        self.now = Now { step: sample.step, time: sample.time, strain: sample.strain };
+        let row = Row {
+            kinetic: sample.energy.kinetic,
+            internal: sample.energy.internal(),
+            force: sample.grip_force,
+            before_rupture: !self.ruptured && sample.bonds_broken == 0,
+        };
+        if self.gripped && row.before_rupture && sample.strain.abs() >= TELLING_STRAIN * self.strain_end.abs() {
+            self.judge_kinetic(row.kinetic / row.internal);
+        }
+        self.rows.push(row);
+        self.judge_ledger(sample)
+    }
+
+    /// A bond broke: the quasi-static stage is over.
+    pub fn rupture(&mut self, rupture: &Rupture) {
+        if !std::mem::replace(&mut self.ruptured, true) {
+            self.now = Now { step: rupture.step, time: rupture.time, strain: rupture.strain };
+            self.judge_loading();
+        }
+    }
+
+    /// After the last row.
+    pub fn finish(&mut self) {
+        self.judge_loading();
+    }
+
+    /// Notices since the last call.
+    pub fn take_notices(&mut self) -> Vec<Notice> {
+        std::mem::take(&mut self.notices)
+    }
+
+    /// How far from quasi-static loading was so far.
     pub fn quasi_static(&self) -> QuasiStatic {
         if !self.gripped {
             return QuasiStatic::default();
@@ -72,37 +167,77 @@ impl Guard {
         }
     }
 
-    /// What the user must know about the run before believing it.
-    pub fn warnings(&self, limits: &TimeSpec) -> Vec<String> {
+    /// Greatest share of the energy in the ledger that was unaccounted for [-]; `None` when there was none.
+    pub fn greatest_residual(&self) -> Option<f64> {
+        self.residual
+    }
+
+    fn say(&mut self, what: Said, text: String) {
+        if !self.said.contains(&what) {
+            self.said.push(what);
+            let Now { step, time, strain } = self.now;
+            self.notices.push(Notice { step, time, strain, text });
+        }
+    }
+
+    /// Judges the quasi-static stage as a whole.
+    fn judge_loading(&mut self) {
         let seen = self.quasi_static();
-        let mut warnings = Vec::new();
-        if let Some(ratio) = seen.kinetic_over_internal_max
-            && ratio > limits.kinetic_limit
-        {
-            warnings.push(format!(
-                "loading was not quasi-static: kinetic energy reached {ratio:.3} of the internal energy before \
-                 the first rupture (limit time.kinetic_limit = {}); pull more slowly",
-                limits.kinetic_limit
-            ));
+        if let Some(ratio) = seen.kinetic_over_internal_max {
+            self.judge_kinetic(ratio);
         }
         if let Some(mismatch) = seen.grip_force_mismatch_percent
-            && mismatch > percent(limits.mismatch_limit)
+            && mismatch > percent(self.limits.mismatch_limit)
         {
-            warnings.push(format!(
-                "loading was not quasi-static: the two grip forces differed by {mismatch:.2} % of the peak force \
-                 before the first rupture (limit time.mismatch_limit = {} %); pull more slowly",
-                percent(limits.mismatch_limit)
-            ));
+            let limit = percent(self.limits.mismatch_limit);
+            let until = percent(self.now.strain);
+            self.say(
+                Said::Mismatch,
+                format!(
+                    "loading was not quasi-static: up to strain {until:.2} % the two grip forces differed by \
+                     {mismatch:.2} % of the peak force (limit time.mismatch_limit = {limit} %); pull more slowly"
+                ),
+            );
         }
-        if let Some(residual) = self.residual
-            && residual.abs() > ENERGY_LIMIT
-        {
-            warnings.push(format!(
-                "the energy ledger does not close: {:.2} % of the energy in it is unaccounted for",
-                percent(residual)
-            ));
+    }
+
+    fn judge_kinetic(&mut self, ratio: f64) {
+        if ratio > self.limits.kinetic_limit {
+            let (limit, until) = (self.limits.kinetic_limit, percent(self.now.strain));
+            self.say(
+                Said::Kinetic,
+                format!(
+                    "loading was not quasi-static: up to strain {until:.2} % kinetic energy reached {ratio:.3} of the \
+                     internal energy (limit time.kinetic_limit = {limit}); pull more slowly"
+                ),
+            );
         }
-        warnings
+    }
+
+    fn judge_ledger(&mut self, sample: &Sample) -> Result<()> {
+        // The work of the two signs may cancel (a cyclic drive), so the scale is the greatest term seen.
+        let scale = sample.energy.work.abs().max(sample.energy.internal().abs());
+        let gap = sample.energy.residual();
+        if scale.max(gap.abs()) <= self.negligible {
+            return Ok(());
+        }
+        let share = gap.abs() / scale;
+        self.residual = Some(self.residual.map_or(share, |greatest| greatest.max(share)));
+        if share <= ENERGY_LIMIT {
+            return Ok(());
+        }
+        let what = format!(
+            "the energy ledger does not close: {:.3e} J, {:.2} % of the energy in it, {}",
+            gap.abs(),
+            percent(share),
+            if gap > 0.0 { "have vanished" } else { "came from nowhere" }
+        );
+        let help = "lower time.safety (or time.step, below the bound), the speed, or give contacts and bonds damping";
+        if share > ENERGY_STOP {
+            return Err(Error::Trouble { step: sample.step, what, help: Some(help.into()) });
+        }
+        self.say(Said::Ledger, format!("{what}, at t = {:.3e} s; {help}", sample.time));
+        Ok(())
     }
 
     fn kinetic_ratio<'a>(&'a self, rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
@@ -146,42 +281,6 @@ fn first_not_finite(sample: &Sample) -> Option<String> {
         })
 }
 
-impl Observer for Guard {
-    fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
-        *self = Self { gripped: info.is_pulled(), ..Self::default() };
-        Ok(())
-    }
-
-    fn sample(&mut self, sample: &Sample) -> Result<()> {
-        if let Some(what) = first_not_finite(sample) {
-            return Err(Error::Trouble {
-                step: sample.step,
-                what,
-                help: Some("try a smaller time.safety, or stronger damping".into()),
-            });
-        }
-        self.rows.push(Row {
-            kinetic: sample.energy.kinetic,
-            internal: sample.energy.internal(),
-            force: sample.grip_force,
-            before_rupture: !self.ruptured && sample.bonds_broken == 0,
-        });
-        // The work of the two signs may cancel (a cyclic drive), so the scale is the greatest term seen.
-        let scale = sample.energy.work.abs().max(sample.energy.internal().abs());
-        self.residual = (scale > LEAST_ENERGY).then(|| sample.energy.residual() / scale);
-        Ok(())
-    }
-
-    fn rupture(&mut self, _rupture: &Rupture) -> Result<()> {
-        self.ruptured = true;
-        Ok(())
-    }
-
-    fn finish(&mut self) -> Result<()> {
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,27 +302,38 @@ mod tests {
         Sample { energy, grip_force: force, ..Sample::default() }
     }
 
+    fn new() -> Guard {
+        Guard { gripped: true, ..Guard::new(&limits(), 1e-9) }
+    }
+
     fn gripped(rows: &[Sample]) -> Guard {
-        let mut guard = Guard { gripped: true, ..Guard::default() };
-        rows.iter().for_each(|row| guard.sample(row).unwrap());
+        let mut guard = new();
+        rows.iter().for_each(|row| guard.row(row).unwrap());
         guard
+    }
+
+    /// Texts of all notices at the end of the run.
+    fn said(guard: &mut Guard) -> Vec<String> {
+        guard.finish();
+        guard.take_notices().into_iter().map(|notice| notice.text).collect()
     }
 
     #[test]
     fn a_slow_pull_raises_no_warning() {
         // The first row has kinetic energy and no internal energy, as every pull has.
-        let guard =
+        let mut guard =
             gripped(&[row(1.0, 0.0, [0.0, 0.0]), row(1.0, 50.0, [99.0, 100.0]), row(1.0, 100.0, [100.0, 100.0])]);
         assert_eq!(guard.quasi_static().kinetic_over_internal_max, Some(0.02));
         assert_eq!(guard.quasi_static().grip_force_mismatch_percent, Some(1.0));
-        assert_eq!(guard.warnings(&limits()), Vec::<String>::new());
+        assert_eq!(said(&mut guard), Vec::<String>::new());
     }
 
     #[test]
     fn a_fast_pull_is_said_to_be_fast() {
-        let guard = gripped(&[row(10.0, 100.0, [90.0, 100.0])]);
-        let warnings = guard.warnings(&limits());
+        let mut guard = gripped(&[row(10.0, 100.0, [90.0, 100.0])]);
+        let warnings = said(&mut guard);
         assert_eq!(warnings.len(), 2, "{warnings:?}");
+        assert_eq!(said(&mut guard).len(), 0, "each is said once");
         assert!(warnings[0].contains("time.kinetic_limit") && warnings[1].contains("time.mismatch_limit"));
     }
 
@@ -232,7 +342,7 @@ mod tests {
         let mut guard = gripped(&[row(1.0, 100.0, [100.0, 100.0])]);
         let mut after = row(20.0, 100.0, [50.0, 100.0]);
         after.bonds_broken = 1;
-        guard.sample(&after).unwrap();
+        guard.row(&after).unwrap();
         let seen = guard.quasi_static();
         assert_eq!((seen.kinetic_over_internal_max, seen.kinetic_over_internal_overall), (Some(0.01), Some(0.2)));
         assert_eq!(seen.grip_force_mismatch_percent, Some(0.0));
@@ -240,17 +350,40 @@ mod tests {
     }
 
     #[test]
-    fn an_open_ledger_is_said_to_be_open() {
+    fn a_row_late_in_the_pull_is_judged_at_once() {
+        let mut guard = Guard { strain_end: 0.2, ..new() };
+        guard.row(&Sample { strain: 0.04, ..row(10.0, 100.0, [100.0, 100.0]) }).unwrap();
+        assert_eq!(guard.take_notices(), [], "an early row may still turn out to say nothing");
+        guard.row(&Sample { step: 9, strain: 0.06, ..row(10.0, 100.0, [100.0, 100.0]) }).unwrap();
+        let notices = guard.take_notices();
+        assert_eq!((notices.len(), notices[0].step), (1, 9));
+        assert!(notices[0].text.contains("0.100 of the internal energy"), "{notices:?}");
+    }
+
+    #[test]
+    fn an_open_ledger_is_said_to_be_open_and_a_wide_open_one_stops_the_run() {
         let mut open = row(0.0, 100.0, [1.0, 1.0]);
-        open.energy.work = 110.0;
-        let warnings = gripped(&[open]).warnings(&limits());
-        assert!(warnings.iter().any(|w| w.contains("ledger")), "{warnings:?}");
+        open.energy.work = 102.0;
+        let warnings = said(&mut gripped(&[open.clone(), open.clone()]));
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(warnings[0].contains("1.96 % of the energy in it, have vanished"), "{warnings:?}");
+        open.energy.work = 70.0;
+        let error = new().row(&open).unwrap_err();
+        assert!(error.to_string().contains("30.00 % of the energy in it, came from nowhere"), "{error}");
+        assert_eq!(error.exit_code(), 4);
+    }
+
+    #[test]
+    fn rounding_in_a_body_at_rest_is_no_open_ledger() {
+        let energy = Energy { work: 1e-20, elastic_bonds: 3e-20, ..Energy::default() };
+        let mut guard = gripped(&[Sample { energy, ..Sample::default() }]);
+        assert_eq!((said(&mut guard), guard.greatest_residual()), (Vec::new(), None));
     }
 
     #[test]
     fn a_value_that_is_not_finite_stops_the_run_and_is_named() {
         let wild = Sample { step: 7, wire_stress: vec![1.0, f64::NAN], ..Sample::default() };
-        let error = Guard::new().sample(&wild).unwrap_err();
+        let error = new().check(&wild).unwrap_err();
         assert_eq!(error.exit_code(), 4);
         assert_eq!(error.to_string(), "stopped at step 7: the stress of wire 2 is NaN");
     }

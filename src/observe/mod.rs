@@ -1,6 +1,7 @@
 //! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
 
 pub mod files;
+pub mod findings;
 pub mod guard;
 pub mod partial;
 pub mod planned;
@@ -15,7 +16,7 @@ pub mod units;
 pub mod wording;
 
 use crate::base::error::Result;
-use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
 use std::sync::Arc;
 
 /// Something that watches a run.
@@ -32,6 +33,10 @@ pub trait Observer {
     }
     /// A bond broke.
     fn rupture(&mut self, _rupture: &Rupture) -> Result<()> {
+        Ok(())
+    }
+    /// Something that the user must know was found.
+    fn notice(&mut self, _notice: &Notice) -> Result<()> {
         Ok(())
     }
     /// After the last step, also of a run that was stopped: everything written so far must be made whole.

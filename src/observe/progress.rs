@@ -4,7 +4,7 @@ use super::Observer;
 use super::planned::PlannedEnd;
 use super::units::{mpa, percent};
 use crate::base::error::Result;
-use crate::engine::view::{RunInfo, Sample};
+use crate::engine::view::{Notice, RunInfo, Sample};
 use crate::scene::spec::StopSpec;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Arc;
@@ -76,6 +76,12 @@ impl Observer for Progress {
         let done = self.end.fraction(sample.strain, sample.time, sample.step).min(1.0);
         self.bar.set_position((done * TICKS as f64) as u64);
         self.bar.set_message(message(sample, self.gripped, self.wires, speed));
+        Ok(())
+    }
+
+    fn notice(&mut self, notice: &Notice) -> Result<()> {
+        // At once for whoever watches; the report repeats it at its head.
+        self.bar.println(format!("WARNING: {}", notice.text));
         Ok(())
     }
 

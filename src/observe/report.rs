@@ -37,6 +37,16 @@ pub fn report(summary: &RunSummary) -> String {
         let overall = summary.quasi_static.grip_force_mismatch_overall_percent.unwrap_or(mismatch);
         line("grip force mismatch", format!("{mismatch:.3} % before the first rupture, {overall:.3} % overall"));
     }
+    if let Some(deep) = &summary.findings.deepest_contact {
+        let [a, b] = &deep.between;
+        let when = match summary.final_strain_percent {
+            Some(_) => format!("strain {:.2} %", deep.strain_percent),
+            None => format!("t = {:.3e} s", deep.time_s),
+        };
+        let depth = deep.overlap_percent_of_radius;
+        line("deepest contact", format!("{depth:.2} % of the radius, {a} on {b}, z = {:.1} mm, {when}", deep.z_mm));
+    }
+    line("time step", time_step(summary));
     if summary.mass_scale != 1.0 || summary.inertia_scale != 1.0 {
         line("scaled", format!("mass × {}, rotational inertia × {}", summary.mass_scale, summary.inertia_scale));
     }
@@ -66,6 +76,11 @@ fn first_rupture(first: Option<&Break>) -> String {
             b.wire, b.layer, b.z_mm, b.rest_z_mm, b.strain_percent, b.stress_mpa, b.cause
         ),
     }
+}
+
+fn time_step(summary: &RunSummary) -> String {
+    let (least, greatest) = (&summary.findings.least_time_step, &summary.findings.greatest_time_step);
+    format!("{:.3e} to {:.3e} s; least by {}", least.seconds, greatest.seconds, least.limited_by)
 }
 
 fn cost(summary: &RunSummary) -> String {

@@ -1,11 +1,12 @@
 //! `RunSummary`: what a run found, as written to `summary.json`.
 
 use super::Observer;
-use super::guard::{Guard, QuasiStatic};
+use super::findings::Findings;
+use super::guard::QuasiStatic;
 use super::tables::{cause, layer_name};
 use super::units::{mm, mpa, percent};
 use crate::base::error::Result;
-use crate::engine::view::{Energy, RunInfo, Rupture, Sample};
+use crate::engine::view::{Energy, Notice, RunInfo, Rupture, Sample};
 use crate::scene::spec::Spec;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -48,6 +49,9 @@ pub struct RunSummary {
     /// How far loading was from quasi-static.
     #[serde(flatten)]
     pub quasi_static: QuasiStatic,
+    /// What the run has seen of the limits of its model.
+    #[serde(flatten)]
+    pub findings: Findings,
     /// Factor on particle mass [-].
     pub mass_scale: f64,
     /// Factor on rotational inertia [-].
@@ -61,8 +65,39 @@ pub struct RunSummary {
     /// What the run cost and with what it was made.
     #[serde(flatten)]
     pub cost: Cost,
-    /// What must be known before believing the run; empty when there is nothing.
+    /// What must be known before believing the run, in the order in which it was found, trouble that ended the run
+    /// first; empty when there is nothing.
     pub warnings: Vec<String>,
+    /// When each of the warnings was found.
+    pub notices: Vec<Found>,
+}
+
+/// A warning with its place in the run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Found {
+    /// Step.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time_s: f64,
+    /// Strain of the body [%].
+    pub strain_percent: f64,
+    /// What was found.
+    pub text: String,
+}
+
+/// How a run ended, and what was judged about it as a whole.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Closing {
+    /// Why it ended, in words.
+    pub because: String,
+    /// The error that ended it, if one did.
+    pub trouble: Option<String>,
+    /// How far loading was from quasi-static.
+    pub quasi_static: QuasiStatic,
+    /// What was seen of the limits of the model.
+    pub findings: Findings,
+    /// What it cost.
+    pub cost: Cost,
 }
 
 /// Broken wires of a layer.
@@ -118,7 +153,7 @@ pub struct Cost {
 #[derive(Default)]
 pub struct Summariser {
     info: Option<Arc<RunInfo>>,
-    guard: Guard,
+    notices: Vec<Notice>,
     /// (strain [-], nominal stress [Pa]) of every row.
     curve: Vec<(f64, f64)>,
     last: Sample,
@@ -131,25 +166,19 @@ impl Summariser {
         Self::default()
     }
 
-    /// The summary of what was seen. `trouble` is the error that ended the run, if one did.
-    pub fn summary(
-        &self,
-        spec: &Spec,
-        bonds: usize,
-        stopped_because: String,
-        trouble: Option<String>,
-        cost: Cost,
-    ) -> RunSummary {
+    /// The summary of what was seen.
+    pub fn summary(&self, spec: &Spec, bonds: usize, closing: Closing) -> RunSummary {
         let gripped = self.info.as_ref().is_some_and(|info| info.is_pulled());
         let measured = |value: Option<f64>| value.filter(|_| gripped);
         let peak = peak_of(&self.curve);
         let energy = self.last.energy;
         let firsts = self.first_breaks();
-        let mut warnings: Vec<String> = trouble.into_iter().collect();
-        warnings.extend(self.guard.warnings(&spec.time));
+        // Trouble comes as a notice too, at the place where the run ended.
+        let earlier = self.notices.iter().map(|n| &n.text).filter(|text| Some(*text) != closing.trouble.as_ref());
+        let warnings = closing.trouble.iter().chain(earlier).cloned().collect();
         RunSummary {
             scene: spec.name.clone(),
-            stopped_because,
+            stopped_because: closing.because,
             tensile_strength_mpa: measured(peak.map(|i| mpa(self.curve[i].1))),
             fracture_elongation_percent: measured(peak.map(|i| percent(self.curve[i].0))),
             elongation_at_20_percent_drop_percent: measured(
@@ -164,14 +193,16 @@ impl Summariser {
             residual_stress_mpa: measured(Some(mpa(self.last.stress))),
             energy,
             energy_residual_percent: (energy.work != 0.0).then(|| percent(energy.residual() / energy.work)),
-            quasi_static: self.guard.quasi_static(),
+            quasi_static: closing.quasi_static,
+            findings: closing.findings,
             mass_scale: spec.time.mass_scale,
             inertia_scale: spec.time.inertia_scale,
             seed: spec.seed,
             particles: self.info.as_ref().map_or(0, |info| info.particles),
             bonds,
-            cost,
+            cost: closing.cost,
             warnings,
+            notices: self.notices.iter().map(found).collect(),
         }
     }
 
@@ -210,6 +241,10 @@ impl Summariser {
     }
 }
 
+fn found(notice: &Notice) -> Found {
+    Found { step: notice.step, time_s: notice.time, strain_percent: percent(notice.strain), text: notice.text.clone() }
+}
+
 fn by_layer(breaks: Vec<Break>) -> BTreeMap<String, Vec<Break>> {
     let mut layers: BTreeMap<String, Vec<Break>> = BTreeMap::new();
     for one in breaks {
@@ -235,11 +270,10 @@ fn strain_after_drop(curve: &[(f64, f64)], peak: usize) -> Option<f64> {
 impl Observer for Summariser {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
         *self = Self { info: Some(info.clone()), ..Self::default() };
-        self.guard.start(info)
+        Ok(())
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
-        self.guard.sample(sample)?;
         self.curve.push((sample.strain, sample.stress));
         self.last = sample.clone();
         Ok(())
@@ -247,11 +281,16 @@ impl Observer for Summariser {
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
         self.ruptures.push(rupture.clone());
-        self.guard.rupture(rupture)
+        Ok(())
+    }
+
+    fn notice(&mut self, notice: &Notice) -> Result<()> {
+        self.notices.push(notice.clone());
+        Ok(())
     }
 
     fn finish(&mut self) -> Result<()> {
-        self.guard.finish()
+        Ok(())
     }
 }
 
@@ -275,6 +314,7 @@ mod tests {
             stress_range: [0.0, 400.0],
             plastic_strain_range: [0.0, 0.3],
             speed_range: [0.0, 10.0],
+            contact_pressure_range: [0.0, 1.0],
             strain_end: Some(0.3),
         })
     }
@@ -328,7 +368,7 @@ mod tests {
 
     #[test]
     fn strength_and_elongations_are_read_from_the_curve() {
-        let summary = seen().summary(&spec(), 3, "done".into(), None, Cost::default());
+        let summary = seen().summary(&spec(), 3, Closing::default());
         close(summary.tensile_strength_mpa, 300.0);
         close(summary.fracture_elongation_percent, 20.0);
         // 240 MPa lies 60 % of the way from (20 %, 300 MPa) to (30 %, 200 MPa).
@@ -339,7 +379,7 @@ mod tests {
 
     #[test]
     fn a_wire_that_breaks_twice_is_one_broken_wire() {
-        let summary = seen().summary(&spec(), 3, "done".into(), None, Cost::default());
+        let summary = seen().summary(&spec(), 3, Closing::default());
         assert_eq!(summary.wires_broken, 2);
         assert_eq!(summary.bonds_broken, 3);
         assert_eq!(summary.wires_broken_by_layer["core"], BrokenOf { broken: 1, of: 1 });
@@ -361,7 +401,7 @@ mod tests {
         let mut summariser = Summariser::new();
         summariser.start(&Arc::new(RunInfo { gauge: None, ..info().as_ref().clone() })).unwrap();
         summariser.sample(&row(0.0, 0.0)).unwrap();
-        let summary = summariser.summary(&spec(), 3, "done".into(), None, Cost::default());
+        let summary = summariser.summary(&spec(), 3, Closing::default());
         assert_eq!(summary.tensile_strength_mpa, None);
         assert_eq!(summary.quasi_static, QuasiStatic::default());
         let json: serde_json::Value = serde_json::to_value(&summary).unwrap();
@@ -369,9 +409,15 @@ mod tests {
     }
 
     #[test]
-    fn trouble_stands_first_among_the_warnings() {
-        let trouble = Some("stopped at step 5: bond 3 is NaN".to_string());
-        let summary = seen().summary(&spec(), 3, "trouble".into(), trouble, Cost::default());
-        assert!(summary.warnings[0].contains("step 5"), "{:?}", summary.warnings);
+    fn trouble_stands_first_among_the_warnings_and_once() {
+        let trouble = "stopped at step 5: bond 3 is NaN".to_string();
+        let mut summariser = seen();
+        for text in ["a contact is deep", &trouble] {
+            summariser.notice(&Notice { step: 5, time: 0.0, strain: 0.1, text: text.into() }).unwrap();
+        }
+        let closing = Closing { trouble: Some(trouble.clone()), ..Closing::default() };
+        let summary = summariser.summary(&spec(), 3, closing);
+        assert_eq!(summary.warnings, [trouble, "a contact is deep".into()]);
+        assert_eq!((summary.notices.len(), summary.notices[0].strain_percent), (2, 10.0));
     }
 }

@@ -6,7 +6,7 @@
 
 use super::{Observer, partial};
 use crate::base::error::{Error, Result};
-use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
 use lz4_flex::frame::{FrameDecoder, FrameEncoder, FrameInfo};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::fs::File;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 const MAGIC: [u8; 12] = *b"strandsnap\0T";
 /// Raised whenever what is written changes its meaning or order.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// No record is this long [bytes]; a length above it is damage.
 const LONGEST_RECORD: u32 = 1 << 30;
 
@@ -29,6 +29,8 @@ pub enum Record {
     Snapshot(Snapshot),
     /// A bond broke.
     Rupture(Rupture),
+    /// Something that the user must know was found.
+    Notice(Notice),
 }
 
 /// The same, borrowed: variants in the same order give the same bytes.
@@ -37,6 +39,7 @@ enum Borrowed<'a> {
     Sample(&'a Sample),
     Snapshot(&'a Snapshot),
     Rupture(&'a Rupture),
+    Notice(&'a Notice),
 }
 
 /// An observer that writes a trajectory.
@@ -96,6 +99,10 @@ impl Observer for TrajectoryWriter {
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
         self.write(&Borrowed::Rupture(rupture))
+    }
+
+    fn notice(&mut self, notice: &Notice) -> Result<()> {
+        self.write(&Borrowed::Notice(notice))
     }
 
     fn finish(&mut self) -> Result<()> {

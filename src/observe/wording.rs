@@ -41,6 +41,7 @@ mod tests {
             stress_range: [0.0, 1.0],
             plastic_strain_range: [0.0, 1.0],
             speed_range: [0.0, 1.0],
+            contact_pressure_range: [0.0, 1.0],
             strain_end: None,
         };
         let rupture = Rupture {

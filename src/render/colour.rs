@@ -34,6 +34,8 @@ impl ColourScale {
         let (range, map) = match by {
             ColourBy::Stress => (info.stress_range, Some(colorous::VIRIDIS)),
             ColourBy::PlasticStrain => (info.plastic_strain_range, Some(colorous::CIVIDIS)),
+            ColourBy::Utilisation => ([0.0, 1.0], Some(colorous::VIRIDIS)),
+            ColourBy::ContactPressure => (info.contact_pressure_range, Some(colorous::CIVIDIS)),
             ColourBy::Velocity => (info.speed_range, Some(colorous::CIVIDIS)),
             ColourBy::Layer | ColourBy::Wire => ([0.0, 1.0], None),
         };
@@ -50,6 +52,8 @@ impl ColourScale {
         match self.by {
             ColourBy::Stress => "true axial stress (MPa)",
             ColourBy::PlasticStrain => "equivalent plastic strain (%)",
+            ColourBy::Utilisation => "utilisation to rupture (%)",
+            ColourBy::ContactPressure => "contact pressure (MPa)",
             ColourBy::Velocity => "speed (m/s)",
             ColourBy::Layer => "layer",
             ColourBy::Wire => "wire",
@@ -58,7 +62,8 @@ impl ColourScale {
 
     /// Ends of the range, in the unit of the title; `None` for categories.
     pub fn shown_range(&self) -> Option<[f64; 2]> {
-        let factor = if self.by == ColourBy::PlasticStrain { 100.0 } else { 1.0 };
+        let percent = matches!(self.by, ColourBy::PlasticStrain | ColourBy::Utilisation);
+        let factor = if percent { 100.0 } else { 1.0 };
         self.map.map(|_| self.range.map(|v| f64::from(v) * factor))
     }
 
@@ -90,6 +95,8 @@ impl ColourScale {
                 *colour = match self.by {
                     ColourBy::Stress => self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i)),
                     ColourBy::PlasticStrain => self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i)),
+                    ColourBy::Utilisation => self.of_value(beside(snapshot, &snapshot.utilisation, wire.first, i)),
+                    ColourBy::ContactPressure => self.of_value(snapshot.contact_pressure[i]),
                     ColourBy::Velocity => self.of_value(snapshot.speed[i]),
                     ColourBy::Layer => Self::category(wire.layer),
                     ColourBy::Wire => Self::category(number),
@@ -97,12 +104,17 @@ impl ColourScale {
             }
         }
         for (k, colour) in colours.iter_mut().skip(info.wire_particles).enumerate() {
+            let i = info.wire_particles + k;
             match self.by {
-                ColourBy::Velocity => *colour = self.of_value(snapshot.speed[info.wire_particles + k]),
+                ColourBy::Velocity => *colour = self.of_value(snapshot.speed[i]),
+                ColourBy::ContactPressure => *colour = self.of_value(snapshot.contact_pressure[i]),
                 ColourBy::Wire | ColourBy::Layer => *colour = Self::category(info.wires.len() + k),
                 // Spheres carry no axial stress: told apart when there is nothing else, grey beside wires.
-                ColourBy::Stress | ColourBy::PlasticStrain if info.wires.is_empty() => *colour = Self::category(k),
-                ColourBy::Stress | ColourBy::PlasticStrain => (),
+                ColourBy::Stress | ColourBy::PlasticStrain | ColourBy::Utilisation => {
+                    if info.wires.is_empty() {
+                        *colour = Self::category(k);
+                    }
+                }
             }
         }
         colours

@@ -4,8 +4,10 @@ use super::schedule::Schedule;
 use super::stop::{StopReason, StopRule};
 use crate::base::error::{Error, Result};
 use crate::engine::Engine;
-use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
+use crate::observe::findings::Findings;
+use crate::observe::guard::{Guard, QuasiStatic};
 use crate::observe::planned::PlannedEnd;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
@@ -24,6 +26,10 @@ pub struct Outcome {
     pub time: f64,
     /// Strain of the body at the end [-].
     pub strain: f64,
+    /// How far loading was from quasi-static.
+    pub quasi_static: QuasiStatic,
+    /// What was seen of the limits of the model.
+    pub findings: Findings,
     /// Wall time spent in the engine, observers not included.
     pub stepping: Duration,
     /// Wall time spent in observers.
@@ -33,7 +39,8 @@ pub struct Outcome {
 /// Simulates an assembly and shows it to observers; writes nothing itself.
 ///
 /// Rows and snapshots come as the scene's `output` says, in the order in which things happen; a rupture comes
-/// before the row that follows it. The first and the last state always come with a snapshot. Every observer
+/// before the row that follows it. What a run should not be believed without comes as a notice when it is found,
+/// the error that ends a run included. The first and the last state always come with a snapshot. Every observer
 /// that was started is finished, also after an error. Call it inside a rayon pool to choose the threads.
 ///
 /// # Errors
@@ -67,11 +74,13 @@ pub(super) fn drive(
             "give at least one of stop.strain, stop.time or stop.steps",
         ));
     }
+    let guard = Guard::new(&spec.time, engine.negligible_energy());
     let mut driver = Driver {
         engine,
         end,
         schedule: Schedule::new(&spec.output),
         rule: StopRule::new(&spec.stop),
+        guard,
         audience: Audience { observers, started: 0, time: Duration::ZERO },
         shown: None,
     };
@@ -88,6 +97,8 @@ pub(super) fn drive(
         steps: driver.engine.steps(),
         time: driver.engine.time(),
         strain: driver.engine.strain(),
+        quasi_static: driver.guard.quasi_static(),
+        findings: Findings::new(driver.engine.findings(), driver.guard.greatest_residual()),
         stepping,
         observing: driver.audience.time,
     };
@@ -99,14 +110,28 @@ struct Driver<'a, 'b> {
     end: PlannedEnd,
     schedule: Schedule,
     rule: StopRule,
+    guard: Guard,
     audience: Audience<'a, 'b>,
     /// Step of the last snapshot.
     shown: Option<u64>,
 }
 
 impl Driver<'_, '_> {
+    /// Runs to the end; trouble is told as a notice before it is returned.
     fn go(&mut self, info: &Arc<RunInfo>, stop: &AtomicBool) -> Result<StopReason> {
+        self.guard.start(info);
         self.audience.start(info)?;
+        let ended = self.run(stop);
+        self.guard.finish();
+        self.notices()?;
+        if let Err(error @ Error::Trouble { .. }) = &ended {
+            let (step, time, strain) = (self.engine.steps(), self.engine.time(), self.engine.strain());
+            self.audience.notice(&Notice { step, time, strain, text: error.to_string() })?;
+        }
+        ended
+    }
+
+    fn run(&mut self, stop: &AtomicBool) -> Result<StopReason> {
         self.show()?;
         let reason = loop {
             if stop.load(Ordering::Relaxed) {
@@ -119,6 +144,7 @@ impl Driver<'_, '_> {
             self.engine.step()?;
             self.look()?;
         };
+        self.engine.inspect()?;
         if self.shown != Some(self.engine.steps()) {
             self.show()?;
         }
@@ -134,8 +160,10 @@ impl Driver<'_, '_> {
             self.schedule.rupture(now);
         }
         for rupture in &ruptures {
+            self.guard.rupture(rupture);
             self.audience.rupture(rupture)?;
         }
+        self.notices()?;
         let due = self.schedule.due(now);
         if due.snapshot {
             self.show()
@@ -156,8 +184,19 @@ impl Driver<'_, '_> {
     }
 
     fn row(&mut self, sample: &Sample) -> Result<()> {
+        // A row that is not finite must not reach the files.
+        self.guard.check(sample)?;
         self.rule.row(sample.stress);
-        self.audience.sample(sample)
+        self.audience.sample(sample)?;
+        let judged = self.guard.row(sample);
+        self.notices()?;
+        judged
+    }
+
+    /// Passes on what engine and guard have to say.
+    fn notices(&mut self) -> Result<()> {
+        let notices = [self.engine.take_notices(), self.guard.take_notices()];
+        notices.iter().flatten().try_for_each(|notice| self.audience.notice(notice))
     }
 }
 
@@ -190,6 +229,10 @@ impl Audience<'_, '_> {
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
         self.each(|observer| observer.rupture(rupture))
+    }
+
+    fn notice(&mut self, notice: &Notice) -> Result<()> {
+        self.each(|observer| observer.notice(notice))
     }
 
     fn each(&mut self, mut tell: impl FnMut(&mut dyn Observer) -> Result<()>) -> Result<()> {

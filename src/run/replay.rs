@@ -68,6 +68,7 @@ fn show(
         match record? {
             Record::Sample(sample) => observer.sample(&sample)?,
             Record::Rupture(rupture) => observer.rupture(&rupture)?,
+            Record::Notice(notice) => observer.notice(&notice)?,
             Record::Snapshot(snapshot) => {
                 let [from, to] = selection.strain;
                 if (from..=to).contains(&snapshot.sample.strain) {

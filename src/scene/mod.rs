@@ -4,6 +4,7 @@
 
 mod at;
 pub mod builtin;
+pub mod caution;
 pub mod centreline_text;
 pub mod hardening;
 mod overrides;

@@ -480,7 +480,8 @@ pub struct RawOutput {
     pub rupture_density: Option<Scalar>,
     /// Width and height of frames in pixels. Default [1280, 720].
     pub frame_size: Option<[i64; 2]>,
-    /// What colours the wires: `stress` (default), `plastic-strain`, `layer`, `wire`, `velocity`.
+    /// What colours the wires: `stress` (default), `plastic-strain`, `utilisation` (to rupture),
+    /// `contact-pressure`, `layer`, `wire`, `velocity`.
     pub colour: Option<RawColour>,
 }
 
@@ -492,6 +493,10 @@ pub enum RawColour {
     Stress,
     /// Equivalent plastic strain.
     PlasticStrain,
+    /// Share of the rupture limit.
+    Utilisation,
+    /// Contact pressure.
+    ContactPressure,
     /// Layer.
     Layer,
     /// Wire.

@@ -268,6 +268,8 @@ fn output(at: &At, raw: &RawOutput) -> Result<OutputSpec> {
         colour: match raw.colour.unwrap_or(RawColour::Stress) {
             RawColour::Stress => ColourBy::Stress,
             RawColour::PlasticStrain => ColourBy::PlasticStrain,
+            RawColour::Utilisation => ColourBy::Utilisation,
+            RawColour::ContactPressure => ColourBy::ContactPressure,
             RawColour::Layer => ColourBy::Layer,
             RawColour::Wire => ColourBy::Wire,
             RawColour::Velocity => ColourBy::Velocity,

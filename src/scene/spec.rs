@@ -371,6 +371,10 @@ pub enum ColourBy {
     Stress,
     /// Equivalent plastic strain.
     PlasticStrain,
+    /// Share of the rupture limit.
+    Utilisation,
+    /// Contact pressure.
+    ContactPressure,
     /// Layer.
     Layer,
     /// Wire.

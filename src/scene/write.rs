@@ -309,6 +309,8 @@ fn output(out: &mut Lines, output: &OutputSpec) {
     let colour = match output.colour {
         ColourBy::Stress => "stress",
         ColourBy::PlasticStrain => "plastic-strain",
+        ColourBy::Utilisation => "utilisation",
+        ColourBy::ContactPressure => "contact-pressure",
         ColourBy::Layer => "layer",
         ColourBy::Wire => "wire",
         ColourBy::Velocity => "velocity",

@@ -6,7 +6,7 @@
 //! strength σ_y(p_f)e^(−p_f).
 
 use crate::base::error::{Error, Result};
-use crate::observe::summary::{Cost, RunSummary, Summariser};
+use crate::observe::summary::{Closing, Cost, RunSummary, Summariser};
 use crate::run::{assemble, simulate};
 use crate::scene::spec::{BondLawSpec, HardeningSpec, RuptureCriterion};
 use crate::scene::{self, Scene};
@@ -176,7 +176,14 @@ fn try_setting(
         return Err(Error::input("interrupted before the calibration was done", "run it again; runs are not kept"));
     }
     let cost = Cost { steps: outcome.steps, simulated_s: outcome.time, ..Cost::default() };
-    let summary = summariser.summary(&scene.spec, bonds, outcome.reason.to_string(), None, cost);
+    let closing = Closing {
+        because: outcome.reason.to_string(),
+        trouble: None,
+        quasi_static: outcome.quasi_static,
+        findings: outcome.findings,
+        cost,
+    };
+    let summary = summariser.summary(&scene.spec, bonds, closing);
     let measured = summary.tensile_strength_mpa.zip(summary.fracture_elongation_percent);
     let Some((strength, elongation)) = measured else {
         return Err(scene.source.error("grip", "a scene without grips has no strength", "calibrate a pulled strand"));

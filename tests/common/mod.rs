@@ -44,6 +44,7 @@ fn strand(name: &str, layers: &[&str], wires: &[(usize, f32)]) -> RunInfo {
         stress_range: [0.0, 420.0],
         plastic_strain_range: [0.0, 0.3],
         speed_range: [0.0, 2.0],
+        contact_pressure_range: [0.0, 30.0],
         strain_end: Some(0.2857),
     };
     for (layer, (count, lay_radius)) in wires.iter().copied().enumerate() {
@@ -75,6 +76,8 @@ pub fn stretched(info: &RunInfo, strain: f32) -> Snapshot {
         bond_state: Vec::new(),
         bond_stress: Vec::new(),
         plastic_strain: Vec::new(),
+        utilisation: Vec::new(),
+        contact_pressure: Vec::new(),
     };
     s.sample.strain = f64::from(strain);
     s.sample.stress = f64::from(stress * 1e6 / (1.0 + strain));
@@ -93,6 +96,8 @@ pub fn stretched(info: &RunInfo, strain: f32) -> Snapshot {
             let level = if free { stress * ripple * (0.9 + 0.05 * wire.layer as f32) } else { 0.25 * stress };
             s.bond_stress.push(if last { 0.0 } else { level });
             s.plastic_strain.push(if last || !free { 0.0 } else { (strain * ripple).max(0.0) });
+            s.utilisation.push(strain / 0.3);
+            s.contact_pressure.push(if free { 60.0 * strain } else { 0.0 });
         }
     }
     s
@@ -195,6 +200,7 @@ pub fn two_spheres() -> (RunInfo, Snapshot) {
         stress_range: [0.0, 1.0],
         plastic_strain_range: [0.0, 1.0],
         speed_range: [0.0, 1.0],
+        contact_pressure_range: [0.0, 30.0],
         strain_end: None,
     };
     let snapshot = Snapshot {
@@ -205,6 +211,8 @@ pub fn two_spheres() -> (RunInfo, Snapshot) {
         bond_state: vec![BondState::Absent; 2],
         bond_stress: vec![0.0; 2],
         plastic_strain: vec![0.0; 2],
+        utilisation: vec![0.0; 2],
+        contact_pressure: vec![0.0; 2],
     };
     (info, snapshot)
 }

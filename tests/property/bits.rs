@@ -1,6 +1,7 @@
 //! One result, however it is computed: threads, plan, skin of the neighbour list, order of the wires.
 
 use crate::drive::*;
+use proptest::prelude::*;
 
 #[test]
 fn threads_do_not_change_a_bit() {
@@ -69,6 +70,89 @@ fn a_wire_pulled_to_fracture_needs_no_rotations_and_no_contacts() {
     let (end, _) = special_is_general(&[], 3000);
     assert!(end.whole.iter().filter(|w| !**w).count() > 1, "a bond must break, besides the slot that has none");
     assert!(end.energy.plastic_bonds > 0.0);
+}
+
+/// Ways in which a wire may be made, rupture criteria with them.
+fn wire() -> impl Strategy<Value = Vec<String>> {
+    let law = prop_oneof![
+        (60.0..200.0, 0.05..0.5).prop_map(|(stress, n)| {
+            let law = format!("bond.hardening={{ form = \"ludwik\", yield_stress = \"{stress} MPa\", strength = \"400 MPa\", exponent = {n} }}");
+            let rupture = "bond.rupture={ criterion = \"fibre-strain\", strain = \"4 %\", weibull_modulus = 15 }";
+            vec![law, rupture.into()]
+        }),
+        (1.0..4.0).prop_map(|strain| vec![format!("bond.rupture.strain={strain} %")]),
+        (200.0..900.0).prop_map(|stress| {
+            let rupture = format!("bond.rupture={{ criterion = \"beam-stress\", tensile = \"{stress} MPa\", shear = \"{stress} MPa\", weibull_modulus = 20 }}");
+            vec!["bond.law=elastic".into(), "bond.hardening=".into(), "contact.normal=hertz".into(), "contact.hardness_strain=".into(), rupture]
+        }),
+    ];
+    let rest = (6.0..20.0, 0.0..0.3, prop_oneof![Just("sphere"), Just("capsule")], 0.6..1.5, 2.0..12.0);
+    (law, rest).prop_map(|(mut set, (length, damping, shape, spacing, speed))| {
+        set.extend([
+            format!("wire.0.to=[\"0 mm\", \"0 mm\", \"{length} mm\"]"),
+            format!("bond.damping={damping}"),
+            format!("contact.shape={shape}"),
+            format!("spacing={spacing}"),
+            format!("grip.speed={speed} m/s"),
+            // A step that suits the finest spacing, whatever the mode that the general plan adds.
+            "time.step=1.5e-8 s".into(),
+        ]);
+        set
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_straight_wire_needs_no_rotations_and_no_contacts(set in wire()) {
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let mut special = engine(WIRE, &set);
+        let mut general = engine(WIRE, &[&set[..], &["plan=general"]].concat());
+        prop_assert!(general.plan().rotations && !special.plan().rotations);
+        prop_assert!(general.time_step_bound() > 1.5e-8, "{}", general.time_step_bound());
+        for _ in 0..3 {
+            run_steps(&mut special, 800);
+            run_steps(&mut general, 800);
+            let a = Outcome { ruptures: Vec::new(), ..Outcome::of(&mut special) };
+            let b = Outcome { ruptures: Vec::new(), ..Outcome::of(&mut general) };
+            a.assert_same(&b, "special and general");
+        }
+    }
+
+    #[test]
+    fn threads_do_not_change_a_bit_of_any_strand(
+        wires in 4..8usize,
+        shape in prop_oneof![Just("sphere"), Just("capsule")],
+        tangential in prop_oneof![Just("mindlin"), Just("mindlin-deresiewicz")],
+        elastic in any::<bool>(),
+        pressure in 30.0..120.0,
+    ) {
+        let law: &[&str] = if elastic {
+            &["bond.law=elastic", "bond.hardening=", "bond.rupture=", "contact.hardness_strain=", "contact.limiting_pressure=400 MPa"]
+        } else {
+            &["bond.rupture.strain=0.3 %"]
+        };
+        let own = [
+            format!("strand.layer.1.wires={wires}"),
+            format!("contact.shape={shape}"),
+            format!("contact.tangential={tangential}"),
+            format!("grip.clamp_pressure={pressure} MPa"),
+        ];
+        let mut set = vec!["strand.length=60 mm", "grip.kind=jaw", "grip.speed=50 m/s"];
+        set.extend(law.iter().copied().chain(own.iter().map(String::as_str)));
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut engine = engine(STRAND, &set);
+                run_steps(&mut engine, 150);
+                Outcome::of(&mut engine)
+            })
+        };
+        let one = run(1);
+        prop_assert!(one.position.len() > 700, "{} particles are too few chunks", one.position.len());
+        run(3).assert_same(&one, "3 threads");
+    }
 }
 
 #[test]

@@ -113,6 +113,7 @@ fn info() -> RunInfo {
         stress_range: [0.0, 420.0],
         plastic_strain_range: [0.0, 0.3],
         speed_range: [0.0, 10.0],
+        contact_pressure_range: [0.0, 40.0],
         strain_end: Some(STRAIN_END),
     }
 }
@@ -169,6 +170,8 @@ fn snapshot(info: &RunInfo, sample: &Sample, broken: &[(usize, f64)]) -> Snapsho
         bond_state: vec![if sample.strain > 8e-4 { BondState::Yielding } else { BondState::Whole }; n],
         bond_stress: (0..n).map(|i| (stress(sample.strain) * 1e-6) as f32 * stretch + 8.0 * noise(i, 5)).collect(),
         plastic_strain: (0..n).map(|i| stretch.ln() * (1.0 + 0.02 * noise(i, 6))).collect(),
+        utilisation: (0..n).map(|i| stretch.ln() / 0.3 * (1.0 + 0.02 * noise(i, 6))).collect(),
+        contact_pressure: (0..n).map(|i| 100.0 * (stretch - 1.0) * (1.0 + noise(i, 7))).collect(),
     };
     for wire in &info.wires {
         all.bond_state[wire.first + wire.len - 1] = BondState::Absent;

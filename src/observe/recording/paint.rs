@@ -30,6 +30,8 @@ impl Palette {
         let (gradient, range) = match by {
             ColourBy::Stress => (VIRIDIS, info.stress_range),
             ColourBy::PlasticStrain => (PLASMA, info.plastic_strain_range),
+            ColourBy::Utilisation => (VIRIDIS, [0.0, 1.0]),
+            ColourBy::ContactPressure => (CIVIDIS, info.contact_pressure_range),
             ColourBy::Velocity => (CIVIDIS, info.speed_range),
             ColourBy::Layer | ColourBy::Wire => (VIRIDIS, [0.0, 1.0]),
         };
@@ -50,15 +52,21 @@ impl Palette {
         match self.by {
             ColourBy::Stress => self.value(snapshot.bond_stress[slot]),
             ColourBy::PlasticStrain => self.value(snapshot.plastic_strain[slot]),
+            ColourBy::Utilisation => self.value(snapshot.utilisation[slot]),
+            ColourBy::ContactPressure => self.value(snapshot.contact_pressure[wire.first + k]),
             ColourBy::Velocity => self.value(snapshot.speed[wire.first + k]),
             ColourBy::Layer => distinct(wire.layer),
             ColourBy::Wire => distinct(number),
         }
     }
 
-    /// Colour (0xRRGGBBAA) of free sphere `i`: it has neither bonds nor a layer, so only its speed can colour it.
+    /// Colour (0xRRGGBBAA) of free sphere `i`: it has neither bonds nor a layer.
     pub fn sphere(&self, snapshot: &Snapshot, i: usize) -> u32 {
-        if self.by == ColourBy::Velocity { self.value(snapshot.speed[i]) } else { NEUTRAL }
+        match self.by {
+            ColourBy::Velocity => self.value(snapshot.speed[i]),
+            ColourBy::ContactPressure => self.value(snapshot.contact_pressure[i]),
+            _ => NEUTRAL,
+        }
     }
 
     /// What a colour bar shows; `None` where colours only tell things apart.
@@ -69,6 +77,8 @@ impl Palette {
             ColourBy::PlasticStrain => {
                 [format!("plastic strain: {:.0} %", low * 100.0), format!("{:.0} %", high * 100.0)]
             }
+            ColourBy::Utilisation => ["utilisation to rupture: 0 %".to_owned(), "100 %".to_owned()],
+            ColourBy::ContactPressure => [format!("contact pressure: {low:.0} MPa"), format!("{high:.0} MPa")],
             ColourBy::Velocity => [format!("speed: {low:.1} m/s"), format!("{high:.1} m/s")],
             ColourBy::Layer | ColourBy::Wire => return None,
         };

@@ -76,6 +76,8 @@ mod tests {
                 bond_state,
                 bond_stress: vec![0.0; len],
                 plastic_strain: vec![0.0; len],
+                utilisation: vec![0.0; len],
+                contact_pressure: vec![0.0; len],
             };
             let covered: Vec<usize> = pieces(&snapshot, &wire).into_iter().flatten().collect();
             let expected: Vec<usize> = (0..len - 1).filter(|b| !broken.contains(b)).collect();

@@ -10,7 +10,6 @@ use super::outcome::Ended;
 use super::run::{Leash, watch};
 use crate::base::error::{Error, Result};
 use crate::engine::view::Sample;
-use crate::observe::guard::Guard;
 
 /// Bisection ends when the step that holds and the one that does not are this near [-].
 const SHARP: f64 = 0.005;
@@ -41,7 +40,7 @@ pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> R
     let bound = least_bound(case, quick, leash)?;
     let run = |step: f64| -> Result<f64> {
         let scene = case.scene(quick, &[format!("time.step={step:e} s")])?;
-        watch(&scene, &mut Guard::new(), leash).map(|seen| energy(&seen))
+        watch(&scene, leash).map(|seen| energy(&seen))
     };
     let reference = run(0.5 * bound)?;
     let holds = |step: f64| -> Result<bool> {
@@ -82,7 +81,7 @@ pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> R
 
 /// The least bound on the step during a run that follows it [s].
 fn least_bound(case: &Case, quick: bool, leash: &Leash) -> Result<f64> {
-    watch(&case.scene(quick, &[])?, &mut Guard::new(), leash).map(|seen| seen.least_bound)
+    watch(&case.scene(quick, &[])?, leash).map(|seen| seen.least_bound)
 }
 
 /// Greatest energy stored, moving or swallowed over the run [J].

@@ -75,6 +75,10 @@ pub struct Seen {
     pub rows: Vec<Sample>,
     /// Its ruptures.
     pub ruptures: Vec<Rupture>,
+    /// What it told its user.
+    pub notices: Vec<String>,
+    /// Energy below which nothing happened [J].
+    pub negligible: f64,
     /// Positions at each row [m], of small bodies only.
     pub track: Vec<Vec<DVec3>>,
     /// Least bound on the time step at any row [s].
@@ -94,6 +98,8 @@ impl Seen {
             assembly,
             rows: Vec::new(),
             ruptures: Vec::new(),
+            notices: Vec::new(),
+            negligible: engine.negligible_energy(),
             track: Vec::new(),
             least_bound: f64::INFINITY,
             end: Default::default(),

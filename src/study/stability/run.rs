@@ -6,9 +6,8 @@ use super::measure::Seen;
 use super::outcome::{Ended, Report, judge};
 use crate::base::error::{Error, Result};
 use crate::engine::Engine;
-use crate::engine::view::{Energy, Sample};
-use crate::observe::Observer;
-use crate::observe::guard::{Guard, LEAST_ENERGY};
+use crate::engine::view::Energy;
+use crate::observe::guard::Guard;
 use crate::observe::planned::PlannedEnd;
 use crate::run::{Schedule, StopRule, assemble, in_pool};
 use crate::scene::Scene;
@@ -92,74 +91,106 @@ fn from_error(error: Error) -> Ended {
 
 /// A run to its end, with what must hold in every run.
 fn once(case: &Case, scene: &Scene, leash: &Leash) -> Result<Ended> {
-    let mut guard = Guard::new();
-    let seen = watch(scene, &mut guard, leash)?;
+    let seen = watch(scene, leash)?;
     let mut wrong = Vec::new();
     let answer = case.check.map(|check| check(&seen));
-    wrong.extend(ledger_faults(&seen.rows));
+    wrong.extend(ledger_faults(&seen));
     wrong.extend(seen.passed_through());
-    let residual = Some(residual(&seen.rows));
-    Ok(Ended::Ran { answer, residual, wrong, warnings: guard.warnings(&scene.spec.time) })
+    let residual = Some(residual(&seen));
+    Ok(Ended::Ran { answer, residual, wrong, warnings: seen.notices })
 }
 
 /// Runs a scene to its end; rows come as the scene's `output` asks.
 ///
 /// # Errors
 /// What the scene, the engine or the guard refuse.
-pub fn watch(scene: &Scene, guard: &mut Guard, leash: &Leash) -> Result<Seen> {
-    let mut engine = Engine::new(&scene.spec, assemble(scene)?)?;
-    let info = Arc::new(engine.info());
-    guard.start(&info)?;
+pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
+    let engine = Engine::new(&scene.spec, assemble(scene)?)?;
+    let info = engine.info();
+    let mut guard = Guard::new(&scene.spec.time, engine.negligible_energy());
+    guard.start(&info);
+    let seen = Seen::start(scene.spec.clone(), &engine);
+    let mut watched = Watched { engine, guard, rule: StopRule::new(&scene.spec.stop), seen };
     let end = PlannedEnd::new(&scene.spec.stop, info.strain_end);
     let mut schedule = Schedule::new(&scene.spec.output);
-    let mut rule = StopRule::new(&scene.spec.stop);
-    let mut seen = Seen::start(scene.spec.clone(), &engine);
-    take_row(&engine, guard, &mut rule, &mut seen)?;
-    while !leash.stop.load(Ordering::Relaxed) && rule.reached(engine.strain(), engine.time(), engine.steps()).is_none()
-    {
-        engine.step()?;
+    watched.row()?;
+    while !leash.stop.load(Ordering::Relaxed) && !watched.is_over() {
+        let ruptures = watched.step()?;
         leash.steps.fetch_add(1, Ordering::Relaxed);
+        let engine = &watched.engine;
         let now = end.fraction(engine.strain(), engine.time(), engine.steps());
-        for rupture in engine.take_ruptures() {
-            rule.rupture();
-            schedule.rupture(now);
-            guard.rupture(&rupture)?;
-            seen.ruptures.push(rupture);
-        }
+        (0..ruptures).for_each(|_| schedule.rupture(now));
         let due = schedule.due(now);
         if due.row || due.snapshot {
-            take_row(&engine, guard, &mut rule, &mut seen)?;
+            watched.row()?;
         }
     }
-    take_row(&engine, guard, &mut rule, &mut seen)?;
-    guard.finish()?;
-    seen.finish(&engine);
-    Ok(seen)
+    watched.engine.inspect()?;
+    watched.row()?;
+    watched.guard.finish();
+    watched.notices();
+    watched.seen.finish(&watched.engine);
+    Ok(watched.seen)
 }
 
-fn take_row(engine: &Engine, guard: &mut Guard, rule: &mut StopRule, seen: &mut Seen) -> Result<()> {
-    let sample = engine.sample();
-    guard.sample(&sample)?;
-    rule.row(sample.stress);
-    seen.row(engine, sample);
-    Ok(())
+/// A run and all that watch it.
+struct Watched {
+    engine: Engine,
+    guard: Guard,
+    rule: StopRule,
+    seen: Seen,
+}
+
+impl Watched {
+    fn is_over(&self) -> bool {
+        let engine = &self.engine;
+        self.rule.reached(engine.strain(), engine.time(), engine.steps()).is_some()
+    }
+
+    /// One step; returns how many bonds broke in it.
+    fn step(&mut self) -> Result<usize> {
+        self.engine.step()?;
+        let ruptures = self.engine.take_ruptures();
+        for rupture in &ruptures {
+            self.rule.rupture();
+            self.guard.rupture(rupture);
+        }
+        let count = ruptures.len();
+        self.seen.ruptures.extend(ruptures);
+        self.notices();
+        Ok(count)
+    }
+
+    fn row(&mut self) -> Result<()> {
+        let sample = self.engine.sample();
+        self.guard.check(&sample)?;
+        self.rule.row(sample.stress);
+        let judged = self.guard.row(&sample);
+        self.seen.row(&self.engine, sample);
+        judged
+    }
+
+    fn notices(&mut self) {
+        let said = self.engine.take_notices().into_iter().chain(self.guard.take_notices());
+        self.seen.notices.extend(said.map(|notice| notice.text));
+    }
 }
 
 /// The energy that a run had to do with [J]; rounding alone does not count.
-fn scale(rows: &[Sample]) -> f64 {
+fn scale(seen: &Seen) -> f64 {
     let of = |e: &Energy| e.work.abs().max(e.internal().abs()).max(e.kinetic.abs());
-    rows.iter().map(|row| of(&row.energy)).fold(LEAST_ENERGY, f64::max)
+    seen.rows.iter().map(|row| of(&row.energy)).fold(seen.negligible, f64::max)
 }
 
 /// Greatest residual of the ledger over the greatest work done [-].
-fn residual(rows: &[Sample]) -> f64 {
+fn residual(seen: &Seen) -> f64 {
     let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
-    rows.iter().map(|row| row.energy.residual().abs()).fold(0.0, larger) / scale(rows)
+    seen.rows.iter().map(|row| row.energy.residual().abs()).fold(0.0, larger) / scale(seen)
 }
 
 /// Terms of the ledger that no closed balance would betray: dissipation that falls, energy stored that is negative.
-fn ledger_faults(rows: &[Sample]) -> Vec<String> {
-    let slack = 1e-3 * scale(rows);
+fn ledger_faults(seen: &Seen) -> Vec<String> {
+    let (rows, slack) = (&seen.rows, 1e-3 * scale(seen));
     let dissipated: [(&str, fn(&Energy) -> f64); 4] = [
         ("plastic work of bonds", |e| e.plastic_bonds),
         ("plastic work of contacts", |e| e.plastic_contacts),

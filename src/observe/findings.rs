@@ -1,0 +1,77 @@
+//! What a run has seen of the limits of its model, as written to `summary.json`.
+
+use super::units::{mm, mpa, percent};
+use crate::engine::view::{self, StepAt};
+use serde::Serialize;
+
+/// The deepest contact, the range of the time step, the ledger's greatest gap.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Findings {
+    /// The deepest contact; `None` when nothing touched.
+    pub deepest_contact: Option<Deepest>,
+    /// The least time step and what limited it.
+    pub least_time_step: Step,
+    /// The greatest time step and what limited it.
+    pub greatest_time_step: Step,
+    /// Greatest share of the energy in the ledger that was unaccounted for at any row [%]; `None` when there was none.
+    pub energy_residual_greatest_percent: Option<f64>,
+}
+
+/// The deepest contact of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Deepest {
+    /// Overlap over the smaller of the two radii [%].
+    pub overlap_percent_of_radius: f64,
+    /// The two bodies.
+    pub between: [String; 2],
+    /// Where [mm].
+    pub z_mm: f64,
+    /// Strain of the body [%].
+    pub strain_percent: f64,
+    /// Simulated time [s].
+    pub time_s: f64,
+    /// Step.
+    pub step: u64,
+    /// Normal force [N].
+    pub force_n: f64,
+    /// Mean pressure over the contact [MPa].
+    pub pressure_mpa: f64,
+}
+
+/// A time step and when it was chosen.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Step {
+    /// The time step [s].
+    pub seconds: f64,
+    /// Strain of the body [%].
+    pub strain_percent: f64,
+    /// Simulated time [s].
+    pub time_s: f64,
+    /// What limited it.
+    pub limited_by: String,
+}
+
+impl Findings {
+    /// What the engine saw, and the ledger's greatest gap [-].
+    pub fn new(seen: view::Findings, residual: Option<f64>) -> Self {
+        Self {
+            deepest_contact: seen.deepest.map(|at| Deepest {
+                overlap_percent_of_radius: percent(at.ratio),
+                between: at.bodies,
+                z_mm: mm(at.position[2]),
+                strain_percent: percent(at.strain),
+                time_s: at.time,
+                step: at.step,
+                force_n: at.force,
+                pressure_mpa: mpa(at.pressure),
+            }),
+            least_time_step: step(seen.least_step),
+            greatest_time_step: step(seen.greatest_step),
+            energy_residual_greatest_percent: residual.map(percent),
+        }
+    }
+}
+
+fn step(at: StepAt) -> Step {
+    Step { seconds: at.seconds, strain_percent: percent(at.strain), time_s: at.time, limited_by: at.limit }
+}

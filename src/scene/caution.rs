@@ -1,0 +1,56 @@
+//! What a scene can be known to get wrong before it runs, for `plan` and `scene check`.
+
+use super::spec::{BondLawSpec, DriveSpec, RuptureCriterion, Shape, Spec};
+
+/// Plastic strain [-] beyond which no wire is followed.
+const FAR: f64 = 1.0;
+/// Wires in a strand are strained more than the strand, by up to this factor [-].
+const UNEVEN: f64 = 1.1;
+/// Spacing over diameter from which spheres of a wire leave a gap through which another wire fits crosswise [-].
+const GAP: f64 = std::f64::consts::SQRT_2;
+
+/// Everything that the user should know before the run; empty when there is nothing.
+pub fn cautions(spec: &Spec) -> Vec<String> {
+    [necking(spec), gaps(spec)].into_iter().flatten().collect()
+}
+
+/// Plastic strain at which the hardening law reaches the maximum load of a bond in tension, dσ/dp ≤ σ (Considère 1885),
+/// if it does so before bonds break and before the body has reached `strain` [-].
+pub fn considere(spec: &Spec, strain: f64) -> Option<f64> {
+    let BondLawSpec::ElastoPlastic(hardening) = &spec.bond.law else { return None };
+    let breaks = match spec.bond.rupture.as_ref().map(|r| &r.criterion) {
+        Some(RuptureCriterion::PlasticStrain { strain }) => *strain,
+        Some(RuptureCriterion::FibreStrain { strain }) => strain.ln_1p(),
+        Some(RuptureCriterion::BeamStress { tensile, .. }) => reaches(|p| hardening.stress(p) >= *tensile),
+        None => FAR,
+    };
+    hardening.considere(breaks.min(UNEVEN * strain.ln_1p()))
+}
+
+/// Least plastic strain at which `reached` holds, to a thousandth [-].
+fn reaches(reached: impl Fn(f64) -> bool) -> f64 {
+    (0..1000).map(|k| FAR * f64::from(k) / 1000.0).find(|p| reached(*p)).unwrap_or(FAR)
+}
+
+fn necking(spec: &Spec) -> Option<String> {
+    let pulled = spec.grip.as_ref().is_some_and(|g| matches!(g.drive, DriveSpec::Speed(speed) if speed > 0.0));
+    let from = considere(spec, spec.stop.strain.unwrap_or(f64::INFINITY)).filter(|_| pulled)?;
+    Some(format!(
+        "the hardening law passes the maximum load of a wire at a plastic strain of {:.1} % (dσ/dε ≤ σ, Considère), before \
+         it breaks: strain then localises in single bonds, and elongation depends on spacing; use a law that still \
+         rises at rupture, or compare runs with other values of spacing",
+        100.0 * from
+    ))
+}
+
+fn gaps(spec: &Spec) -> Option<String> {
+    let spheres = spec.contact.as_ref().is_some_and(|c| c.shape == Shape::Sphere);
+    let wires = spec.wires.len() + spec.strand.as_ref().map_or(0, |s| s.layers.iter().map(|l| l.wires).sum());
+    (spheres && wires > 1 && spec.spacing > GAP).then(|| {
+        format!(
+            "with spacing = {} the spheres of a wire leave gaps through which another wire fits; lower it to 1, or use \
+             contact.shape = \"capsule\"",
+            spec.spacing
+        )
+    })
+}
