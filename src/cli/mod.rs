@@ -10,6 +10,7 @@ mod say;
 mod scene;
 mod stability;
 mod values;
+mod verify;
 
 use crate::base::error::Result;
 use clap::{Parser, Subcommand};
@@ -40,6 +41,8 @@ enum Command {
     Stability(stability::Args),
     /// Draw the frames of a finished run again, without simulating
     Render(render::Args),
+    /// Compare the engine with closed forms
+    Verify(verify::Args),
 }
 
 /// How a command ended when nothing went wrong.
@@ -47,16 +50,17 @@ enum Ended {
     Well,
     /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
     Interrupted,
-    /// The study ran, and something in it failed.
-    Failed,
+    /// A study ran, and a case of it misses what it must give.
+    Missed,
 }
 
 /// Runs the program on its arguments. Exit codes: 0 well; 1 the file system refused; 2 bad input;
-/// 3 the machine lacks something; 4 the simulation had to stop, or a case of a study failed; 130 interrupted.
+/// 3 the machine lacks something; 4 the simulation had to stop, or a case of a study misses what it must give;
+/// 130 interrupted.
 pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(Ended::Well) => ExitCode::SUCCESS,
-        Ok(Ended::Failed) => ExitCode::from(4),
+        Ok(Ended::Missed) => ExitCode::from(4),
         Ok(Ended::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
         Err(error) => {
             let code = error.exit_code();
@@ -73,8 +77,9 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
-        Command::Stability(args) => stability::run(&args),
+        Command::Stability(args) => stability::stability(&args),
         Command::Render(args) => render::render(args),
+        Command::Verify(args) => verify::verify(&args),
     }
 }
 

@@ -29,6 +29,20 @@ impl Section {
         PI / 4.0 * self.yield_stress * self.radius.powi(3)
     }
 
+    /// Bending moment [N m] at `share` ≥ 0 times the curvature of first yield, elastic–perfectly plastic fibres.
+    ///
+    /// Fibres beyond s r from the neutral axis, s = 1/share, have yielded: integrating the stress over the section gives
+    /// M = 4 σ_y r³ [(asin s − s√(1−s²)(1−2s²))/(8s) + (1−s²)^(3/2)/3], (π/4)σ_y r³ at s = 1 and (4/3)σ_y r³ at s → 0.
+    pub fn moment_at(&self, share: f64) -> f64 {
+        if share <= 1.0 {
+            return share * self.first_yield_moment();
+        }
+        let s = 1.0 / share;
+        let rest = 1.0 - s * s;
+        let core = (s.asin() - s * rest.sqrt() * (1.0 - 2.0 * s * s)) / (8.0 * s);
+        4.0 * self.yield_stress * self.radius.powi(3) * (core + rest.powf(1.5) / 3.0)
+    }
+
     /// Fully plastic torque, T_p = (2π/3)(σ_y/√3) r³ [N m] (von Mises).
     pub fn plastic_torque(&self) -> f64 {
         2.0 * PI / 3.0 * self.yield_stress / 3.0_f64.sqrt() * self.radius.powi(3)
@@ -137,6 +151,20 @@ mod tests {
         near(section.plastic_torque() * root3, sum(|r| 2.0 * PI * r * r));
         near(section.plastic_shear() * root3, sum(|r| 2.0 * PI * r));
         near(section.plastic_moment() / section.first_yield_moment(), 16.0 / (3.0 * PI));
+    }
+
+    /// Half elastic, half plastic, summed over the fibres; and the two ends of the formula.
+    #[test]
+    fn moment_between_first_yield_and_the_plastic_moment() {
+        let section = Section { radius: 0.195e-3, yield_stress: 90e6 };
+        let (n, share) = (20_000, 1.7);
+        let dy = 1.0 / n as f64;
+        let fibre = |y: f64| (share * y).min(1.0) * y * (1.0 - y * y).sqrt() * dy;
+        let sum: f64 = (0..n).map(|i| fibre((i as f64 + 0.5) * dy)).sum();
+        let expected = 4.0 * section.yield_stress * section.radius.powi(3) * sum;
+        assert!((section.moment_at(share) / expected - 1.0).abs() < 1e-6);
+        assert!((section.moment_at(1.0 + 1e-9) / section.first_yield_moment() - 1.0).abs() < 1e-8);
+        assert!((section.moment_at(1e3) / section.plastic_moment() - 1.0).abs() < 1e-5);
     }
 
     /// For σ = K p^n the neck starts at p = n.

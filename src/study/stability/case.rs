@@ -56,6 +56,8 @@ pub struct Case {
     pub warned: &'static [&'static str],
     /// Greatest energy residual over the work done [-], and why where it is not 1 %.
     pub residual: (f64, &'static str),
+    /// Whether it is started before the others, so that no core waits for it at the end.
+    pub long: bool,
     /// Wall time after which the run counts as hung [s].
     pub patience: f64,
 }
@@ -79,6 +81,7 @@ impl Case {
             check: None,
             warned: &[],
             residual: (RESIDUAL, ""),
+            long: false,
             patience: PATIENCE,
         }
     }
@@ -116,6 +119,12 @@ impl Case {
     /// Its ledger may be open by this share of the work done [-], for a stated reason.
     pub fn residual(mut self, limit: f64, why: &'static str) -> Self {
         self.residual = (limit, why);
+        self
+    }
+
+    /// It takes long.
+    pub fn long(mut self) -> Self {
+        self.long = true;
         self
     }
 

@@ -12,21 +12,23 @@
 //! | [`measure`] | known numbers |
 //! | [`critical`] | the empirical critical time step by bisection |
 //! | [`outcome`] | how a case ended |
+//! | [`report`], [`plots`] | the results for people and programs |
 
 pub mod case;
 pub mod critical;
 pub mod matrix;
 pub mod measure;
 pub mod outcome;
+pub mod plots;
+pub mod report;
 pub mod run;
-pub mod table;
 
 use crate::base::error::{Error, Result};
 use crate::scene::suggest::nearest;
 use case::Case;
 use outcome::Report;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// The cases of these names, all when there is none; a name that ends in `*` takes all that begin so.
 ///
@@ -52,47 +54,33 @@ fn matches(name: &str, case: &Case) -> bool {
     }
 }
 
-/// Runs cases, `threads` at a time and each on one thread; `tell` hears of each in the order of the list. Returns the
-/// reports in that order; those that `cancel` cut off are not among them.
+/// Runs cases, `threads` at a time and each on one thread, the long ones first; calls `done` after each. Reports come in
+/// the order of `cases`; those that `stop` cut short are left out.
 pub fn run_all(
     cases: &[Case],
     quick: bool,
     threads: usize,
-    cancel: &AtomicBool,
-    tell: &mut (dyn FnMut(&Report) + Send),
+    stop: &AtomicBool,
+    done: &(dyn Fn(&Report) + Sync),
 ) -> Vec<Report> {
+    let mut order: Vec<usize> = (0..cases.len()).collect();
+    order.sort_by_key(|index| !cases[*index].long);
     let next = AtomicUsize::new(0);
-    let line = Mutex::new(Line { waiting: cases.iter().map(|_| None).collect(), told: Vec::new(), tell });
+    let reports = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
+        for _ in 0..threads.clamp(1, cases.len().max(1)) {
             scope.spawn(|| {
-                while !cancel.load(Ordering::Relaxed) {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(case) = cases.get(index) else { break };
-                    let Some(report) = run::run_case(case, quick, cancel) else { break };
-                    line.lock().unwrap_or_else(|held| held.into_inner()).take(index, report);
+                while let Some(index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let Some(report) = run::run_case(&cases[*index], quick, stop) else { break };
+                    done(&report);
+                    reports.lock().unwrap_or_else(PoisonError::into_inner).push((*index, report));
                 }
             });
         }
     });
-    line.into_inner().unwrap_or_else(|held| held.into_inner()).told
-}
-
-/// Reports that wait for those before them.
-struct Line<'a> {
-    waiting: Vec<Option<Report>>,
-    told: Vec<Report>,
-    tell: &'a mut (dyn FnMut(&Report) + Send),
-}
-
-impl Line<'_> {
-    fn take(&mut self, index: usize, report: Report) {
-        self.waiting[index] = Some(report);
-        while let Some(report) = self.waiting.get_mut(self.told.len()).and_then(Option::take) {
-            (self.tell)(&report);
-            self.told.push(report);
-        }
-    }
+    let mut reports = reports.into_inner().unwrap_or_else(PoisonError::into_inner);
+    reports.sort_by_key(|(index, _)| *index);
+    reports.into_iter().map(|(_, report)| report).collect()
 }
 
 #[cfg(test)]

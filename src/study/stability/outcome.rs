@@ -97,7 +97,7 @@ pub fn judge(case: &Case, ended: Ended, steps: u64, wall_s: f64) -> Report {
                 wrong.push(format!("the energy ledger is open by {:.2} %", 100.0 * residual));
             }
             wrong.extend(answer.as_ref().and_then(Answer::miss));
-            let said = warnings.join("; ");
+            let said = warnings.join("\n");
             wrong.extend(missing(case.warned, &said).map(|word| format!("no warning speaks of \"{word}\"")));
             let outcome = if wrong.is_empty() { Outcome::Stable } else { Outcome::Failed };
             let mut parts = wrong;
@@ -105,7 +105,7 @@ pub fn judge(case: &Case, ended: Ended, steps: u64, wall_s: f64) -> Report {
                 parts.push(format!("residual up to {} % allowed: {}", 100.0 * case.residual.0, case.residual.1));
             }
             parts.extend((!said.is_empty()).then_some(said));
-            Report { answer, residual, ..report(outcome, parts.join("; ")) }
+            Report { answer, residual, ..report(outcome, parts.join("\n")) }
         }
     }
 }

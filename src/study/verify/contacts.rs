@@ -6,6 +6,9 @@ use super::support::{Lab, Trial, set};
 use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::reference::hertz::Pair;
+use crate::reference::mindlin::{Held, effective_shear_modulus};
+use crate::reference::{sliding, thornton};
+use crate::scene::spec::NormalSpec;
 
 pub const HERTZ: Case = Case {
     name: "hertz",
@@ -13,6 +16,29 @@ pub const HERTZ: Case = Case {
     source: "Hertz 1882; Johnson, Contact Mechanics, 1985, section 11.4",
     run: hertz,
 };
+
+pub const THORNTON: Case = Case {
+    name: "thornton",
+    about: "two elastoplastic spheres collide head-on: restitution over V/V_y",
+    source: "Thornton, J. Appl. Mech. 64 (1997) 383",
+    run: thornton_restitution,
+};
+
+pub const TANGENTIAL: Case = Case {
+    name: "friction-constant-load",
+    about: "tangential force over displacement at constant normal force, both laws",
+    source: "Mindlin 1949; Mindlin & Deresiewicz 1953",
+    run: constant_load,
+};
+
+pub const ROLLING: Case = Case {
+    name: "sliding-to-rolling",
+    about: "a sphere thrown to slide ends up rolling: when, and how fast, both laws",
+    source: "Timoshenko & Young, Advanced Dynamics, 1948: 2 v₀/(7 μ g′), (5/7) v₀",
+    run: sliding_to_rolling,
+};
+
+const TANGENTIAL_LAWS: [&str; 2] = ["mindlin", "mindlin-deresiewicz"];
 
 /// The two equal spheres of a scene.
 fn pair(trial: &Trial) -> Pair {
@@ -64,4 +90,99 @@ fn hertz(lab: &Lab) -> Result<Vec<Finding>> {
         Finding::new("greatest overlap", "m", depth, exact.greatest_overlap(speed), spent).within(1e-3),
         Finding::new("speed of rebound", "m/s", rebound, speed, spent).within(1e-6),
     ])
+}
+
+/// An elastic contact of each speed in 2000 steps; elastoplastic ones take longer.
+fn thornton_restitution(lab: &Lab) -> Result<Vec<Finding>> {
+    let still = lab.trial("verify/thornton", &[])?;
+    let exact = pair(&still);
+    let pressure = match still.spec.contact.as_ref().map(|c| &c.normal) {
+        Some(NormalSpec::Thornton { limiting_pressure }) => *limiting_pressure,
+        _ => unreachable!("the scene is elastoplastic"),
+    };
+    let collide_at = |ratio: f64| {
+        let speed = ratio * thornton::yield_velocity(&exact, pressure);
+        let half = |sign: f64| format!(r#"["0 m/s", "0 m/s", "{:e} m/s"]"#, 0.5 * sign * speed);
+        let time = exact.contact_time(speed);
+        let options = [
+            set("sphere.0.velocity", half(1.0)),
+            set("sphere.1.velocity", half(-1.0)),
+            set("time.step", format!("{:e} s", time / 2000.0)),
+            set("stop.time", format!("{:e} s", 6.0 * time)),
+        ];
+        let mut trial = lab.trial("verify/thornton", &options)?;
+        trial.run(|_| {})?;
+        let v = &trial.engine.state().v;
+        let restitution = (v.z[1] - v.z[0]) / speed;
+        let what = format!("restitution at V/V_y = {ratio}");
+        Ok(Finding::new(what, "-", restitution, thornton::restitution(ratio), trial.finish()).within(1e-3))
+    };
+    [0.9, 1.5, 3.0, 10.0, 100.0].into_iter().map(collide_at).collect()
+}
+
+/// At every tenth of the displacement at which the whole contact slides, up to 1.3 of it.
+fn constant_load(lab: &Lab) -> Result<Vec<Finding>> {
+    let of_law = |law: &'static str| {
+        let mut trial = lab.trial("verify/tangential", &[set("contact.tangential", law)])?;
+        let (spec, exact) = (&trial.spec, pair(&trial));
+        let depth = overlap(&trial.engine);
+        let held = Held {
+            shear_modulus: effective_shear_modulus(spec.material.shear(), spec.material.poisson),
+            radius: (exact.radius * depth).sqrt(),
+            normal_force: exact.force(depth),
+            friction: spec.contact.as_ref().map_or(0.0, |c| c.friction),
+        };
+        let rate = spec.holds[1].spin.y * (0.5 * spec.spheres[1].diameter - 0.5 * depth);
+        let whole = held.sliding_displacement();
+        let mut seen = Vec::new();
+        trial.run_to(1.3 * whole / rate, |engine| {
+            let slip = rate * engine.time();
+            if slip / whole >= 0.1 * (seen.len() + 1) as f64 {
+                seen.push((slip, engine.state().contact_force.x[1].abs()));
+            }
+        })?;
+        let spent = trial.finish();
+        let points = seen.len();
+        let compare = |(slip, force): (f64, f64)| {
+            let exact = if law == "mindlin" { held.no_slip_force(slip) } else { held.partial_slip_force(slip) };
+            let what = format!("{law}: force, worst of {points}: {:.1} of sliding", slip / whole);
+            Finding::new(what, "N", force, exact, Spent::default()).within(5e-3)
+        };
+        Ok(Finding { spent, ..Finding::worst(seen.into_iter().map(compare).collect()) })
+    };
+    TANGENTIAL_LAWS.into_iter().map(of_law).collect()
+}
+
+/// Slip ends at 2v₀/(7μg′); from then on the speed is (5/7)v₀ in the mean over the ringing of the tangential spring.
+fn sliding_to_rolling(lab: &Lab) -> Result<Vec<Finding>> {
+    let mut findings = Vec::new();
+    for law in TANGENTIAL_LAWS {
+        let (radius, floor, force, speed, friction) = (0.5e-3, 1.0, 10e-3, 0.5, 0.2);
+        let m = lab.trial("verify/rolling", &[])?.spec.material;
+        let modulus = m.young / (2.0 * (1.0 - m.poisson * m.poisson));
+        let reduced = radius * floor / (radius + floor);
+        let depth = (0.75 * force / (modulus * f64::sqrt(reduced))).powf(2.0 / 3.0);
+        let height = format!(r#"["0 m", "0 m", "{:.17e} m"]"#, radius - depth);
+        let mut trial =
+            lab.trial("verify/rolling", &[set("sphere.1.position", height), set("contact.tangential", law)])?;
+        let mass = trial.engine.assembly().mass[1];
+        let start = sliding::rolling_start(speed, friction, force / mass);
+        let (mut rolls, mut sum, mut count) = (f64::NAN, 0.0, 0);
+        trial.run_to(2.0 * start, |engine| {
+            let s = engine.state();
+            let slip = s.v.x[1] - s.w.y[1] * (radius - 0.5 * depth);
+            if rolls.is_nan() && slip <= 0.0 {
+                rolls = engine.time();
+            }
+            if engine.time() > 1.2 * start {
+                sum += s.v.x[1];
+                count += 1;
+            }
+        })?;
+        let (mean, spent) = (sum / f64::from(count), trial.finish());
+        let exact = sliding::rolling_speed(speed);
+        findings.push(Finding::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2));
+        findings.push(Finding::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3));
+    }
+    Ok(findings)
 }

@@ -130,6 +130,11 @@ impl Finding {
         }
     }
 
+    /// A number that must reach `least`.
+    pub fn at_least(what: impl Into<String>, unit: &'static str, computed: f64, least: f64, spent: Spent) -> Self {
+        Self::new(what, unit, computed, least, spent).between(0.0, f64::INFINITY)
+    }
+
     /// Allows a relative error of ±`target` [-].
     pub fn within(self, target: f64) -> Self {
         self.between(-target, target)

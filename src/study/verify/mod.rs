@@ -1,13 +1,26 @@
 //! Verification: the engine against closed forms (physics page, section 8). A case is a scene `verify/…`, a formula of
 //! [`crate::reference`] and a function here that runs the one and compares it with the other; [`CASES`] lists them.
 
+mod beams;
+mod conservation;
 mod contacts;
+mod critical_step;
+mod damping;
 pub mod finding;
+mod modes;
+mod plasticity;
+pub mod plots;
+pub mod report;
+mod snapping;
+mod strands;
 pub mod support;
+mod vibration;
+mod waves;
 
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::run::in_pool;
-use finding::Finding;
+use crate::scene::suggest::nearest;
+use finding::{Finding, Outcome};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -28,13 +41,62 @@ pub struct Case {
 
 /// All cases, by theme.
 pub const CASES: &[Case] = &[
+    // Bars and beams
+    beams::CANTILEVER,
+    beams::STOCKY,
+    beams::SHARED,
+    beams::TORSION,
+    // Vibration and waves
+    vibration::AXIAL_WAVE,
+    waves::PULLED_BAR,
+    vibration::BENDING_FREQUENCY,
+    vibration::BUCKLING,
+    vibration::BUCKLING_BRACKET,
+    damping::AXIAL,
+    damping::BENDING,
     // Contacts of spheres
     contacts::HERTZ,
+    contacts::THORNTON,
+    contacts::TANGENTIAL,
+    contacts::ROLLING,
+    // Plasticity and rupture
+    plasticity::PULLED,
+    plasticity::YOUNG,
+    plasticity::BENT,
+    plasticity::TWISTED,
+    plasticity::WIRE_TWISTED,
+    snapping::SNAPPED,
+    // Strands
+    strands::PITCHES,
+    strands::FINER,
+    // What must stay
+    conservation::WIRE,
+    conservation::COLLISION,
+    conservation::STRAND,
+    conservation::ENERGY,
+    // The stable step
+    critical_step::CHAIN,
+    critical_step::CANTILEVER,
+    critical_step::FREE_WIRE,
+    critical_step::DAMPED,
 ];
 
-/// The case of this name.
-pub fn find(name: &str) -> Option<&'static Case> {
-    CASES.iter().find(|case| case.name == name)
+/// The cases of these names, each once, in the order of [`CASES`]; all of them when no name is given.
+///
+/// # Errors
+/// A name that no case has; the nearest is suggested.
+pub fn select(names: &[String]) -> Result<Vec<&'static Case>> {
+    for name in names {
+        if !CASES.iter().any(|case| case.name == *name) {
+            let near = nearest(name, CASES.iter().map(|case| case.name));
+            let guess = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
+            return Err(Error::input(
+                format!("there is no verification case `{name}`"),
+                format!("{guess}`strandsnap verify --list` names them all"),
+            ));
+        }
+    }
+    Ok(CASES.iter().filter(|case| names.is_empty() || names.iter().any(|name| name == case.name)).collect())
 }
 
 /// What became of one case.
@@ -45,6 +107,13 @@ pub struct Report {
     pub result: Result<Vec<Finding>>,
     /// Wall time [s].
     pub wall_s: f64,
+}
+
+impl Report {
+    /// Whether the case ran and every finding agrees with its closed form.
+    pub fn passes(&self) -> bool {
+        self.result.as_ref().is_ok_and(|findings| findings.iter().all(|f| f.outcome() == Outcome::Pass))
+    }
 }
 
 /// Runs one case on the present thread pool. `stop` ends it early, as an error.
@@ -99,6 +168,19 @@ pub fn run_all(
 mod tests {
     use super::*;
     use std::collections::HashSet;
+
+    #[test]
+    fn cases_are_selected_by_name_and_slips_are_corrected() {
+        let names = |given: &[&str]| {
+            let given: Vec<String> = given.iter().map(|name| name.to_string()).collect();
+            select(&given).map(|cases| cases.iter().map(|case| case.name).collect::<Vec<_>>())
+        };
+        assert_eq!(names(&["thornton", "hertz", "hertz"]).unwrap(), ["hertz", "thornton"]);
+        assert_eq!(names(&[]).unwrap().len(), CASES.len());
+        let error = names(&["hertzz"]).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(format!("{:?}", miette::Report::new(error)).contains("did you mean `hertz`"));
+    }
 
     #[test]
     fn names_are_unique_and_every_case_says_what_it_claims() {

@@ -7,6 +7,7 @@ use crate::reference::beam::RoundBar;
 use crate::scene;
 use crate::scene::spec::Spec;
 use crate::strand;
+use crate::strand::assembly::Assembly;
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -59,15 +60,18 @@ impl<'a> Lab<'a> {
     /// # Errors
     /// What is wrong in the scene or the options.
     pub fn trial(&self, scene: &str, options: &[String]) -> Result<Trial<'_>> {
-        self.trial_of(scene::load(scene, options)?.spec)
+        self.changed(scene, options, |_| {})
     }
 
-    /// A trial of a scene that was changed where options do not reach.
+    /// The same with its bodies changed where options do not reach, such as the velocity of single particles.
     ///
     /// # Errors
-    /// When the bodies cannot be built.
-    pub fn trial_of(&self, spec: Spec) -> Result<Trial<'_>> {
-        let engine = Engine::new(&spec, strand::build(&spec)?)?;
+    /// What is wrong in the scene or the options.
+    pub fn changed(&self, scene: &str, options: &[String], change: impl FnOnce(&mut Assembly)) -> Result<Trial<'_>> {
+        let spec = scene::load(scene, options)?.spec;
+        let mut assembly = strand::build(&spec)?;
+        change(&mut assembly);
+        let engine = Engine::new(&spec, assembly)?;
         Ok(Trial { spec, engine, lab: self, wall_s: 0.0 })
     }
 
@@ -76,8 +80,8 @@ impl<'a> Lab<'a> {
         let Ledger { runs, worst, spent } = self.ledger.get();
         let what = match runs {
             0 => return None,
-            1 => "energy ledger: missing over work done".into(),
-            _ => format!("energy ledger: missing over work done, worst of {runs} runs"),
+            1 => "energy ledger: missing over work".into(),
+            _ => format!("energy ledger: missing over work, worst of {runs}"),
         };
         Some(Finding::new(what, "-", worst, 0.0, spent).relative_to(1.0).within(LEDGER_TARGET))
     }

@@ -6,14 +6,9 @@ use super::super::measure::{
 };
 use super::{COLUMN, REST, SEVEN, WIRE};
 
-/// The longest ones.
-pub fn long() -> Vec<Case> {
-    [rest(), cycles()].concat()
-}
-
-/// The others.
+/// All of them.
 pub fn cases() -> Vec<Case> {
-    [speeds(), compression(), torsion(), breaking(), grips()].concat()
+    [speeds(), compression(), torsion(), cycles(), breaking(), grips(), rest()].concat()
 }
 
 fn rest() -> Vec<Case> {
@@ -28,6 +23,7 @@ fn rest() -> Vec<Case> {
             )
             .set([format!("contact.shape={shape}")])
             .quick(["stop.steps=600000"])
+            .long()
             .gives(no_drift)
         })
         .to_vec()
@@ -42,6 +38,7 @@ fn cycles() -> Vec<Case> {
             .set(["strand.length=6 mm", "grip.length=1 mm", "grip.displacement_amplitude=3.2 um"])
             .set(["grip.frequency=8 kHz", "stop.time=125 ms", "output.samples=40000"])
             .quick(["stop.time=2.5 ms", "output.samples=800"])
+            .long()
             .gives(cycled_alike),
         Case::new("cycles-plastic", "1,000 cycles of a perfectly plastic wire, ± 0.15 %", WIRE)
             .set(cyclic)
@@ -49,6 +46,7 @@ fn cycles() -> Vec<Case> {
             .set(["grip.displacement_amplitude=0.012 mm"])
             .set(["grip.frequency=4 kHz", "stop.time=250 ms", "output.samples=40000"])
             .quick(["stop.time=2.5 ms", "output.samples=400"])
+            .long()
             .gives(cycled_plastic),
     ]
 }

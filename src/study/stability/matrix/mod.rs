@@ -18,9 +18,9 @@ const REST: Base = Base::Text(include_str!("../../../../assets/scenes/stability/
 /// Particles beside others of a million times their mass.
 const LIGHT_ON_HEAVY: Base = Base::Text(include_str!("../../../../assets/scenes/stability/light-on-heavy.toml"));
 
-/// Every case, the longest first, so that no core waits for another at the end.
+/// Every case.
 pub fn cases() -> Vec<Case> {
-    [loads::long(), steps::cases(), materials::cases(), geometry::cases(), loads::cases()].concat()
+    [steps::cases(), materials::cases(), geometry::cases(), loads::cases()].concat()
 }
 
 /// Length in mm as scenes write it.

@@ -1,5 +1,6 @@
 //! The results as a table for people and as JSON for programs.
 
+use super::case::Case;
 use super::measure::Answer;
 use super::outcome::{Outcome, Report};
 use crate::base::error::{Error, Result};
@@ -7,60 +8,65 @@ use crate::observe::files::write_whole;
 use serde::Serialize;
 use std::path::Path;
 
-/// The printed table.
-pub struct Table;
+/// Names and claims of cases, one to a line.
+pub fn list(cases: &[Case]) -> String {
+    let width = cases.iter().map(|case| case.name.len()).max().unwrap_or(0);
+    cases.iter().map(|case| format!("{:width$}  {}\n", case.name, case.about)).collect()
+}
 
-impl Table {
-    /// Its head.
-    pub const HEAD: &str = "case                   outcome  residual       steps   wall  measured and said\n\
-                            ---------------------  -------  ----------  --------  -----  -----------------";
+/// The results, a line per case, and below it what the program said.
+pub fn table(reports: &[Report]) -> String {
+    let width = reports.iter().map(|report| report.case.name.len()).max().unwrap_or(0).max(4);
+    let head = format!("{:width$}  outcome  {:>10}  {:>8}  {:>7}  measured\n", "case", "residual", "steps", "wall");
+    reports.iter().fold(head, |table, report| table + &row(report, width))
+}
 
-    /// One case.
-    pub fn row(report: &Report) -> String {
-        let residual = report.residual.map_or_else(|| "-".to_string(), |r| format!("{:.1e} %", 100.0 * r));
-        let said: Vec<String> = report.answer.as_ref().map(measured).into_iter().chain(said(report)).collect();
-        format!(
-            "{:<21}  {:<7}  {residual:>10}  {:>8}  {:>4.1}s  {}",
-            report.case.name,
-            report.outcome,
-            report.steps,
-            report.wall_s,
-            said.join("; ")
-        )
-    }
+fn row(report: &Report, width: usize) -> String {
+    let residual = report.residual.map_or_else(|| "-".to_string(), |r| format!("{:.1e} %", 100.0 * r));
+    let measured = report.answer.as_ref().map(measured).unwrap_or_default();
+    let line = format!(
+        "{:width$}  {:<7}  {residual:>10}  {:>8}  {:>5.1} s  {measured}",
+        report.case.name, report.outcome, report.steps, report.wall_s,
+    );
+    let said: String = report.message.lines().map(|said| format!("    {said}\n")).collect();
+    format!("{}\n{said}", line.trim_end())
 }
 
 fn measured(answer: &Answer) -> String {
     let Answer { what, unit, computed, exact, .. } = answer;
     match answer.error_percent() {
-        Some(error) => format!("{what} {computed:.4} against {exact:.4} {unit} ({error:+.2} %)"),
+        Some(error) => {
+            format!("{what} {} {unit}, must be {} ({error:+.2} %)", figures(*computed), figures(*exact))
+        }
         None => format!("{what} {computed:.1e} {unit}"),
     }
 }
 
-fn said(report: &Report) -> Option<String> {
-    (!report.message.is_empty()).then(|| report.message.clone())
+/// A number with five significant figures.
+fn figures(value: f64) -> String {
+    let before = value.abs().max(1e-300).log10().floor() as i32 + 1;
+    match before {
+        -3..=6 => format!("{value:.*}", (5 - before).max(0) as usize),
+        _ => format!("{value:.4e}"),
+    }
 }
 
 /// How many cases ended how.
-pub fn summary(reports: &[Report]) -> String {
+pub fn summary(reports: &[Report], seconds: f64) -> String {
     let count = |outcome| reports.iter().filter(|report| report.outcome == outcome).count();
     let failed: Vec<&str> =
         reports.iter().filter(|r| r.outcome == Outcome::Failed).map(|r| r.case.name.as_str()).collect();
     let steps: u64 = reports.iter().map(|report| report.steps).sum();
-    let mut text = format!(
-        "{} cases: {} stable, {} refused, {} stopped, {} FAILED; {:.1} million steps",
+    let tail = if failed.is_empty() { String::new() } else { format!(": {}", failed.join(", ")) };
+    format!(
+        "{} cases, {:.1} million steps in {seconds:.1} s: {} stable, {} refused, {} stopped, {} FAILED{tail}",
         reports.len(),
+        steps as f64 * 1e-6,
         count(Outcome::Stable),
         count(Outcome::Refused),
         count(Outcome::Stopped),
         failed.len(),
-        steps as f64 * 1e-6
-    );
-    if !failed.is_empty() {
-        text += &format!("\nFAILED: {}", failed.join(", "));
-    }
-    text
+    )
 }
 
 /// One case in JSON.
@@ -85,7 +91,7 @@ struct Record<'a> {
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write_json(path: &Path, reports: &[Report]) -> Result<()> {
+pub fn write_json(reports: &[Report], path: &Path) -> Result<()> {
     let record = |report: &'_ Report| -> serde_json::Result<serde_json::Value> {
         let answer = report.answer.as_ref();
         serde_json::to_value(Record {

@@ -1,0 +1,133 @@
+//! Decay of the first axial and bending mode under the bonds' viscous damping, and that it does not depend on the step.
+
+use super::Case;
+use super::finding::{Convergence, Finding, Point};
+use super::modes::{first_axial_mode, first_bending_curvature, first_bending_mode, project};
+use super::support::{Lab, Trial, set};
+use crate::base::error::Result;
+use crate::base::vectors::Vectors;
+use crate::engine::Engine;
+use crate::law::damping::viscous_coefficient;
+use std::f64::consts::TAU;
+
+pub const AXIAL: Case = Case {
+    name: "damping-axial",
+    about: "first axial mode decays by ζ of the bonds' dashpots, whatever the step",
+    source: "Rayleigh quotient of the dashpots: ζ = Σ c Δφ²/(2 ω Σ m φ²); logarithmic decrement 2πζ/√(1 − ζ²)",
+    run: axial,
+};
+
+pub const BENDING: Case = Case {
+    name: "damping-bending",
+    about: "first bending mode decays by ζ of the bonds' dashpots, whatever the step",
+    source: "Rayleigh quotient of the dashpots: ζ = (ω/2) Σ c κ²/Σ k κ²; logarithmic decrement 2πζ/√(1 − ζ²)",
+    run: bending,
+};
+
+/// One mode of one wire.
+struct Mode {
+    scene: &'static str,
+    options: Vec<String>,
+    /// Periods that are watched.
+    periods: f64,
+    /// Which motion is projected on which shape.
+    motion: fn(&Engine) -> [f64; 2],
+    /// Damping ratio ζ and angular frequency ω [rad/s] of the model.
+    theory: fn(&Trial) -> [f64; 2],
+}
+
+/// Displacement from the start, and velocity, along `axis` of the first wire, as shares of a mode.
+fn shares(engine: &Engine, axis: fn(&Vectors) -> &Vec<f64>, shape: fn(f64) -> f64) -> [f64; 2] {
+    let (s, a) = (engine.state(), engine.assembly());
+    let displacement = |i: usize| axis(&s.x)[i] - axis(&a.position)[i];
+    [project(engine, displacement, shape), project(engine, |i| axis(&s.v)[i], shape)]
+}
+
+/// Logarithmic decrement per period: of the mode's speed at its first and last passage through rest. Speeds lag by half
+/// a step at either, which leaves their ratio alone.
+fn decrement(trial: &mut Trial, mode: &Mode, frequency: f64) -> Result<f64> {
+    let (mut last, mut speeds) = (None::<[f64; 2]>, Vec::new());
+    trial.run_to((mode.periods + 0.5) * TAU / frequency, |engine| {
+        let now = (mode.motion)(engine);
+        if let Some([x, v]) = last
+            && x < 0.0
+            && now[0] >= 0.0
+        {
+            let share = x / (x - now[0]);
+            speeds.push(v + share * (now[1] - v));
+        }
+        last = Some(now);
+    })?;
+    let [first, .., end] = speeds[..] else { return Ok(f64::NAN) };
+    Ok((first / end).ln() / (speeds.len() - 1) as f64)
+}
+
+/// Leapfrog with the dashpots' velocities half a step old multiplies amplitudes by √(1 − 2ζωΔt) per step: that is e^(−ζωΔt)
+/// up to a share ζωΔt of the decay.
+fn decays(lab: &Lab, mode: &Mode) -> Result<Vec<Finding>> {
+    let (mut points, mut found) = (Vec::new(), Vec::new());
+    let mut exact = f64::NAN;
+    let safety = lab.pick(&[0.8, 0.4][..], &[0.8, 0.4, 0.2, 0.1]);
+    for safety in safety {
+        let mut options = mode.options.clone();
+        options.push(set("time.safety", safety));
+        let mut trial = lab.trial(mode.scene, &options)?;
+        let [ratio, frequency] = (mode.theory)(&trial);
+        exact = TAU * ratio / (1.0 - ratio * ratio).sqrt();
+        let value = decrement(&mut trial, mode, frequency)?;
+        let resolution = trial.engine.time_step() * frequency / TAU;
+        points.push(Point { resolution, error: value / exact - 1.0, spent: trial.finish() });
+        found.push(value);
+    }
+    let spent = points.iter().map(|p| p.spent).sum();
+    let [coarse, .., fine] = found[..] else { unreachable!("there are several steps") };
+    let part = safety[0] / safety[safety.len() - 1];
+    let mut decrement =
+        Finding::new(format!("logarithmic decrement at 1/{part:.0} of it"), "-", fine, exact, spent).within(5e-3);
+    decrement.convergence = Some(Convergence { axis: "dt/T", points });
+    Ok(vec![
+        Finding::new("logarithmic decrement at the default step", "-", coarse, exact, spent).within(5e-3),
+        decrement,
+        Finding::new("the one over the other", "-", coarse / fine, 1.0, spent).within(5e-3),
+    ])
+}
+
+/// Coefficient 2ξ√(k m) of each bond, m reduced from both its ends, as the engine defines it.
+fn coefficients(trial: &Trial, fraction: f64, stiffness: f64, inertia: &[f64]) -> Vec<f64> {
+    let reduced = |i: usize| inertia[i] * inertia[i + 1] / (inertia[i] + inertia[i + 1]);
+    (0..trial.bonds()).map(|i| viscous_coefficient(fraction, reduced(i), stiffness)).collect()
+}
+
+fn axial(lab: &Lab) -> Result<Vec<Finding>> {
+    let theory = |trial: &Trial| {
+        let (bar, a, n) = (trial.bar(), trial.engine.assembly(), trial.bonds());
+        let stiffness = bar.young * bar.area() / a.rest_length[0];
+        let c = coefficients(trial, trial.spec.bond.damping[0], stiffness, &a.mass);
+        let shape = |i: usize| first_axial_mode(i as f64 / n as f64);
+        let stretch = |i: usize| (shape(i + 1) - shape(i)).powi(2);
+        let dashpots: f64 = (0..n).map(|i| c[i] * stretch(i)).sum();
+        let springs: f64 = (0..n).map(|i| stiffness * stretch(i)).sum();
+        let mass: f64 = (0..=n).map(|i| a.mass[i] * shape(i).powi(2)).sum();
+        let frequency = (springs / mass).sqrt();
+        [dashpots / (2.0 * frequency * mass), frequency]
+    };
+    let motion = |engine: &Engine| shares(engine, |v| &v.z, first_axial_mode);
+    let options = vec![set("spacing", 4), set("bond.damping", "{ axial = 0.3 }")];
+    decays(lab, &Mode { scene: "verify/axial-wave", options, periods: 8.0, motion, theory })
+}
+
+fn bending(lab: &Lab) -> Result<Vec<Finding>> {
+    let theory = |trial: &Trial| {
+        let (bar, a, n) = (trial.bar(), trial.engine.assembly(), trial.bonds());
+        let stiffness = bar.young * bar.second_moment() / a.rest_length[0];
+        let c = coefficients(trial, trial.spec.bond.damping[2], stiffness, &a.inertia);
+        let curvature = |i: usize| first_bending_curvature((i as f64 + 0.5) / n as f64).powi(2);
+        let dashpots: f64 = (0..n).map(|i| c[i] * curvature(i)).sum();
+        let springs: f64 = (0..n).map(|i| stiffness * curvature(i)).sum();
+        let frequency = bar.first_bending_frequency();
+        [0.5 * frequency * dashpots / springs, frequency]
+    };
+    let motion = |engine: &Engine| shares(engine, |v| &v.x, first_bending_mode);
+    let options = vec![set("spacing", 3), set("bond.damping", "{ bending = 1 }")];
+    decays(lab, &Mode { scene: "verify/free-vibration", options, periods: lab.pick(4.0, 10.0), motion, theory })
+}
