@@ -8,6 +8,7 @@ mod render;
 mod run;
 mod say;
 mod scene;
+mod stability;
 mod values;
 mod verify;
 
@@ -36,6 +37,8 @@ enum Command {
     Export(export::Args),
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
+    /// Run stiff and extreme cases: each must be stable, or be refused or stopped with its reason
+    Stability(stability::Args),
     /// Draw the frames of a finished run again, without simulating
     Render(render::Args),
     /// Compare the engine with closed forms
@@ -47,12 +50,13 @@ enum Ended {
     Well,
     /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
     Interrupted,
-    /// Verification ran, and a case misses its closed form.
+    /// A study ran, and a case of it misses what it must give.
     Missed,
 }
 
 /// Runs the program on its arguments. Exit codes: 0 well; 1 the file system refused; 2 bad input;
-/// 3 the machine lacks something; 4 the simulation had to stop, or a case misses its closed form; 130 interrupted.
+/// 3 the machine lacks something; 4 the simulation had to stop, or a case of a study misses what it must give;
+/// 130 interrupted.
 pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(Ended::Well) => ExitCode::SUCCESS,
@@ -73,6 +77,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
+        Command::Stability(args) => stability::stability(&args),
         Command::Render(args) => render::render(args),
         Command::Verify(args) => verify::verify(&args),
     }

@@ -41,7 +41,7 @@ pub fn verify(args: &Args) -> Result<Ended> {
         return Ok(Ended::Well);
     }
     let cases = verify::select(&args.cases)?;
-    prepare(args)?;
+    prepare(args.json.as_deref(), (!args.no_plots).then_some(&args.out))?;
     let stop = interrupt::install()?;
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
@@ -75,13 +75,11 @@ pub fn verify(args: &Args) -> Result<Ended> {
 }
 
 /// Whether results can be written is found out before minutes are spent on them.
-fn prepare(args: &Args) -> Result<()> {
+pub(super) fn prepare(json: Option<&Path>, plots: Option<&PathBuf>) -> Result<()> {
     let make =
         |folder: &Path| std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e));
-    if !args.no_plots {
-        make(&args.out)?;
-    }
-    match args.json.as_deref() {
+    plots.map_or(Ok(()), |folder| make(folder))?;
+    match json {
         Some(file) if file.is_dir() => {
             Err(Error::input(format!("--json {} is a folder", file.display()), "give the name of a file"))
         }

@@ -49,6 +49,9 @@ pub struct Holds {
     axis: DVec2,
     /// Gauge before loading and displacement of the upper grip.
     pub stretch: Stretch,
+    /// Length between the last particles held in one grip and in the other, mean over the held wires [m]: particles do
+    /// not lie just where the grips end, and strain is what this length does.
+    free_length: f64,
     /// Spin of the upper grip about z [rad/s].
     spin: f64,
     /// Reactions of the last step.
@@ -68,6 +71,7 @@ impl Holds {
             grip: spec.grip.clone(),
             axis: DVec2::ZERO,
             stretch: Stretch::default(),
+            free_length: 0.0,
             spin: spec.grip.as_ref().map_or(0.0, |g| g.rotation_rate),
             reaction: Reaction::default(),
             work: 0.0,
@@ -98,8 +102,10 @@ impl Holds {
         self.stretch.gauge = [low + grip.length, high - grip.length];
         let outer = assembly.layers.len().saturating_sub(1);
         let jaw = matches!(grip.kind, GripKind::Jaw { .. });
+        let mut faces = [0.0; 2];
         for driven in [false, true] {
             let mut particles = Vec::new();
+            let (mut last_held, mut wires) = (0.0, 0.0);
             for wire in assembly.wires.iter().filter(|w| !jaw || w.layer == outer) {
                 // The particle nearest to the grip's face is the last one held, so that what is free between the grips
                 // is on average as long as the gauge.
@@ -107,8 +113,15 @@ impl Holds {
                 let inside = |p: &usize| {
                     if driven { z[*p] >= high - grip.length - half } else { z[*p] <= low + grip.length + half }
                 };
-                particles.extend(wire.particles().filter(inside).map(|p| p as u32));
+                let held: Vec<usize> = wire.particles().filter(inside).collect();
+                let nearer = if driven { f64::min } else { f64::max };
+                if let Some(face) = held.iter().map(|p| z[*p]).reduce(nearer) {
+                    last_held += face;
+                    wires += 1.0;
+                }
+                particles.extend(held.into_iter().map(|p| p as u32));
             }
+            faces[usize::from(driven)] = last_held / wires;
             if particles.is_empty() {
                 return Err(nothing_to_hold(&assembly.layers[outer].name, driven));
             }
@@ -121,6 +134,7 @@ impl Holds {
             };
             self.groups.push(Group { particles, kind, driven });
         }
+        self.free_length = faces[1] - faces[0];
         Ok(())
     }
 
@@ -172,10 +186,9 @@ impl Holds {
         }
     }
 
-    /// Grip displacement over gauge length [-].
+    /// Grip displacement over the length that is free between the grips [-].
     pub fn strain(&self) -> f64 {
-        let [z0, z1] = self.stretch.gauge;
-        if z1 > z0 { self.stretch.displacement / (z1 - z0) } else { 0.0 }
+        if self.free_length > 0.0 { self.stretch.displacement / self.free_length } else { 0.0 }
     }
 
     /// Overrides the kicked velocities of held particles; `kicked` is the time that the kick spanned [s].

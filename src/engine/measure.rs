@@ -220,11 +220,15 @@ impl Engine {
             return None;
         }
         let DriveSpec::Speed(speed) = self.spec.grip.as_ref()?.drive else { return self.spec.stop.strain };
-        if speed <= 0.0 {
+        if speed == 0.0 {
             return self.spec.stop.strain;
         }
-        let timed = self.spec.stop.time.map_or(f64::INFINITY, |t| t * speed / (gauge[1] - gauge[0]));
+        let timed = self.spec.stop.time.map_or(f64::INFINITY, |t| t * speed.abs() / (gauge[1] - gauge[0]));
         let stop = self.spec.stop.strain.unwrap_or(f64::INFINITY).min(timed);
+        if speed < 0.0 {
+            // Compression ends where it is told to: nothing foretells at which strain a wire breaks in it.
+            return stop.is_finite().then_some(-stop);
+        }
         let falls = self.spec.stop.stress_fraction.is_some();
         let end = if falls { stop.min(1.1 * self.rupture_strain()) } else { stop };
         end.is_finite().then_some(end)

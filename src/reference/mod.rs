@@ -20,6 +20,7 @@
 
 pub mod beam;
 pub mod capstan;
+pub mod column;
 pub mod elastica;
 pub mod elliptic;
 pub mod helix;

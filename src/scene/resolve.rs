@@ -21,6 +21,8 @@ const FRICTION: f64 = 0.2;
 const HARDNESS_FACTOR: f64 = 2.8;
 /// Neighbour skin over the largest diameter [-].
 const SKIN: f64 = 0.15;
+/// Spacing over diameter from which a wire fits between two neighbouring spheres of another [-].
+const GAP: f64 = 2.0;
 /// Side of a frame, least and greatest [pixels].
 const FRAME_SIDE: std::ops::RangeInclusive<i64> = 16..=8192;
 
@@ -36,13 +38,19 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
     }
     let bodies = resolve_bodies::count(strand.as_ref(), &wires, &spheres);
     let extent = resolve_bodies::extent(strand.as_ref(), &wires);
+    let spacing = at.ratio_or("spacing", &raw.spacing, 1.0, Range::Positive)?;
+    let contact = contact(&at.key("contact"), raw.contact.as_ref(), &bond)?;
+    let wire_count = strand.as_ref().map_or(0, |s| s.layers.iter().map(|l| l.wires).sum()) + wires.len();
+    if wire_count > 1 {
+        refuse_gaps(at, spacing, contact.as_ref())?;
+    }
     let grip = raw.grip.as_ref().map(|raw| resolve_drive::grip(&at.key("grip"), raw, extent)).transpose()?;
     Ok(Spec {
         name: scene_name(at, raw, name)?,
         about: about(at, raw)?,
         seed: at.count_or("seed", raw.seed, 1, 0)?,
-        contact: contact(&at.key("contact"), raw.contact.as_ref(), &bond)?,
-        spacing: at.ratio_or("spacing", &raw.spacing, 1.0, Range::Positive)?,
+        contact,
+        spacing,
         holds: resolve_drive::holds(&at.key("hold"), &raw.hold, bodies)?,
         time: time(&at.key("time"), &raw.time)?,
         stop: resolve_drive::stop(&at.key("stop"), &raw.stop, grip.as_ref(), bond.rupture.is_some())?,
@@ -58,6 +66,17 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
         spheres,
         grip,
     })
+}
+
+/// Refuses chains of spheres with gaps that another wire passes through unseen.
+fn refuse_gaps(at: &At, spacing: f64, contact: Option<&ContactSpec>) -> Result<()> {
+    if spacing < GAP || contact.is_none_or(|contact| contact.shape != Shape::Sphere) {
+        return Ok(());
+    }
+    let what = format!("spheres {spacing} diameters apart leave gaps that another wire passes through");
+    Err(at
+        .key("spacing")
+        .error(what, format!("take a spacing below {GAP}, or smooth wires: contact.shape = \"capsule\"")))
 }
 
 fn scene_name(at: &At, raw: &RawScene, file: &str) -> Result<String> {

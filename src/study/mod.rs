@@ -2,4 +2,5 @@
 
 pub mod calibrate;
 pub mod plot;
+pub mod stability;
 pub mod verify;

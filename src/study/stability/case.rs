@@ -1,0 +1,152 @@
+//! A case of the matrix: a scene, what is extreme about it, and what must come of it.
+
+use super::critical::Critical;
+use super::measure::Check;
+use crate::base::error::Result;
+use crate::scene::{self, Scene};
+use std::path::Path;
+
+/// Where a case's scene comes from before its options.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Base {
+    /// A scene that comes with the program, by name.
+    Builtin(&'static str),
+    /// The text of one of the matrix's own scenes, or of a verification scene.
+    Text(&'static str),
+}
+
+/// What must come of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Expect {
+    /// It runs to its end with its ledger closed.
+    Stable,
+    /// Refused before it runs, or stopped while it runs, by a message that has these words in its cause or remedy.
+    Told(&'static [&'static str]),
+}
+
+/// How a case is run.
+#[derive(Debug, Clone)]
+pub enum Kind {
+    /// Once, to its end.
+    Run,
+    /// Many times with fixed steps, to find the greatest one that holds.
+    Critical(Critical),
+}
+
+/// One row of the matrix.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Name, by which it can be asked for.
+    pub name: String,
+    /// What is extreme about it, in a few words.
+    pub about: String,
+    /// Scene before options.
+    pub base: Base,
+    /// `key=value` options as `--set` takes them.
+    pub set: Vec<String>,
+    /// Further options of the quick form, after the others.
+    pub quick: Vec<String>,
+    /// What must come of it.
+    pub expect: Expect,
+    /// How it is run.
+    pub kind: Kind,
+    /// The number it must give, when one is known.
+    pub check: Option<Check>,
+    /// Words that a warning of the run must have, for what is stable and yet not what the user asked for.
+    pub warned: &'static [&'static str],
+    /// Greatest energy residual over the work done [-], and why where it is not 1 %.
+    pub residual: (f64, &'static str),
+    /// Whether it is started before the others, so that no core waits for it at the end.
+    pub long: bool,
+    /// Wall time after which the run counts as hung [s].
+    pub patience: f64,
+}
+
+/// Greatest energy residual over the work done, unless a case says why [-].
+const RESIDUAL: f64 = 0.01;
+/// Wall time after which a run counts as hung [s]; the longest case takes about a minute on a core of its own.
+const PATIENCE: f64 = 400.0;
+
+impl Case {
+    /// A run of `base` that must be stable.
+    pub fn new(name: impl Into<String>, about: impl Into<String>, base: Base) -> Self {
+        Self {
+            name: name.into(),
+            about: about.into(),
+            base,
+            set: Vec::new(),
+            quick: Vec::new(),
+            expect: Expect::Stable,
+            kind: Kind::Run,
+            check: None,
+            warned: &[],
+            residual: (RESIDUAL, ""),
+            long: false,
+            patience: PATIENCE,
+        }
+    }
+
+    /// Adds options.
+    pub fn set<S: Into<String>>(mut self, options: impl IntoIterator<Item = S>) -> Self {
+        self.set.extend(options.into_iter().map(Into::into));
+        self
+    }
+
+    /// Adds options of the quick form.
+    pub fn quick<S: Into<String>>(mut self, options: impl IntoIterator<Item = S>) -> Self {
+        self.quick.extend(options.into_iter().map(Into::into));
+        self
+    }
+
+    /// It must end with a message that has these words.
+    pub fn told(mut self, words: &'static [&'static str]) -> Self {
+        self.expect = Expect::Told(words);
+        self
+    }
+
+    /// It must give a known number.
+    pub fn gives(mut self, check: Check) -> Self {
+        self.check = Some(check);
+        self
+    }
+
+    /// It must warn in these words.
+    pub fn warns(mut self, words: &'static [&'static str]) -> Self {
+        self.warned = words;
+        self
+    }
+
+    /// Its ledger may be open by this share of the work done [-], for a stated reason.
+    pub fn residual(mut self, limit: f64, why: &'static str) -> Self {
+        self.residual = (limit, why);
+        self
+    }
+
+    /// It takes long.
+    pub fn long(mut self) -> Self {
+        self.long = true;
+        self
+    }
+
+    /// It looks for the critical step.
+    pub fn critical(mut self, critical: Critical) -> Self {
+        self.kind = Kind::Critical(critical);
+        self
+    }
+
+    /// Reads the scene with the case's options and `more`.
+    ///
+    /// # Errors
+    /// What [`scene::load`] refuses.
+    pub fn scene(&self, quick: bool, more: &[String]) -> Result<Scene> {
+        let mut options = self.set.clone();
+        if quick {
+            options.extend_from_slice(&self.quick);
+        }
+        options.extend_from_slice(more);
+        match self.base {
+            Base::Builtin(name) => scene::load(name, &options),
+            Base::Text(text) => scene::parse(text, &format!("{}.toml", self.name), Path::new("."), &options),
+        }
+    }
+}

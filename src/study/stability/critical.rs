@@ -1,0 +1,91 @@
+//! The empirical critical time step: bisection of a fixed step between one that holds and one that does not.
+//!
+//! A step does not hold when the run has to stop, or when it ends with another energy than with half of the predicted
+//! bound: a run may be unstable without exploding, because plastic flow, friction and damping swallow what a wrong step
+//! feeds in. The prediction is the least bound that the engine gives during a run that follows it.
+
+use super::case::Case;
+use super::measure::{Accept, Answer, Seen};
+use super::outcome::Ended;
+use super::run::{Leash, watch};
+use crate::base::error::{Error, Result};
+use crate::engine::view::Sample;
+
+/// Bisection ends when the step that holds and the one that does not are this near [-].
+const SHARP: f64 = 0.005;
+/// Greatest step tried, over the bound [-].
+const WIDEST: f64 = 64.0;
+
+/// How the critical step of a case is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Critical {
+    /// The energy of a run may be this many times that of one with half of the bound [-].
+    pub growth: f64,
+    /// The bound must come within this share of the critical step [-]; `None`: it only has to lie below.
+    pub within: Option<f64>,
+}
+
+impl Critical {
+    /// Bodies that keep their energy: an unstable step makes it grow without bound.
+    pub const ELASTIC: Self = Self { growth: 10.0, within: None };
+    /// Bodies that swallow energy: one per cent more than at a small step is a wrong answer.
+    pub const DISSIPATIVE: Self = Self { growth: 1.05, within: None };
+}
+
+/// Finds the critical step of a case.
+///
+/// # Errors
+/// What the scene or the engine refuse; a run at half of the bound that does not hold.
+pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> Result<Ended> {
+    let bound = least_bound(case, quick, leash)?;
+    let run = |step: f64| -> Result<f64> {
+        let scene = case.scene(quick, &[format!("time.step={step:e} s")])?;
+        watch(&scene, leash).map(|seen| energy(&seen))
+    };
+    let reference = run(0.5 * bound)?;
+    let holds = |step: f64| -> Result<bool> {
+        match run(step) {
+            Ok(energy) => Ok(energy <= critical.growth * reference),
+            Err(Error::Trouble { .. }) => Ok(false),
+            Err(other) => Err(other),
+        }
+    };
+    let mut low = bound;
+    let mut wrong = Vec::new();
+    if !holds(low)? {
+        wrong.push(format!("a run at the bound of {bound:.3e} s does not hold"));
+        low = 0.5 * bound;
+    }
+    let mut high = 2.0 * low;
+    while holds(high)? {
+        low = high;
+        high *= 2.0;
+        if high > WIDEST * bound {
+            wrong.push(format!("{WIDEST} times the bound still holds: the case tests nothing"));
+            break;
+        }
+    }
+    while high / low > 1.0 + SHARP && wrong.len() < 2 {
+        let middle = (low * high).sqrt();
+        if holds(middle)? { low = middle } else { high = middle }
+    }
+    let answer = Answer {
+        what: "bound against critical step",
+        unit: "ns",
+        computed: bound * 1e9,
+        exact: low * 1e9,
+        accept: Accept::Below(critical.within),
+    };
+    Ok(Ended::Ran { answer: Some(answer), residual: None, wrong, warnings: Vec::new() })
+}
+
+/// The least bound on the step during a run that follows it [s].
+fn least_bound(case: &Case, quick: bool, leash: &Leash) -> Result<f64> {
+    watch(&case.scene(quick, &[])?, leash).map(|seen| seen.least_bound)
+}
+
+/// Greatest energy stored, moving or swallowed over the run [J].
+fn energy(seen: &Seen) -> f64 {
+    let of = |row: &Sample| row.energy.internal().abs().max(row.energy.kinetic.abs());
+    seen.rows.iter().map(of).fold(0.0, f64::max)
+}

@@ -1,0 +1,106 @@
+//! Numerical stability on stiff and extreme cases: a matrix of scenes, each run and judged.
+//!
+//! Every case must end `stable`, with its energy ledger closed and the number right where one is known, or `refused`
+//! or `stopped` by a message that names cause and remedy. Everything else is `FAILED`: a value that is not finite, a
+//! hang, an open ledger, a wrong number, a panic.
+//!
+//! | module | what it holds |
+//! | --- | --- |
+//! | [`matrix`] | the table of cases |
+//! | [`case`] | what a case is |
+//! | [`run`] | runs one, on a thread of its own, and watches it |
+//! | [`measure`] | known numbers |
+//! | [`critical`] | the empirical critical time step by bisection |
+//! | [`outcome`] | how a case ended |
+//! | [`report`], [`plots`] | the results for people and programs |
+
+pub mod case;
+pub mod critical;
+pub mod matrix;
+pub mod measure;
+pub mod outcome;
+pub mod plots;
+pub mod report;
+pub mod run;
+
+use crate::base::error::{Error, Result};
+use crate::scene::suggest::nearest;
+use case::Case;
+use outcome::Report;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// The cases of these names, all when there is none; a name that ends in `*` takes all that begin so.
+///
+/// # Errors
+/// A name that no case has; the nearest is suggested.
+pub fn select(names: &[String]) -> Result<Vec<Case>> {
+    let all = matrix::cases();
+    if let Some(name) = names.iter().find(|name| !all.iter().any(|case| matches(name, case))) {
+        let help = match nearest(name, all.iter().map(|case| case.name.as_str())) {
+            Some(near) => format!("did you mean `{near}`? `strandsnap stability --list` names them all"),
+            None => "`strandsnap stability --list` names them all; `friction-*` takes all that begin so".into(),
+        };
+        return Err(Error::input(format!("there is no stability case `{name}`"), help));
+    }
+    let wanted = |case: &Case| names.is_empty() || names.iter().any(|name| matches(name, case));
+    Ok(all.into_iter().filter(wanted).collect())
+}
+
+fn matches(name: &str, case: &Case) -> bool {
+    match name.strip_suffix('*') {
+        Some(start) => case.name.starts_with(start),
+        None => case.name == name,
+    }
+}
+
+/// Runs cases, `threads` at a time and each on one thread, the long ones first; calls `done` after each. Reports come in
+/// the order of `cases`; those that `stop` cut short are left out.
+pub fn run_all(
+    cases: &[Case],
+    quick: bool,
+    threads: usize,
+    stop: &AtomicBool,
+    done: &(dyn Fn(&Report) + Sync),
+) -> Vec<Report> {
+    let mut order: Vec<usize> = (0..cases.len()).collect();
+    order.sort_by_key(|index| !cases[*index].long);
+    let next = AtomicUsize::new(0);
+    let reports = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..threads.clamp(1, cases.len().max(1)) {
+            scope.spawn(|| {
+                while let Some(index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let Some(report) = run::run_case(&cases[*index], quick, stop) else { break };
+                    done(&report);
+                    reports.lock().unwrap_or_else(PoisonError::into_inner).push((*index, report));
+                }
+            });
+        }
+    });
+    let mut reports = reports.into_inner().unwrap_or_else(PoisonError::into_inner);
+    reports.sort_by_key(|(index, _)| *index);
+    reports.into_iter().map(|(_, report)| report).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cases_are_found_by_name_and_by_beginning() {
+        let find = |name: &str| select(&[name.to_string()]);
+        assert_eq!(find("friction-0-sphere").unwrap().len(), 1);
+        assert!(find("friction-*").unwrap().len() >= 8);
+        let error = format!("{:?}", miette::Report::new(find("frition-0-sphere").unwrap_err()));
+        assert!(error.contains("friction-0-sphere"), "{error}");
+        assert_eq!(select(&[]).unwrap().len(), matrix::cases().len());
+    }
+
+    #[test]
+    fn no_two_cases_have_one_name() {
+        let mut names: Vec<String> = matrix::cases().into_iter().map(|case| case.name).collect();
+        names.sort();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
+    }
+}

@@ -1,0 +1,223 @@
+//! One case on one thread: runs the engine as a run does, watches more closely, and survives what goes wrong.
+
+use super::case::{Case, Kind};
+use super::critical;
+use super::measure::Seen;
+use super::outcome::{Ended, Report, judge};
+use crate::base::error::{Error, Result};
+use crate::engine::Engine;
+use crate::engine::view::Energy;
+use crate::observe::guard::Guard;
+use crate::observe::planned::PlannedEnd;
+use crate::run::{Schedule, StopRule, assemble, in_pool};
+use crate::scene::Scene;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+/// Time that a run which was asked to end gets to do so [s].
+const GRACE: Duration = Duration::from_secs(10);
+
+/// What a run reports while it goes: its steps, and whether it must end.
+#[derive(Debug, Default)]
+pub struct Leash {
+    /// Steps done.
+    pub steps: AtomicU64,
+    /// Set to end the run.
+    pub stop: AtomicBool,
+}
+
+/// Runs a case on a thread of its own and judges it; `cancel` ends it early, with no report.
+pub fn run_case(case: &Case, quick: bool, cancel: &AtomicBool) -> Option<Report> {
+    let leash = Arc::new(Leash::default());
+    let (send, receive) = mpsc::channel();
+    let (job, held) = (case.clone(), leash.clone());
+    let began = Instant::now();
+    std::thread::spawn(move || {
+        let ended = catch_unwind(AssertUnwindSafe(|| in_pool(Some(1), || end_of(&job, quick, &held))));
+        let ended = match ended {
+            Ok(Ok(ended)) => ended,
+            Ok(Err(error)) => Ended::Broke(error.to_string()),
+            Err(panic) => Ended::Broke(format!("panic: {}", words_of(&*panic))),
+        };
+        // Nobody listens any more once the run has been given up.
+        let _ = send.send(ended);
+    });
+    let patience = Duration::from_secs_f64(case.patience);
+    let ended = loop {
+        match receive.recv_timeout(Duration::from_millis(50)) {
+            Ok(ended) => break ended,
+            Err(_) if cancel.load(Ordering::Relaxed) => {
+                leash.stop.store(true, Ordering::Relaxed);
+                return None;
+            }
+            Err(_) if began.elapsed() > patience => {
+                leash.stop.store(true, Ordering::Relaxed);
+                let answers = receive.recv_timeout(GRACE).is_ok();
+                let how = if answers { "it takes ever more steps" } else { "it hangs within one step" };
+                break Ended::Broke(format!("no end after {:.0} s: {how}", case.patience));
+            }
+            Err(_) => {}
+        }
+    };
+    (!cancel.load(Ordering::Relaxed))
+        .then(|| judge(case, ended, leash.steps.load(Ordering::Relaxed), began.elapsed().as_secs_f64()))
+}
+
+fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|s| s.to_string());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without words".into())
+}
+
+fn end_of(case: &Case, quick: bool, leash: &Leash) -> Ended {
+    let ended = match &case.kind {
+        Kind::Run => case.scene(quick, &[]).and_then(|scene| once(case, &scene, leash)),
+        Kind::Critical(critical) => critical::search(case, critical, quick, leash),
+    };
+    ended.unwrap_or_else(from_error)
+}
+
+/// An error as the end of a case.
+fn from_error(error: Error) -> Ended {
+    match error {
+        Error::Scene(scene) => Ended::Refused { what: scene.what, help: scene.help },
+        Error::Input { what, help } => Ended::Refused { what, help },
+        Error::Trouble { step, what, help } => Ended::Stopped { what: format!("step {step}: {what}"), help },
+        other => Ended::Broke(other.to_string()),
+    }
+}
+
+/// A run to its end, with what must hold in every run.
+fn once(case: &Case, scene: &Scene, leash: &Leash) -> Result<Ended> {
+    let seen = watch(scene, leash)?;
+    let mut wrong = Vec::new();
+    let answer = case.check.map(|check| check(&seen));
+    wrong.extend(ledger_faults(&seen));
+    wrong.extend(seen.passed_through());
+    let residual = Some(residual(&seen));
+    Ok(Ended::Ran { answer, residual, wrong, warnings: seen.notices })
+}
+
+/// Runs a scene to its end; rows come as the scene's `output` asks.
+///
+/// # Errors
+/// What the scene, the engine or the guard refuse.
+pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
+    let engine = Engine::new(&scene.spec, assemble(scene)?)?;
+    let info = engine.info();
+    let mut guard = Guard::new(&scene.spec.time, engine.negligible_energy());
+    guard.start(&info);
+    let seen = Seen::start(scene.spec.clone(), &engine);
+    let mut watched = Watched { engine, guard, rule: StopRule::new(&scene.spec.stop), seen };
+    let end = PlannedEnd::new(&scene.spec.stop, info.strain_end);
+    let mut schedule = Schedule::new(&scene.spec.output);
+    watched.row()?;
+    while !leash.stop.load(Ordering::Relaxed) && !watched.is_over() {
+        let ruptures = watched.step()?;
+        leash.steps.fetch_add(1, Ordering::Relaxed);
+        let engine = &watched.engine;
+        let now = end.fraction(engine.strain(), engine.time(), engine.steps());
+        (0..ruptures).for_each(|_| schedule.rupture(now));
+        let due = schedule.due(now);
+        if due.row || due.snapshot {
+            watched.row()?;
+        }
+    }
+    watched.engine.inspect()?;
+    watched.row()?;
+    watched.guard.finish();
+    watched.notices();
+    watched.seen.finish(&watched.engine);
+    Ok(watched.seen)
+}
+
+/// A run and all that watch it.
+struct Watched {
+    engine: Engine,
+    guard: Guard,
+    rule: StopRule,
+    seen: Seen,
+}
+
+impl Watched {
+    fn is_over(&self) -> bool {
+        let engine = &self.engine;
+        self.rule.reached(engine.strain(), engine.time(), engine.steps()).is_some()
+    }
+
+    /// One step; returns how many bonds broke in it.
+    fn step(&mut self) -> Result<usize> {
+        self.engine.step()?;
+        let ruptures = self.engine.take_ruptures();
+        for rupture in &ruptures {
+            self.rule.rupture();
+            self.guard.rupture(rupture);
+        }
+        let count = ruptures.len();
+        self.seen.ruptures.extend(ruptures);
+        self.notices();
+        Ok(count)
+    }
+
+    fn row(&mut self) -> Result<()> {
+        let sample = self.engine.sample();
+        self.guard.check(&sample)?;
+        self.rule.row(sample.stress);
+        let judged = self.guard.row(&sample);
+        self.seen.row(&self.engine, sample);
+        judged
+    }
+
+    fn notices(&mut self) {
+        let said = self.engine.take_notices().into_iter().chain(self.guard.take_notices());
+        self.seen.notices.extend(said.map(|notice| notice.text));
+    }
+}
+
+/// The energy that a run had to do with [J]; rounding alone does not count.
+fn scale(seen: &Seen) -> f64 {
+    let of = |e: &Energy| e.work.abs().max(e.internal().abs()).max(e.kinetic.abs());
+    seen.rows.iter().map(|row| of(&row.energy)).fold(seen.negligible, f64::max)
+}
+
+/// Greatest residual of the ledger over the greatest work done [-].
+fn residual(seen: &Seen) -> f64 {
+    let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+    seen.rows.iter().map(|row| row.energy.residual().abs()).fold(0.0, larger) / scale(seen)
+}
+
+/// Terms of the ledger that no closed balance would betray: dissipation that falls, energy stored that is negative.
+fn ledger_faults(seen: &Seen) -> Vec<String> {
+    let (rows, slack) = (&seen.rows, 1e-3 * scale(seen));
+    let dissipated: [(&str, fn(&Energy) -> f64); 4] = [
+        ("plastic work of bonds", |e| e.plastic_bonds),
+        ("plastic work of contacts", |e| e.plastic_contacts),
+        ("friction", |e| e.friction),
+        ("damping", |e| e.damping),
+    ];
+    let stored: [(&str, fn(&Energy) -> f64); 3] = [
+        ("kinetic energy", |e| e.kinetic),
+        ("elastic energy of bonds", |e| e.elastic_bonds),
+        ("elastic energy of contacts", |e| e.elastic_contacts),
+    ];
+    let mut faults = Vec::new();
+    for (name, term) in dissipated {
+        let mut most = 0.0f64;
+        for row in rows {
+            let now = term(&row.energy);
+            if now < most - slack {
+                faults.push(format!("{name} gives energy back at step {}", row.step));
+                break;
+            }
+            most = most.max(now);
+        }
+    }
+    for (name, term) in stored {
+        if let Some(row) = rows.iter().find(|row| term(&row.energy) < -slack) {
+            faults.push(format!("the {name} is negative at step {}", row.step));
+        }
+    }
+    faults
+}
