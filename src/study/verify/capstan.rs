@@ -55,7 +55,7 @@ fn slide(lab: &Lab, friction: f64, spacing: f64) -> Result<Slide> {
     let [first, last] = [skipped, bonds - 1 - skipped];
     let ratio = trial.settled(0.5 * end, end, |engine| {
         let s = engine.state();
-        let tension = |k: usize| s.bond[k].pull.dot((s.x.get(k + 1) - s.x.get(k)).normalize());
+        let tension = |k: usize| s.bond.pull(k).dot((s.x.get(k + 1) - s.x.get(k)).normalize());
         tension(last) / tension(first)
     })?;
     let piece = helix.arc_length(height) / bonds as f64;

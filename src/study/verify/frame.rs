@@ -4,6 +4,7 @@ use super::Case;
 use super::finding::{Finding, Spent};
 use super::support::Lab;
 use crate::base::error::Result;
+use crate::engine::state::BondActions;
 use crate::scene;
 use crate::scene::spec::{PathSpec, Spec};
 use glam::{DMat3, DVec3};
@@ -72,10 +73,10 @@ fn outcome(lab: &Lab, name: &str, frame: &Frame) -> Result<Outcome> {
     Ok(Outcome {
         vectors: [
             (0..s.len()).map(|p| seen(s.x.get(p) - away)).collect(),
-            s.bond.iter().map(|b| seen(b.pull)).collect(),
-            s.bond.iter().map(|b| seen(b.moment)).collect(),
+            (0..s.len()).map(|b| seen(s.bond.pull(b))).collect(),
+            (0..s.len()).map(|b| seen(s.bond.moment(b))).collect(),
         ],
-        thinning: s.thinning.clone(),
+        thinning: (0..s.len()).map(|b| s.bond.get(b, BondActions::THINNING)).collect(),
         energies: [e.elastic_bonds, e.plastic_bonds, e.damping, e.plastic_contacts, e.friction],
         spent: trial.finish(),
     })

@@ -38,7 +38,7 @@ struct Instant {
 fn look(engine: &Engine, bar: &RoundBar, yield_stress: f64, rates: [f64; 2]) -> Instant {
     let s = engine.state();
     let axis = (s.x.get(1) - s.x.get(0)).normalize();
-    let action = s.bond[0].moment;
+    let action = s.bond.moment(0);
     let torque = action.dot(axis);
     let moment = (action - axis * torque).length();
     let section = Section { radius: s.radius[0], yield_stress };

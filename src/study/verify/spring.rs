@@ -34,7 +34,7 @@ fn stiffness(trial: &mut Trial) -> Result<f64> {
         let s = engine.state();
         let weight = (std::f64::consts::PI * engine.time() / end).sin().powi(2) * engine.time_step();
         moved = (moved.0 + weight * engine.strain() * gauge, moved.1 + weight);
-        0.5 * (s.bond[0].pull.z + s.bond[last].pull.z)
+        0.5 * (s.bond.pull(0).z + s.bond.pull(last).z)
     })?;
     Ok(force * moved.1 / moved.0)
 }
