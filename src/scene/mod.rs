@@ -6,6 +6,7 @@ mod at;
 pub mod builtin;
 pub mod centreline_text;
 pub mod hardening;
+pub mod look;
 mod overrides;
 pub mod plan;
 pub mod raw;
