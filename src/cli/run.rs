@@ -1,9 +1,9 @@
 //! `strandsnap run`.
 
-use super::say::say;
-use super::values::SceneArgs;
 use super::animation::AnimationArgs;
 use super::look::LookArgs;
+use super::say::say;
+use super::values::SceneArgs;
 use super::{Ended, interrupt};
 use crate::base::error::Result;
 use crate::observe::report::{one_line, report};

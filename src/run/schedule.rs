@@ -156,19 +156,23 @@ mod tests {
         assert_eq!(count(&mut schedule, 5_001, 10_001), (50, 5));
     }
 
-    /// Fractions at which snapshots come in 100,000 steps, when ruptures come at `ruptures`; every 50th state is kept.
+    /// Fractions at which snapshots come in 100,000 steps, when ruptures come at `ruptures`; the state at the last row
+    /// is kept, as a run does.
     fn shown(schedule: &mut Schedule, ruptures: &[f64]) -> Vec<f64> {
-        let (mut shown, mut kept) = (Vec::new(), None);
+        let (mut shown, mut kept, mut broken) = (Vec::new(), None, 0);
         for step in 1..=100_000 {
             let now = f64::from(step) / 100_000.0;
-            let broke = ruptures.iter().any(|at| (at - now).abs() < 1e-9);
-            if broke && schedule.rupture(kept, now) {
-                shown.extend(kept);
+            let before = broken;
+            broken = ruptures.iter().filter(|at| **at <= now + 1e-9).count();
+            let at = kept;
+            if broken > before && schedule.rupture(kept.take(), now) {
+                shown.extend(at);
             }
-            if schedule.due(now).snapshot {
+            let due = schedule.due(now);
+            if due.snapshot {
                 shown.push(now);
-            }
-            if step % 50 == 0 {
+                kept = None;
+            } else if due.row {
                 kept = Some(now);
             }
         }
@@ -191,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_rupture_is_shown_before_and_after_and_then_ever_less_often() {
-        let shown = shown(&mut Schedule::new(&output(100, 50, 40.0)), &[0.7123]);
+        let shown = shown(&mut Schedule::new(&output(2000, 50, 40.0)), &[0.7123]);
         assert_eq!(between(&shown, 0.0, 0.711), 35, "evenly spread before");
         let after = shown.iter().position(|at| *at >= 0.7123).unwrap();
         assert!(shown[after - 1] > 0.7123 - 0.0006 && shown[after - 1] < 0.7123, "{}", shown[after - 1]);
@@ -205,7 +209,7 @@ mod tests {
     #[test]
     fn ruptures_in_a_row_are_each_followed_by_a_snapshot() {
         let ruptures = [0.75, 0.7504, 0.7521, 0.7533, 0.7571];
-        let shown = shown(&mut Schedule::new(&output(100, 50, 40.0)), &ruptures);
+        let shown = shown(&mut Schedule::new(&output(2000, 50, 40.0)), &ruptures);
         for pair in ruptures.windows(2) {
             assert!(between(&shown, pair[0], pair[1]) > 0, "{pair:?} in {shown:?}");
         }
@@ -214,14 +218,14 @@ mod tests {
     #[test]
     fn a_batch_of_ruptures_has_one_snapshot() {
         let ruptures: Vec<f64> = (0..10).map(|i| 0.5 + 1e-5 * f64::from(i)).collect();
-        let shown = shown(&mut Schedule::new(&output(100, 50, 40.0)), &ruptures);
+        let shown = shown(&mut Schedule::new(&output(2000, 50, 40.0)), &ruptures);
         assert!(between(&shown, 0.5, 0.5001) <= 2, "{shown:?}");
     }
 
     #[test]
     fn snapshots_for_ruptures_are_bounded_and_do_not_end_at_once() {
         let ruptures: Vec<f64> = (1..100_000).map(|i| f64::from(i) / 100_000.0).collect();
-        let shown = shown(&mut Schedule::new(&output(100, 60, 40.0)), &ruptures);
+        let shown = shown(&mut Schedule::new(&output(2000, 60, 40.0)), &ruptures);
         assert!((295..=300).contains(&shown.len()), "60 and four times 60, not {}", shown.len());
         let last = shown.iter().rposition(|at| (at * 60.0 + 1e-6).fract() > 1e-3).unwrap();
         assert!(shown[last] > 0.1, "the last one for a rupture came at {}", shown[last]);
@@ -229,7 +233,29 @@ mod tests {
 
     #[test]
     fn with_density_one_a_rupture_brings_its_two_states_only() {
-        let shown = shown(&mut Schedule::new(&output(100, 10, 1.0)), &[0.55]);
+        let shown = shown(&mut Schedule::new(&output(2000, 10, 1.0)), &[0.55]);
         assert_eq!(shown.len(), 10 + 2, "{shown:?}");
+    }
+
+    /// Strains at which the wires of the main scene broke, in per cent, and the strain at which it was expected to end.
+    const KA4: [f64; 22] = [
+        27.9949, 28.2360, 28.2461, 28.2560, 28.5788, 28.8396, 28.8402, 28.8681, 28.8738, 28.8821, 28.9124, 28.9232,
+        28.9335, 28.9377, 28.9906, 28.9988, 29.0253, 29.0434, 29.0480, 29.1157, 29.1227, 29.1255,
+    ];
+    const KA4_END: f64 = 37.58;
+
+    #[test]
+    fn most_frames_of_the_main_scene_show_its_fracture_and_hardly_two_wires_break_between_two() {
+        let ruptures = KA4.map(|strain| strain / KA4_END);
+        let all = shown(&mut Schedule::new(&output(2000, 60, 40.0)), &ruptures);
+        let shown: Vec<f64> = all.into_iter().filter(|at| *at <= ruptures[21] + 3e-4).collect();
+        let before = between(&shown, 0.0, ruptures[0]);
+        let after = shown.len() - before;
+        println!("{before} before the first rupture, {after} after it");
+        assert!((45..=50).contains(&before) && (80..=160).contains(&after), "{before} before, {after} after");
+        let broken = |at: f64| ruptures.iter().filter(|r| **r <= at).count();
+        let most = shown.windows(2).map(|pair| broken(pair[1]) - broken(pair[0])).max().unwrap();
+        assert!(most <= 2, "{most} wires broke between two frames");
+        assert_eq!(broken(*shown.last().unwrap()), 22, "the last one to snap is seen");
     }
 }

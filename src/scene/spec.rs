@@ -1,9 +1,9 @@
 //! `Spec`: a scene after resolution, all SI, nothing left to guess. It is what every later floor reads.
 
-/// The hardening law is stated as it is computed.
-pub use crate::law::bond::hardening::Hardening as HardeningSpec;
 /// Pictures are described by the words that people write.
 pub use super::look::{ColourBy, Theme, View};
+/// The hardening law is stated as it is computed.
+pub use crate::law::bond::hardening::Hardening as HardeningSpec;
 use glam::DVec3;
 use std::path::PathBuf;
 

@@ -71,13 +71,13 @@ impl Census {
     }
 }
 
-/// NeuQuant (Dekker 1994) on the colours that occur. The square root of how often keeps the ground, which is most of
-/// every picture, from taking the palette for itself, and leaves something for the marks of ruptures.
+/// NeuQuant (Dekker 1994) on the colours that occur. The cube root of how often keeps the ground, which is most of every
+/// picture, from taking the palette for itself, and leaves something for the colour bar and the marks of ruptures.
 fn learn(common: &[&Bin]) -> Vec<[u8; 3]> {
     let mut samples = Vec::new();
     for bin in common {
         let [r, g, b] = bin.mean();
-        let times = ((bin.count as f64).sqrt() / 4.0).ceil() as usize;
+        let times = (bin.count as f64).cbrt().ceil() as usize;
         samples.extend([r, g, b, u8::MAX].repeat(times));
     }
     // Too few samples make it learn nothing at all.
