@@ -23,11 +23,13 @@ use crate::observe::files::write_whole;
 use crate::observe::progress::Progress;
 use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
+use crate::observe::timings::Timings;
 use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
 use folder::OutFolder;
 use std::path::{Path, PathBuf};
+use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -42,6 +44,8 @@ pub struct RunOptions {
     pub threads: Option<usize>,
     /// Draw numbered pictures into `frames/`.
     pub frames: bool,
+    /// Make an animation of them.
+    pub animation: Option<outputs::Animation>,
     /// Write `recording.rrd`.
     pub recording: bool,
     /// Address of a Rerun viewer to stream to while running.
@@ -138,7 +142,7 @@ impl Clock {
         Self { wall: Instant::now(), cpu: cost::cpu_time() }
     }
 
-    fn cost(&self, outcome: &Outcome) -> Cost {
+    fn cost(&self, outcome: &Outcome, frames: Option<Timings>) -> Cost {
         let stepping_ms = outcome.stepping.as_secs_f64() * 1e3;
         Cost {
             steps: outcome.steps,
@@ -147,6 +151,7 @@ impl Clock {
             cpu_s: cost::cpu_time().zip(self.cpu).map(|(now, begin)| now - begin),
             ms_per_step: (outcome.steps > 0).then(|| stepping_ms / outcome.steps as f64),
             threads: rayon::current_num_threads(),
+            frames,
             versions: cost::versions(),
         }
     }
@@ -164,7 +169,7 @@ struct Job<'a> {
 fn drive_and_summarise(
     job: Job,
     engine: Engine,
-    mut written: Vec<Box<dyn Observer>>,
+    mut written: outputs::Written,
     stop: &AtomicBool,
 ) -> Result<RunSummary> {
     let spec = &job.scene.spec;
@@ -172,10 +177,11 @@ fn drive_and_summarise(
     let mut tables = Tables::new(&job.options.out);
     let mut progress = (!job.options.quiet).then(|| Progress::new(&spec.stop));
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
-    observers.extend(written.iter_mut().map(|o| &mut **o as &mut dyn Observer));
+    observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(progress.as_mut().map(|o| o as &mut dyn Observer));
     let (outcome, trouble) = drive::drive(engine, spec, &mut observers, stop)?;
-    let cost = job.clock.cost(&outcome);
+    let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
+    let cost = job.clock.cost(&outcome, frames);
     let closing = Closing {
         because: outcome.reason.to_string(),
         trouble: trouble.as_ref().map(Error::to_string),

@@ -347,8 +347,80 @@ fn frames_are_drawn_and_drawn_again() {
     assert_code(&strandsnap(folder.path(), &[&again[..], &["--overwrite"]].concat()), 0);
     let nothing = ["render", "out/single-wire", "--size", "200x150", "--strain-range", "90..95", "--out", "none"];
     assert_code(&strandsnap(folder.path(), &nothing), 2);
-    let view = ["render", "out/single-wire", "--views", "sideways", "--out", "none"];
-    assert_code(&strandsnap(folder.path(), &view), 2);
+    assert!(!folder.path().join("none").exists(), "nothing may be written");
+}
+
+#[test]
+fn words_for_frames_are_checked_before_anything_else() {
+    let folder = tempfile::tempdir().unwrap();
+    for (command, option, word, right) in [
+        ("render", "--views", "overview,midsecton", "midsection"),
+        ("run", "--views", "sideways", "cross-section"),
+        ("run", "--theme", "lihgt", "light"),
+        ("render", "--colour", "strain", "plastic-strain"),
+    ] {
+        let output = strandsnap(folder.path(), &[command, "single-wire", option, word]);
+        assert_code(&output, 2);
+        assert!(stderr(&output).contains(right), "{}", stderr(&output));
+    }
+    assert_code(&strandsnap(folder.path(), &["run", "ka4", "--animation-width", "640"]), 2);
+    assert_code(&strandsnap(folder.path(), &["run", "ka4", "--no-frames", "--animation"]), 2);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing may be written");
+}
+
+#[test]
+fn the_look_of_the_frames_is_kept_with_the_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let look = ["--views", "curve,unrolled", "--theme", "light", "--size", "640x360", "--focus-z", "12"];
+    assert_code(&short_run(folder.path(), &[&LEAN[..], &look].concat()), 0);
+    let scene = fs::read_to_string(folder.path().join("out/single-wire/scene.toml")).unwrap();
+    let scene: toml::Table = toml::from_str(&scene).unwrap();
+    let output = &scene["output"];
+    assert_eq!(output["views"].as_array().unwrap().len(), 2);
+    assert_eq!((output["theme"].as_str(), output["camera"]["focus_z"].as_str()), (Some("light"), Some("12 mm")));
+}
+
+#[test]
+fn an_animation_that_cannot_be_written_is_refused_before_the_simulation() {
+    if !has_adapter("an_animation_that_cannot_be_written_is_refused_before_the_simulation") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("taken.gif"), "precious").unwrap();
+    for (file, word) in [("a.mp4", ".gif"), ("taken.gif", "--overwrite")] {
+        let output = short_run(folder.path(), &["--no-recording", "--animation", file]);
+        assert_code(&output, 2);
+        assert!(plain(&stderr(&output)).contains(word), "{}", stderr(&output));
+    }
+    assert!(!folder.path().join("out").exists(), "nothing may be written");
+    assert_eq!(fs::read_to_string(folder.path().join("taken.gif")).unwrap(), "precious");
+}
+
+#[test]
+fn an_animation_is_made_by_run_and_by_render() {
+    if !has_adapter("an_animation_is_made_by_run_and_by_render") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let small = ["--size", "320x240", "--no-recording", "--animation", "--animation-width", "160"];
+    assert_code(&short_run(folder.path(), &small), 0);
+    let out = folder.path().join("out/single-wire");
+    let frames = &summary(&out)["frames"];
+    assert_eq!(frames["count"], 5);
+    for key in ["draw_ms", "read_back_ms", "charts_and_text_ms", "png_ms", "simulation_waited_s", "animation_s"] {
+        assert!(frames[key].is_f64(), "{key} is {}", frames[key]);
+    }
+    let header = fs::read(out.join("frames.gif")).unwrap();
+    // Logical screen of a GIF: width and height, little endian, after the six letters of its version.
+    assert_eq!(header[..10], [b'G', b'I', b'F', b'8', b'9', b'a', 160, 0, 120, 0]);
+    assert_eq!(frames["animation_bytes"], header.len());
+    let again = ["render", "out/single-wire", "--events", "--animation", "film.png", "--quiet"];
+    assert_code(&strandsnap(folder.path(), &again), 0);
+    assert_eq!(pictures(&out.join("render")), 2, "nothing broke: the first and the last");
+    // As large as the run's own frames.
+    let picture = fs::read(out.join("render/frame_0000.png")).unwrap();
+    assert_eq!(picture[16..24], [0, 0, 1, 64, 0, 0, 0, 240]);
+    assert!(fs::read(folder.path().join("film.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]

@@ -80,6 +80,10 @@ fn a_rupture_comes_before_its_row_and_brings_a_snapshot() {
     let step = diary.lines[broke].1;
     let shown = diary.lines[broke..].iter().find(|(word, _)| *word == "snapshot").unwrap();
     assert!(shown.1 >= step && shown.1 <= step + 2_000, "rupture at {step}, shown at {}", shown.1);
+    // The state at the last row before it was kept, and is shown first.
+    let last_row = diary.lines[..broke].iter().rfind(|(word, _)| *word == "row").unwrap();
+    assert_eq!(diary.lines[broke - 1], ("snapshot", last_row.1));
+    assert!(last_row.1 < step, "rupture at {step}, last row before it at {}", last_row.1);
     assert!(diary.lines.windows(2).all(|pair| pair[0].0 != "row" || pair[1].0 != "rupture" || pair[0].1 <= pair[1].1));
 }
 

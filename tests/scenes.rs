@@ -137,6 +137,11 @@ fn every_key_arrives_in_si() {
     assert_close(spec.holds[0].ramp, 50e-6);
     assert_eq!(spec.stop.steps, Some(1000));
     assert_eq!(spec.output.frame_size, [640, 480]);
+    assert_eq!(spec.output.views, [View::Midsection, View::CrossSection, View::Curve]);
+    assert_eq!((spec.output.theme, spec.output.camera.zoom), (Theme::Light, 1.5));
+    assert_close(spec.output.camera.azimuth, 20f64.to_radians());
+    assert_close(spec.output.camera.elevation, -0.5);
+    assert_close(spec.output.camera.focus_z.unwrap(), 0.02);
 }
 
 #[test]
@@ -208,6 +213,12 @@ fn options_change_every_kind_of_key() {
 }
 
 #[test]
+fn where_bonds_can_break_most_snapshots_are_left_to_ruptures() {
+    let snapshots = |scene: &str| load(scene, &[]).unwrap().spec.output.snapshots;
+    assert_eq!((snapshots("ka4"), snapshots("torsion")), (60, 160));
+}
+
+#[test]
 fn options_make_tables_remove_them_and_the_last_one_wins() {
     let spec = load("two-spheres", &["contact=", "time.safety=0.5", "time.safety=0.4", "sphere.1.diameter=8 mm"])
         .unwrap()
@@ -233,6 +244,13 @@ fn errors_in_an_option_point_at_it() {
         ("strand.pitch=39 MPa", "is a pressure, but a length", "39 mm", "39 MPa"),
         ("strand.pitch=39", "bare number 39", "39 mm", "39"),
         ("bond.damping=-1", "`damping` is -1", "", "-1"),
+        (
+            "output.views=['overveiw']",
+            "`overveiw` is not a value of `output.views",
+            "did you mean `overview`?",
+            "'overveiw'",
+        ),
+        ("output.theme=drak", "`drak` is not a value of `output.theme`", "did you mean `dark`?", "drak"),
         ("bond.law=rubber", "`rubber` is not a value of `bond.law`", "elasto-plastic", "rubber"),
         ("strand.layer.3.pitch=44 mm", "`strand.layer` has 3 elements", "from 0 to 2", "strand.layer.3.pitch"),
         ("strand.layer.outer.pitch=44 mm", "`outer` is none of them", "from 0 to 2", "strand.layer.outer.pitch"),

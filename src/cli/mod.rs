@@ -1,8 +1,10 @@
 //! Floor 9: the command line. One file per subcommand; each turns arguments into a call below and prints the answer.
 
+mod animation;
 mod calibrate;
 mod export;
 mod interrupt;
+mod look;
 mod plan;
 mod render;
 mod run;

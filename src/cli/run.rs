@@ -1,11 +1,13 @@
 //! `strandsnap run`.
 
+use super::animation::AnimationArgs;
+use super::look::LookArgs;
 use super::say::say;
 use super::values::SceneArgs;
 use super::{Ended, interrupt};
 use crate::base::error::Result;
 use crate::observe::report::{one_line, report};
-use crate::run::folder::{FRAMES, RECORDING};
+use crate::run::folder::{ANIMATION, FRAMES, RECORDING};
 use crate::run::{self, RunOptions, RunSummary, outputs};
 use crate::scene;
 use std::path::{Path, PathBuf};
@@ -28,7 +30,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Draw no frames (this needs no graphics adapter)
-    #[arg(long)]
+    #[arg(long, conflicts_with = "animation")]
     no_frames: bool,
     /// Write no Rerun recording
     #[arg(long)]
@@ -39,13 +41,20 @@ pub struct Args {
     /// Show no progress, and one line at the end
     #[arg(long)]
     quiet: bool,
+    #[command(flatten)]
+    animation: AnimationArgs,
+    #[command(flatten)]
+    look: LookArgs,
 }
 
 pub fn run(args: Args) -> Result<Ended> {
-    let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
+    let mut scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
     note_what_was_not_built(&args);
+    args.look.apply(&mut scene.spec.output);
+    let out = args.out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name));
     let options = RunOptions {
-        out: args.out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name)),
+        animation: args.animation.resolve(&out.join(ANIMATION)),
+        out,
         overwrite: args.overwrite,
         threads: args.threads.map(usize::from),
         frames: outputs::HAS_RENDER && !args.no_frames,
@@ -83,6 +92,9 @@ fn print(summary: &RunSummary, options: &RunOptions) {
         say!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
         if options.frames {
             say!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
+        }
+        if let (Some(animation), Some(frames)) = (&options.animation, &summary.cost.frames) {
+            say!("  {}: {} of animation", animation.file.display(), outputs::megabytes(frames.animation_bytes));
         }
         if outputs::HAS_RENDER {
             say!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());

@@ -1,7 +1,6 @@
 //! How single arguments are written.
 
-use crate::scene::spec::ColourBy;
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 /// The scene and changes to it: what every command that loads a scene takes.
 #[derive(Debug, Args)]
@@ -21,39 +20,6 @@ impl SceneArgs {
     pub fn overrides(&self) -> Vec<String> {
         let seed = self.seed.map(|seed| format!("seed={seed}"));
         self.set.iter().cloned().chain(seed).collect()
-    }
-}
-
-/// [`ColourBy`] on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Colour {
-    /// True axial stress
-    Stress,
-    /// Equivalent plastic strain
-    PlasticStrain,
-    /// Share of the rupture limit
-    Utilisation,
-    /// Contact pressure
-    ContactPressure,
-    /// Layer
-    Layer,
-    /// Wire
-    Wire,
-    /// Speed
-    Velocity,
-}
-
-impl From<Colour> for ColourBy {
-    fn from(colour: Colour) -> Self {
-        match colour {
-            Colour::Stress => ColourBy::Stress,
-            Colour::PlasticStrain => ColourBy::PlasticStrain,
-            Colour::Utilisation => ColourBy::Utilisation,
-            Colour::ContactPressure => ColourBy::ContactPressure,
-            Colour::Layer => ColourBy::Layer,
-            Colour::Wire => ColourBy::Wire,
-            Colour::Velocity => ColourBy::Velocity,
-        }
     }
 }
 

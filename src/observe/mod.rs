@@ -11,6 +11,7 @@ pub mod recording;
 pub mod report;
 pub mod summary;
 pub mod tables;
+pub mod timings;
 pub mod trajectory;
 pub mod units;
 pub mod wording;

@@ -51,6 +51,9 @@ pub fn report(summary: &RunSummary) -> String {
         line("scaled", format!("mass × {}, rotational inertia × {}", summary.mass_scale, summary.inertia_scale));
     }
     line("cost", cost(summary));
+    if let Some(frames) = &summary.cost.frames {
+        line("frames", frames.to_string());
+    }
     line("stopped because", summary.stopped_because.clone());
     text
 }

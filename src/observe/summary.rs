@@ -4,6 +4,7 @@ use super::Observer;
 use super::findings::Findings;
 use super::guard::QuasiStatic;
 use super::tables::{cause, layer_name};
+use super::timings::Timings;
 use super::units::{mm, mpa, percent};
 use crate::base::error::Result;
 use crate::engine::view::{Energy, Notice, RunInfo, Rupture, Sample};
@@ -145,6 +146,8 @@ pub struct Cost {
     pub ms_per_step: Option<f64>,
     /// Threads that the engine had.
     pub threads: usize,
+    /// Where the time of the frames went; `None` when none were drawn.
+    pub frames: Option<Timings>,
     /// Versions of this program and of what its output depends on.
     pub versions: BTreeMap<String, String>,
 }

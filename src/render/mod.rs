@@ -2,9 +2,10 @@
 //!
 //! Wires are drawn on the graphics adapter ([`adapter`], [`target`], [`wires`]); charts and text are drawn over them
 //! on the processor ([`canvas`]). [`frame::Renderer`] turns one snapshot into one picture, [`writer::FrameWriter`] is
-//! the observer that writes a numbered PNG sequence while the simulation runs.
+//! the observer that writes a numbered PNG sequence while the simulation runs, and [`animation`] makes one file of it.
 
 pub mod adapter;
+pub mod animation;
 pub mod camera;
 pub mod canvas;
 pub mod colour;
@@ -20,7 +21,6 @@ pub mod png;
 pub mod solid;
 pub mod style;
 pub mod target;
-pub mod timings;
 pub mod unrolled;
 pub mod viewpoint;
 pub mod wires;
@@ -28,7 +28,9 @@ pub mod writer;
 
 use crate::base::ticks;
 
+pub use crate::observe::timings;
 pub use adapter::check;
+pub use animation::AnimationOptions;
 pub use frame::Renderer;
 pub use style::{CameraOptions, FrameOptions, Theme, View};
 pub use timings::Timings;

@@ -1,7 +1,8 @@
 //! What a frame should show and how it should look.
 
-use crate::base::error::{Error, Result};
 use crate::scene::spec::ColourBy;
+/// The words of a frame stand in the scene.
+pub use crate::scene::spec::{Theme, View};
 
 /// A colour as sRGB bytes.
 pub type Rgb = [u8; 3];
@@ -54,85 +55,7 @@ impl Default for CameraOptions {
     }
 }
 
-/// A panel of a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum View {
-    /// The whole strand, its axis across the width.
-    Overview,
-    /// Close-up on the section where it breaks, from the front and from the back.
-    Midsection,
-    /// The same section with the layers taken apart, one below the other.
-    Exploded,
-    /// The cut at the same section: wires as discs, broken ones hollow.
-    CrossSection,
-    /// Wire number against axial position.
-    Unrolled,
-    /// Stress–strain curve.
-    Curve,
-    /// Everything in one view; what free bodies get.
-    Scene,
-}
-
-impl View {
-    /// Every view.
-    pub const ALL: [View; 7] = [
-        View::Overview,
-        View::Midsection,
-        View::Exploded,
-        View::CrossSection,
-        View::Unrolled,
-        View::Curve,
-        View::Scene,
-    ];
-
-    /// The word that people write.
-    pub fn word(self) -> &'static str {
-        match self {
-            View::Overview => "overview",
-            View::Midsection => "midsection",
-            View::Exploded => "exploded",
-            View::CrossSection => "cross-section",
-            View::Unrolled => "unrolled",
-            View::Curve => "curve",
-            View::Scene => "scene",
-        }
-    }
-}
-
-impl std::str::FromStr for View {
-    type Err = Error;
-
-    fn from_str(word: &str) -> Result<Self> {
-        let words = View::ALL.map(View::word).join(", ");
-        View::ALL
-            .into_iter()
-            .find(|v| v.word() == word)
-            .ok_or_else(|| Error::input(format!("there is no view `{word}`"), format!("views are {words}")))
-    }
-}
-
-/// Dark or light ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Theme {
-    /// Dark, for screens.
-    #[default]
-    Dark,
-    /// White, for paper.
-    Light,
-}
-
 impl Theme {
-    /// Every theme.
-    pub const ALL: [Theme; 2] = [Theme::Dark, Theme::Light];
-
-    /// The word that people write.
-    pub fn word(self) -> &'static str {
-        match self {
-            Theme::Dark => "dark",
-            Theme::Light => "light",
-        }
-    }
-
     /// The colours of the theme.
     pub fn style(self) -> Style {
         match self {
@@ -159,17 +82,6 @@ impl Theme {
                 edge: 0.45,
             },
         }
-    }
-}
-
-impl std::str::FromStr for Theme {
-    type Err = Error;
-
-    fn from_str(word: &str) -> Result<Self> {
-        Theme::ALL
-            .into_iter()
-            .find(|t| t.word() == word)
-            .ok_or_else(|| Error::input(format!("there is no theme `{word}`"), "themes are dark, light"))
     }
 }
 

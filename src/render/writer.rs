@@ -1,5 +1,6 @@
 //! The observer that writes a numbered PNG sequence while the simulation goes on.
 
+use super::animation::{self, AnimationOptions, Still};
 use super::frame::Renderer;
 use super::png;
 use super::style::FrameOptions;
@@ -9,24 +10,32 @@ use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use image::RgbImage;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-/// Snapshots that may wait to be drawn before the simulation has to wait.
-const WAITING: usize = 4;
+/// Fewest and most snapshots that may wait to be drawn.
+const WAITING: std::ops::RangeInclusive<usize> = 4..=1024;
+/// Memory of a snapshot for each particle [bytes]: five f32, a position and a state, and the other half for vectors
+/// that grew with room to spare.
+const PARTICLE_BYTES: usize = 48;
+/// Pictures that may wait to be encoded. Encoding is several times faster than drawing, so few ever do.
+const DRAWN: usize = 2;
 
-/// Writes `frame_0000.png`, `frame_0001.png` … into a folder. Draws on one thread and encodes on another; only when
-/// four snapshots are not yet drawn does the simulation wait.
+/// Writes `frame_0000.png`, `frame_0001.png` … into a folder. Draws on one thread and encodes on another, so that a
+/// frame is drawn while the one before is encoded and the simulation goes on.
 pub struct FrameWriter {
     folder: PathBuf,
     options: FrameOptions,
+    animation: Option<AnimationOptions>,
+    /// Memory for snapshots that wait to be drawn [bytes].
+    memory: usize,
     curve: Vec<(f64, f64)>,
     ruptures: Vec<Rupture>,
     workers: Option<Workers>,
-    timings: Timings,
-    frames: usize,
+    timings: Arc<Mutex<Timings>>,
+    stills: Vec<Still>,
 }
 
 struct Workers {
@@ -53,22 +62,46 @@ impl FrameWriter {
         Ok(Self {
             folder: folder.to_owned(),
             options,
+            animation: None,
+            memory: 0,
             curve: Vec::new(),
             ruptures: Vec::new(),
             workers: None,
-            timings: Timings::default(),
-            frames: 0,
+            timings: Arc::default(),
+            stills: Vec::new(),
         })
+    }
+
+    /// Makes an animation of the pictures when the last one is written, also of those of a run that was stopped.
+    pub fn with_animation(mut self, animation: Option<AnimationOptions>) -> Self {
+        self.animation = animation;
+        self
+    }
+
+    /// Lets snapshots that are not yet drawn take this much memory [bytes] before whoever brings them has to wait.
+    /// Ruptures come in bursts that no adapter keeps up with. Without it, four may wait.
+    pub fn with_memory(mut self, bytes: usize) -> Self {
+        self.memory = bytes;
+        self
     }
 
     /// Where the time went; complete after `finish`.
     pub fn timings(&self) -> Timings {
-        self.timings
+        *self.timings.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The same for those who hand the writer over.
+    pub fn shared_timings(&self) -> Arc<Mutex<Timings>> {
+        self.timings.clone()
     }
 
     /// Frames handed over so far.
     pub fn frames(&self) -> usize {
-        self.frames
+        self.stills.len()
+    }
+
+    fn add(&self, timings: &Timings) {
+        self.timings.lock().unwrap_or_else(PoisonError::into_inner).merge(timings);
     }
 
     /// Ends both threads and returns the first error that either met.
@@ -76,22 +109,37 @@ impl FrameWriter {
         let Some(Workers { jobs, draw, encode }) = self.workers.take() else {
             return Ok(());
         };
+        let begin = Instant::now();
         drop(jobs);
         let results = [draw.join(), encode.join()];
+        self.add(&Timings { drained: begin.elapsed(), ..Timings::default() });
         // An encoder that failed (disk full) is why the drawing stopped, so its error comes first.
         for result in results.into_iter().rev() {
             let timings = result.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-            self.timings.merge(&timings);
+            self.add(&timings);
         }
         Ok(())
     }
+
+    fn animate(&mut self) -> Result<()> {
+        let Some(options) = self.animation.take() else { return Ok(()) };
+        let begin = Instant::now();
+        let animation_bytes = animation::write(&options, &self.stills)?;
+        self.add(&Timings { animation: begin.elapsed(), animation_bytes, ..Timings::default() });
+        Ok(())
+    }
+}
+
+fn picture(folder: &Path, number: usize) -> PathBuf {
+    folder.join(format!("frame_{number:04}.png"))
 }
 
 impl Observer for FrameWriter {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
         let renderer = Renderer::new(info, &self.options)?;
-        let (jobs, waiting) = sync_channel(WAITING);
-        let (pictures, drawn) = sync_channel(2);
+        let waiting = self.memory / (PARTICLE_BYTES * info.particles.max(1));
+        let (jobs, waiting) = sync_channel(waiting.clamp(*WAITING.start(), *WAITING.end()));
+        let (pictures, drawn) = sync_channel(DRAWN);
         let folder = self.folder.clone();
         self.workers = Some(Workers {
             jobs,
@@ -115,11 +163,14 @@ impl Observer for FrameWriter {
         let Some(workers) = &self.workers else {
             return Err(Error::input("a snapshot came before the run started", "call `start` first"));
         };
+        let pause = job.ruptures.iter().any(|r| r.first_of_wire);
+        let begin = Instant::now();
         if workers.jobs.send(job).is_err() {
             // The drawing thread has ended early: say why.
             return self.join();
         }
-        self.frames += 1;
+        self.add(&Timings { waited: begin.elapsed(), ..Timings::default() });
+        self.stills.push(Still { picture: picture(&self.folder, self.stills.len()), pause });
         Ok(())
     }
 
@@ -129,7 +180,8 @@ impl Observer for FrameWriter {
     }
 
     fn finish(&mut self) -> Result<()> {
-        self.join()
+        self.join()?;
+        self.animate()
     }
 }
 
@@ -158,10 +210,10 @@ fn draw_all(mut renderer: Renderer, jobs: &Receiver<Job>, pictures: &SyncSender<
 
 fn encode_all(folder: &Path, pictures: &Receiver<(usize, RgbImage)>) -> Result<Timings> {
     let mut timings = Timings::default();
-    for (number, picture) in pictures.iter() {
+    for (number, drawn) in pictures.iter() {
         let start = Instant::now();
-        let bytes = png::encode(&picture)?;
-        png::write(&folder.join(format!("frame_{number:04}.png")), &bytes)?;
+        let bytes = png::encode(&drawn)?;
+        png::write(&picture(folder, number), &bytes)?;
         timings.encode += start.elapsed();
     }
     Ok(timings)

@@ -40,7 +40,8 @@ pub struct Outcome {
 ///
 /// Rows and snapshots come as the scene's `output` says, in the order in which things happen; a rupture comes
 /// before the row that follows it. What a run should not be believed without comes as a notice when it is found,
-/// the error that ends a run included. The first and the last state always come with a snapshot. Every observer
+/// the error that ends a run included. The first and the last state always come with a snapshot, and ruptures with the
+/// state at the last row before them and one soon after ([`Schedule`]). Every observer
 /// that was started is finished, also after an error. Call it inside a rayon pool to choose the threads.
 ///
 /// # Errors
@@ -83,6 +84,8 @@ pub(super) fn drive(
         guard,
         audience: Audience { observers, started: 0, time: Duration::ZERO },
         shown: None,
+        breaks: spec.bond.rupture.is_some(),
+        kept: None,
     };
     let begin = Instant::now();
     let ended = driver.go(&info, stop);
@@ -114,6 +117,11 @@ struct Driver<'a, 'b> {
     audience: Audience<'a, 'b>,
     /// Step of the last snapshot.
     shown: Option<u64>,
+    /// Bonds can break.
+    breaks: bool,
+    /// The state at the last row and when that was, in case the next thing to happen is a rupture: which one is the
+    /// last before it shows only afterwards.
+    kept: Option<(f64, Arc<Snapshot>)>,
 }
 
 impl Driver<'_, '_> {
@@ -157,7 +165,12 @@ impl Driver<'_, '_> {
         let ruptures = self.engine.take_ruptures();
         if !ruptures.is_empty() {
             self.rule.rupture();
-            self.schedule.rupture(now);
+            let kept = self.kept.take();
+            if self.schedule.rupture(kept.as_ref().map(|(at, _)| *at), now)
+                && let Some((_, snapshot)) = kept
+            {
+                self.audience.snapshot(&snapshot)?;
+            }
         }
         for rupture in &ruptures {
             self.guard.rupture(rupture);
@@ -167,6 +180,11 @@ impl Driver<'_, '_> {
         let due = self.schedule.due(now);
         if due.snapshot {
             self.show()
+        } else if due.row && self.breaks {
+            let snapshot = Arc::new(self.engine.snapshot());
+            self.row(&snapshot.sample)?;
+            self.kept = Some((now, snapshot));
+            Ok(())
         } else if due.row {
             let sample = self.engine.sample();
             self.row(&sample)
@@ -180,6 +198,7 @@ impl Driver<'_, '_> {
         let snapshot = Arc::new(self.engine.snapshot());
         self.row(&snapshot.sample)?;
         self.shown = Some(snapshot.sample.step);
+        self.kept = None;
         self.audience.snapshot(&snapshot)
     }
 

@@ -15,6 +15,8 @@ pub const RECORDING: &str = "recording.rrd";
 pub const TRAJECTORY: &str = "trajectory.bin";
 /// Folder of numbered pictures.
 pub const FRAMES: &str = "frames";
+/// Animation of them, where no other name is given.
+pub const ANIMATION: &str = "frames.gif";
 
 /// An output folder that may be written.
 #[derive(Debug)]
@@ -49,7 +51,7 @@ impl OutFolder {
     pub fn open(&self) -> Result<()> {
         fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
         let tables = tables::FILES.into_iter();
-        for name in tables.chain([SCENE, SUMMARY, RECORDING, TRAJECTORY]) {
+        for name in tables.chain([SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION]) {
             let file = self.path.join(name);
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;

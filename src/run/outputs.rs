@@ -4,8 +4,19 @@ use super::RunOptions;
 use super::folder::{self, OutFolder};
 use crate::base::error::{Error, Result};
 use crate::observe::Observer;
+use crate::observe::timings::Timings;
 use crate::observe::trajectory::TrajectoryWriter;
+#[cfg(feature = "render")]
+use crate::observe::units::mm;
+#[cfg(feature = "render")]
+use crate::scene::spec::OutputSpec;
 use crate::scene::spec::Spec;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+/// Memory for snapshots that wait to be drawn [bytes]: some 500 of the main scene's, more than one run has.
+#[cfg(feature = "render")]
+const WAITING_FRAMES: usize = 256 << 20;
 
 /// Whether this program can draw frames.
 pub const HAS_RENDER: bool = cfg!(feature = "render");
@@ -28,27 +39,75 @@ pub(super) fn check(options: &RunOptions) -> Result<()> {
     if options.frames {
         check_frames()?;
     }
+    if let Some(animation) = &options.animation {
+        animation.check(options.overwrite)?;
+    }
     if options.recording || options.live.is_some() {
         check_recording(options.live.as_deref())?;
     }
     Ok(())
 }
 
-/// The observers that write the trajectory and, if asked for, recording and frames.
+/// An animation of the frames, as it is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Animation {
+    /// Its file: `.gif`, or `.png` or `.apng` for an animated PNG.
+    pub file: PathBuf,
+    /// Width, when it is to be smaller than the frames [px].
+    pub width: Option<u32>,
+}
+
+impl Animation {
+    /// Checks that it can be written without replacing anything.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a file name with another ending, or one that is taken while `overwrite` is not set.
+    pub fn check(&self, overwrite: bool) -> Result<()> {
+        check_animation(self)?;
+        if self.file.exists() && !overwrite {
+            return Err(Error::input(
+                format!("{} exists", self.file.display()),
+                "give --overwrite to replace it, or another name with --animation",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// A size for people.
+pub fn megabytes(bytes: u64) -> String {
+    format!("{:.1} MB", bytes as f64 * 1e-6)
+}
+
+/// What writes a run.
+pub(super) struct Written {
+    /// Trajectory and, if asked for, recording and frames.
+    pub observers: Vec<Box<dyn Observer>>,
+    /// Where the time of the frames goes.
+    pub frames: Option<Arc<Mutex<Timings>>>,
+}
+
+/// Opens all that writes a run.
 ///
 /// # Errors
 /// [`Error::Io`] when a file cannot be created, [`Error::Missing`] as in [`check`].
-pub(super) fn open(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Vec<Box<dyn Observer>>> {
+pub(super) fn open(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Written> {
     let mut observers: Vec<Box<dyn Observer>> =
         vec![Box::new(TrajectoryWriter::new(&folder.file(folder::TRAJECTORY))?)];
     if options.recording {
         observers.push(recording(options, spec, folder)?);
     }
+    let mut timings = None;
     if options.frames {
-        observers.push(frames(spec, folder)?);
+        let (writer, shared) = frames(options, spec, folder)?;
+        observers.push(writer);
+        timings = Some(shared);
     }
-    Ok(observers)
+    Ok(Written { observers, frames: timings })
 }
+
+/// An observer that draws frames, and where their time goes.
+type Frames = (Box<dyn Observer>, Arc<Mutex<Timings>>);
 
 #[cfg(feature = "render")]
 fn check_frames() -> Result<()> {
@@ -61,14 +120,53 @@ fn check_frames() -> Result<()> {
 }
 
 #[cfg(feature = "render")]
-fn frames(spec: &Spec, folder: &OutFolder) -> Result<Box<dyn Observer>> {
-    use crate::render::{FrameOptions, FrameWriter};
-    let options = FrameOptions { size: spec.output.frame_size, colour: spec.output.colour, ..FrameOptions::default() };
-    Ok(Box::new(FrameWriter::new(&folder.file(folder::FRAMES), options)?))
+fn check_animation(animation: &Animation) -> Result<()> {
+    animation_options(animation).map(|_| ())
 }
 
 #[cfg(not(feature = "render"))]
-fn frames(_spec: &Spec, _folder: &OutFolder) -> Result<Box<dyn Observer>> {
+fn check_animation(_animation: &Animation) -> Result<()> {
+    check_frames()
+}
+
+/// The same for those who draw.
+///
+/// # Errors
+/// [`Error::Input`] for a file name with another ending.
+#[cfg(feature = "render")]
+pub fn animation_options(animation: &Animation) -> Result<crate::render::AnimationOptions> {
+    crate::render::AnimationOptions::new(animation.file.clone(), animation.width)
+}
+
+/// What a scene says of frames, for those who draw.
+#[cfg(feature = "render")]
+pub fn frame_options(output: &OutputSpec) -> crate::render::FrameOptions {
+    let camera = &output.camera;
+    crate::render::FrameOptions {
+        size: output.frame_size,
+        colour: output.colour,
+        views: output.views.clone(),
+        theme: output.theme,
+        camera: crate::render::CameraOptions {
+            azimuth_deg: camera.azimuth.to_degrees() as f32,
+            elevation_deg: camera.elevation.to_degrees() as f32,
+            zoom: camera.zoom as f32,
+            focus_z_mm: camera.focus_z.map(|z| mm(z) as f32),
+        },
+    }
+}
+
+#[cfg(feature = "render")]
+fn frames(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Frames> {
+    let animation = options.animation.as_ref().map(animation_options).transpose()?;
+    let writer = crate::render::FrameWriter::new(&folder.file(folder::FRAMES), frame_options(&spec.output))?;
+    let writer = writer.with_animation(animation).with_memory(WAITING_FRAMES);
+    let timings = writer.shared_timings();
+    Ok((Box::new(writer), timings))
+}
+
+#[cfg(not(feature = "render"))]
+fn frames(_: &RunOptions, _: &Spec, _: &OutFolder) -> Result<Frames> {
     Err(built_without("frames", "render", "leave them out with --no-frames"))
 }
 

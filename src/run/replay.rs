@@ -2,8 +2,9 @@
 
 use super::folder::TRAJECTORY;
 use crate::base::error::{Error, Result};
-use crate::observe::Observer;
 use crate::observe::trajectory::{Record, Trajectory};
+use crate::observe::{Observer, partial};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,78 +12,185 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Which snapshots of a run to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selection {
-    /// Every how many snapshots of those within `strain`; 1 is all.
-    pub every: usize,
     /// Strain of the body, from and to, both included [-].
     pub strain: [f64; 2],
+    /// Of those, only the last one before and the first one after each rupture, the first and the last.
+    pub events: bool,
+    /// Of those, every how many; 1 is all.
+    pub every: usize,
 }
 
 impl Default for Selection {
     fn default() -> Self {
-        Self { every: 1, strain: [f64::NEG_INFINITY, f64::INFINITY] }
+        Self { strain: [f64::NEG_INFINITY, f64::INFINITY], events: false, every: 1 }
     }
 }
 
-/// The trajectory of a run, given its folder or the file itself.
-///
-/// # Errors
-/// [`Error::Input`] when there is none.
-pub fn trajectory_of(run: &Path) -> Result<PathBuf> {
-    let file = if run.is_dir() { run.join(TRAJECTORY) } else { run.to_path_buf() };
-    if !file.is_file() {
-        return Err(Error::input(
-            format!("there is no trajectory at {}", file.display()),
-            "give the folder of a finished run, such as out/ka4",
-        ));
-    }
-    Ok(file)
+/// What a selection needs to know of a snapshot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Moment {
+    /// Strain of the body [-].
+    strain: f64,
+    /// A bond broke since the snapshot before.
+    broke: bool,
 }
 
-/// Shows the selected snapshots, and every row and rupture, to `observer`. Returns how many snapshots it showed.
-///
-/// # Errors
-/// [`Error::Input`] when nothing is selected; otherwise what the trajectory or the observer says. The observer is
-/// finished in either case.
-pub fn replay(run: &Path, selection: &Selection, observer: &mut dyn Observer, stop: &AtomicBool) -> Result<usize> {
-    let mut trajectory = Trajectory::open(&trajectory_of(run)?)?;
-    observer.start(&trajectory.info().clone())?;
-    let shown = show(&mut trajectory, selection, observer, stop);
-    observer.finish()?;
-    match shown? {
-        0 => Err(Error::input(
-            format!("no snapshot of {} lies in that range of strain", run.display()),
-            "widen --strain-range",
-        )),
-        shown => Ok(shown),
+impl Selection {
+    /// Whether each of a run's snapshots is shown.
+    fn of(&self, moments: &[Moment]) -> Vec<bool> {
+        let [from, to] = self.strain;
+        let inside = |i: usize| (from..=to).contains(&moments[i].strain);
+        let all = 0..moments.len();
+        let (first, last) = (all.clone().find(|i| inside(*i)), all.clone().rev().find(|i| inside(*i)));
+        let event = |i: usize| {
+            let breaks_next = moments.get(i + 1).is_some_and(|next| next.broke);
+            moments[i].broke || breaks_next || Some(i) == first || Some(i) == last
+        };
+        let mut wanted = 0;
+        all.map(|i| {
+            let want = inside(i) && (!self.events || event(i));
+            wanted += usize::from(want);
+            want && (wanted - 1).is_multiple_of(self.every.max(1))
+        })
+        .collect()
     }
 }
 
-fn show(
-    trajectory: &mut Trajectory,
-    selection: &Selection,
-    observer: &mut dyn Observer,
-    stop: &AtomicBool,
-) -> Result<usize> {
-    let (mut inside, mut shown) = (0, 0);
-    for record in trajectory {
-        match record? {
-            Record::Sample(sample) => observer.sample(&sample)?,
-            Record::Rupture(rupture) => observer.rupture(&rupture)?,
-            Record::Notice(notice) => observer.notice(&notice)?,
-            Record::Snapshot(snapshot) => {
-                let [from, to] = selection.strain;
-                if (from..=to).contains(&snapshot.sample.strain) {
-                    if inside % selection.every.max(1) == 0 {
+/// A run whose snapshots were looked through and chosen from.
+pub struct Replay {
+    file: PathBuf,
+    shown: Vec<bool>,
+    /// Records that can be read: all, unless the run was cut off.
+    records: usize,
+    /// Why the trajectory ends before its run did.
+    cut_off: Option<Error>,
+}
+
+impl Replay {
+    /// Looks through the trajectory of a run, given its folder or the file itself. That of a program that was killed
+    /// is good up to where it was cut off.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is none or nothing in it is selected; [`Error::Io`] when it is damaged.
+    pub fn open(run: &Path, selection: &Selection) -> Result<Self> {
+        let file = trajectory_of(run)?;
+        let (mut moments, mut records, mut cut_off, mut broke) = (Vec::new(), 0, None, false);
+        for record in Trajectory::open(&file)? {
+            match record {
+                Ok(Record::Rupture(_)) => broke = true,
+                Ok(Record::Snapshot(snapshot)) => {
+                    moments.push(Moment { strain: snapshot.sample.strain, broke: std::mem::take(&mut broke) });
+                }
+                Ok(Record::Sample(_) | Record::Notice(_)) => {}
+                Err(error) if is_cut_off(&error) => cut_off = Some(error),
+                Err(error) => return Err(error),
+            }
+            records += usize::from(cut_off.is_none());
+        }
+        let shown = selection.of(&moments);
+        if !shown.contains(&true) {
+            return Err(match cut_off {
+                Some(error) if moments.is_empty() => error,
+                _ => Error::input(
+                    format!("no snapshot of {} lies in that range of strain", run.display()),
+                    "widen --strain-range",
+                ),
+            });
+        }
+        Ok(Self { file, shown, records, cut_off })
+    }
+
+    /// How many snapshots are selected.
+    pub fn count(&self) -> usize {
+        self.shown.iter().filter(|shown| **shown).count()
+    }
+
+    /// Why the trajectory ends before its run did, if so.
+    pub fn cut_off(&self) -> Option<&Error> {
+        self.cut_off.as_ref()
+    }
+
+    /// Shows the selected snapshots, and every row and rupture, to `observer` until `stop` is set. Returns how many
+    /// snapshots it showed.
+    ///
+    /// # Errors
+    /// What the trajectory or the observer says. The observer is finished in any case, once it was started.
+    pub fn show(&self, observer: &mut dyn Observer, stop: &AtomicBool) -> Result<usize> {
+        let trajectory = Trajectory::open(&self.file)?;
+        observer.start(&trajectory.info().clone())?;
+        let shown = self.pass_on(trajectory, observer, stop);
+        observer.finish()?;
+        shown
+    }
+
+    fn pass_on(&self, trajectory: Trajectory, observer: &mut dyn Observer, stop: &AtomicBool) -> Result<usize> {
+        let (mut shown, mut selected) = (0, self.shown.iter());
+        for record in trajectory.take(self.records) {
+            if stop.load(Ordering::Relaxed) {
+                break;
+            }
+            match record? {
+                Record::Sample(sample) => observer.sample(&sample)?,
+                Record::Rupture(rupture) => observer.rupture(&rupture)?,
+                Record::Notice(notice) => observer.notice(&notice)?,
+                Record::Snapshot(snapshot) => {
+                    if selected.next() == Some(&true) {
                         observer.snapshot(&Arc::new(snapshot))?;
                         shown += 1;
                     }
-                    inside += 1;
                 }
             }
         }
-        if stop.load(Ordering::Relaxed) {
-            break;
-        }
+        Ok(shown)
     }
-    Ok(shown)
+}
+
+/// The trajectory of a run, given its folder or the file itself; under its partial name when the run was killed.
+fn trajectory_of(run: &Path) -> Result<PathBuf> {
+    let file = if run.is_dir() { run.join(TRAJECTORY) } else { run.to_path_buf() };
+    let partial = partial::name(&file);
+    let found = [file, partial].into_iter().find(|file| file.is_file());
+    found.ok_or_else(|| {
+        Error::input(
+            format!("there is no trajectory at {}", run.display()),
+            "give the folder of a run, such as out/ka4, or its trajectory.bin",
+        )
+    })
+}
+
+fn is_cut_off(error: &Error) -> bool {
+    matches!(error, Error::Io { cause, .. } if cause.kind() == ErrorKind::UnexpectedEof)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Strains 0, 0.1, … with ruptures before the given snapshots.
+    fn moments(count: usize, broke: &[usize]) -> Vec<Moment> {
+        (0..count).map(|i| Moment { strain: 0.1 * i as f64, broke: broke.contains(&i) }).collect()
+    }
+
+    fn numbers(selection: Selection, moments: &[Moment]) -> Vec<usize> {
+        selection.of(moments).iter().enumerate().filter(|(_, shown)| **shown).map(|(i, _)| i).collect()
+    }
+
+    #[test]
+    fn events_are_the_states_around_each_rupture_and_both_ends() {
+        let events = Selection { events: true, ..Selection::default() };
+        assert_eq!(numbers(events, &moments(12, &[4, 5, 9])), [0, 3, 4, 5, 8, 9, 11]);
+        assert_eq!(numbers(events, &moments(3, &[])), [0, 2]);
+        assert_eq!(numbers(events, &moments(3, &[0, 2])), [0, 1, 2]);
+        assert_eq!(numbers(events, &moments(1, &[])), [0]);
+    }
+
+    #[test]
+    fn every_counts_what_the_other_options_leave() {
+        let part = Selection { strain: [0.15, 0.75], ..Selection::default() };
+        assert_eq!(numbers(part, &moments(12, &[])), [2, 3, 4, 5, 6, 7]);
+        assert_eq!(numbers(Selection { every: 3, ..part }, &moments(12, &[])), [2, 5]);
+        assert_eq!(numbers(Selection { events: true, ..part }, &moments(12, &[5])), [2, 4, 5, 7]);
+        assert_eq!(numbers(Selection { events: true, every: 2, ..part }, &moments(12, &[5])), [2, 5]);
+        assert!(numbers(Selection { strain: [3.0, 4.0], ..part }, &moments(12, &[])).is_empty());
+    }
 }

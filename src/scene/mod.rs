@@ -7,6 +7,7 @@ pub mod builtin;
 pub mod caution;
 pub mod centreline_text;
 pub mod hardening;
+pub mod look;
 mod overrides;
 pub mod plan;
 pub mod raw;

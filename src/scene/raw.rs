@@ -4,6 +4,7 @@
 //! A quantity is text with a unit, `"39 mm"`; any unit of the right kind will do. A ratio may be a plain number or
 //! per cent, `0.12` or `"12 %"`. Unknown keys are refused.
 
+use super::look::{ColourBy, Theme, View};
 use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor};
 use std::fmt;
@@ -472,37 +473,42 @@ pub struct RawStop {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RawOutput {
-    /// Number of curve samples over the planned run. Default 2000.
+    /// Number of curve samples over the planned run, four times denser after the first rupture. Default 2000.
     pub samples: Option<i64>,
-    /// Number of snapshots (recording and frames) over the planned run. Default 160.
+    /// Number of snapshots (recording and frames), evenly spread over the planned run; ruptures bring more, up to four
+    /// times as many. Default 160, or 60 where bonds can break.
     pub snapshots: Option<i64>,
-    /// How many times denser snapshots are between the first rupture and the end [-]. Default 4.
+    /// How many times denser than that snapshots are right after a rupture [-]; with 1 a rupture brings only the last
+    /// state before it and the first one after it. Default 40.
     pub rupture_density: Option<Scalar>,
     /// Width and height of frames in pixels. Default [1280, 720].
     pub frame_size: Option<[i64; 2]>,
     /// What colours the wires: `stress` (default), `plastic-strain`, `utilisation` (to rupture),
     /// `contact-pressure`, `layer`, `wire`, `velocity`.
-    pub colour: Option<RawColour>,
+    pub colour: Option<ColourBy>,
+    /// Panels of a frame, such as ["overview", "midsection"]; every word stands in [`View`]. Default: those that suit
+    /// the scene.
+    pub views: Option<Vec<View>>,
+    /// Ground of the frames: `dark` (default), for screens, or `light`, for paper.
+    pub theme: Option<Theme>,
+    /// Viewpoint of the frames.
+    #[serde(default)]
+    pub camera: RawCamera,
 }
 
-/// `output.colour`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawColour {
-    /// True axial stress.
-    Stress,
-    /// Equivalent plastic strain.
-    PlasticStrain,
-    /// Share of the rupture limit.
-    Utilisation,
-    /// Contact pressure.
-    ContactPressure,
-    /// Layer.
-    Layer,
-    /// Wire.
-    Wire,
-    /// Speed.
-    Velocity,
+/// `[output.camera]`: the viewpoint of the three-dimensional panels. The strand's axis z points right, y points up, the
+/// eye looks along +x.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawCamera {
+    /// Turn of the eye about the vertical, "deg". Default 0.
+    pub azimuth: Option<Scalar>,
+    /// Turn of the eye about the horizontal, "deg"; at azimuth 0 that turns the strand about its axis. Default 0.
+    pub elevation: Option<Scalar>,
+    /// Magnification over what fits a panel [-]. Default 1.
+    pub zoom: Option<Scalar>,
+    /// Section that the close-up follows: z before loading, "mm". Default: mid-length, then the first rupture.
+    pub focus_z: Option<Scalar>,
 }
 
 impl fmt::Display for Scalar {

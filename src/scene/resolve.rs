@@ -5,7 +5,7 @@ use super::at::{At, Range};
 use super::raw::*;
 use super::spec::*;
 use super::{hardening, resolve_bodies, resolve_drive};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::base::units::Dimension;
 use std::path::Path;
 
@@ -25,6 +25,9 @@ const SKIN: f64 = 0.15;
 const GAP: f64 = 2.0;
 /// Side of a frame, least and greatest [pixels].
 const FRAME_SIDE: std::ops::RangeInclusive<i64> = 16..=8192;
+
+/// Evenly spread snapshots where bonds can break: what they leave of the usual number is for the ruptures.
+const SNAPSHOTS_IF_IT_BREAKS: usize = 60;
 
 /// Resolves a scene. `name` is that of its file, `folder` where its centreline files are looked for.
 pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Result<Spec> {
@@ -54,7 +57,7 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
         holds: resolve_drive::holds(&at.key("hold"), &raw.hold, bodies)?,
         time: time(&at.key("time"), &raw.time)?,
         stop: resolve_drive::stop(&at.key("stop"), &raw.stop, grip.as_ref(), bond.rupture.is_some())?,
-        output: output(&at.key("output"), &raw.output)?,
+        output: output(&at.key("output"), &raw.output, bond.rupture.is_some())?,
         plan: match raw.plan {
             None | Some(RawPlan::Auto) => PlanMode::Auto,
             Some(RawPlan::General) => PlanMode::General,
@@ -247,8 +250,9 @@ fn time(at: &At, raw: &RawTime) -> Result<TimeSpec> {
     })
 }
 
-fn output(at: &At, raw: &RawOutput) -> Result<OutputSpec> {
-    let [width, height] = raw.frame_size.unwrap_or([1280, 720]);
+fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
+    let usual = OutputSpec::default();
+    let [width, height] = raw.frame_size.unwrap_or(usual.frame_size.map(i64::from));
     let side = |index: usize, pixels: i64| -> Result<u32> {
         if !FRAME_SIDE.contains(&pixels) {
             let what = format!(
@@ -260,19 +264,26 @@ fn output(at: &At, raw: &RawOutput) -> Result<OutputSpec> {
         }
         Ok(pixels as u32)
     };
+    let snapshots = if breaks { SNAPSHOTS_IF_IT_BREAKS } else { usual.snapshots };
+    let density = at.ratio_or("rupture_density", &raw.rupture_density, usual.rupture_density, Range::AtLeastOne)?;
     Ok(OutputSpec {
-        samples: at.count_or("samples", raw.samples, 2000, 1)? as usize,
-        snapshots: at.count_or("snapshots", raw.snapshots, 160, 1)? as usize,
-        rupture_density: at.ratio_or("rupture_density", &raw.rupture_density, 4.0, Range::AtLeastOne)?,
+        samples: at.count_or("samples", raw.samples, usual.samples as u64, 1)? as usize,
+        snapshots: at.count_or("snapshots", raw.snapshots, snapshots as u64, 1)? as usize,
+        rupture_density: density,
         frame_size: [side(0, width)?, side(1, height)?],
-        colour: match raw.colour.unwrap_or(RawColour::Stress) {
-            RawColour::Stress => ColourBy::Stress,
-            RawColour::PlasticStrain => ColourBy::PlasticStrain,
-            RawColour::Utilisation => ColourBy::Utilisation,
-            RawColour::ContactPressure => ColourBy::ContactPressure,
-            RawColour::Layer => ColourBy::Layer,
-            RawColour::Wire => ColourBy::Wire,
-            RawColour::Velocity => ColourBy::Velocity,
-        },
+        colour: raw.colour.unwrap_or(usual.colour),
+        views: raw.views.clone().unwrap_or(usual.views),
+        theme: raw.theme.unwrap_or(usual.theme),
+        camera: camera(&at.key("camera"), &raw.camera)?,
+    })
+}
+
+fn camera(at: &At, raw: &RawCamera) -> Result<CameraSpec> {
+    let angle = |name, raw| Ok::<f64, Error>(at.optional(name, raw, Dimension::Angle, Range::Any)?.unwrap_or(0.0));
+    Ok(CameraSpec {
+        azimuth: angle("azimuth", &raw.azimuth)?,
+        elevation: angle("elevation", &raw.elevation)?,
+        zoom: at.ratio_or("zoom", &raw.zoom, CameraSpec::default().zoom, Range::Positive)?,
+        focus_z: at.optional("focus_z", &raw.focus_z, Dimension::Length, Range::Any)?,
     })
 }

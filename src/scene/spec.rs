@@ -1,5 +1,7 @@
 //! `Spec`: a scene after resolution, all SI, nothing left to guess. It is what every later floor reads.
 
+/// Pictures are described by the words that people write.
+pub use super::look::{ColourBy, Theme, View};
 /// The hardening law is stated as it is computed.
 pub use crate::law::bond::hardening::Hardening as HardeningSpec;
 use glam::DVec3;
@@ -349,36 +351,57 @@ pub struct StopSpec {
     pub steps: Option<u64>,
 }
 
-/// What to write and how often.
+/// What to write and how often, and how frames look.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutputSpec {
     /// Number of curve samples over the planned run.
     pub samples: usize,
-    /// Number of snapshots (recording and frames) over the planned run, evenly spaced.
+    /// Number of snapshots (recording and frames) over the planned run, evenly spaced; ruptures bring more.
     pub snapshots: usize,
-    /// Extra snapshots: how many times denser between the first rupture and the end [-].
+    /// How many times denser than that snapshots are right after a rupture [-].
     pub rupture_density: f64,
     /// Frame size in pixels.
     pub frame_size: [u32; 2],
     /// Quantity that colours wires in frames and recording.
     pub colour: ColourBy,
+    /// Panels of a frame; empty means those that suit the scene.
+    pub views: Vec<View>,
+    /// Ground of the frames.
+    pub theme: Theme,
+    /// Viewpoint of the frames.
+    pub camera: CameraSpec,
 }
 
-/// Quantity that colours the wires.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ColourBy {
-    /// True axial stress.
-    Stress,
-    /// Equivalent plastic strain.
-    PlasticStrain,
-    /// Share of the rupture limit.
-    Utilisation,
-    /// Contact pressure.
-    ContactPressure,
-    /// Layer.
-    Layer,
-    /// Wire.
-    Wire,
-    /// Speed.
-    Velocity,
+impl Default for OutputSpec {
+    fn default() -> Self {
+        Self {
+            samples: 2000,
+            snapshots: 160,
+            rupture_density: 40.0,
+            frame_size: [1280, 720],
+            colour: ColourBy::Stress,
+            views: Vec::new(),
+            theme: Theme::default(),
+            camera: CameraSpec::default(),
+        }
+    }
+}
+
+/// Viewpoint of the three-dimensional panels. The strand's axis z points right, y points up, the eye looks along +x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraSpec {
+    /// Turn of the eye about the vertical [rad].
+    pub azimuth: f64,
+    /// Turn of the eye about the horizontal [rad].
+    pub elevation: f64,
+    /// Magnification over what fits a panel [-].
+    pub zoom: f64,
+    /// Section that the close-up follows, as z before loading [m]. `None`: mid-length, then the first rupture.
+    pub focus_z: Option<f64>,
+}
+
+impl Default for CameraSpec {
+    fn default() -> Self {
+        Self { azimuth: 0.0, elevation: 0.0, zoom: 1.0, focus_z: None }
+    }
 }

@@ -306,14 +306,17 @@ fn output(out: &mut Lines, output: &OutputSpec) {
     out.entry("rupture_density", number(output.rupture_density));
     let [width, height] = output.frame_size;
     out.entry("frame_size", format!("[{width}, {height}]"));
-    let colour = match output.colour {
-        ColourBy::Stress => "stress",
-        ColourBy::PlasticStrain => "plastic-strain",
-        ColourBy::Utilisation => "utilisation",
-        ColourBy::ContactPressure => "contact-pressure",
-        ColourBy::Layer => "layer",
-        ColourBy::Wire => "wire",
-        ColourBy::Velocity => "velocity",
-    };
-    out.entry("colour", text(colour));
+    out.entry("colour", text(output.colour.word()));
+    if !output.views.is_empty() {
+        let words: Vec<String> = output.views.iter().map(|view| text(view.word())).collect();
+        out.entry("views", format!("[{}]", words.join(", ")));
+    }
+    out.entry("theme", text(output.theme.word()));
+    out.table("[output.camera]");
+    out.quantity("azimuth", output.camera.azimuth, Dimension::Angle);
+    out.quantity("elevation", output.camera.elevation, Dimension::Angle);
+    out.entry("zoom", number(output.camera.zoom));
+    if let Some(z) = output.camera.focus_z {
+        out.quantity("focus_z", z, Dimension::Length);
+    }
 }

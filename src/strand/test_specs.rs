@@ -32,13 +32,7 @@ pub(crate) fn empty() -> Spec {
             mismatch_limit: 0.05,
         },
         stop: StopSpec { strain: None, stress_fraction: None, time: Some(1e-6), steps: None },
-        output: OutputSpec {
-            samples: 10,
-            snapshots: 2,
-            rupture_density: 1.0,
-            frame_size: [1280, 720],
-            colour: ColourBy::Stress,
-        },
+        output: OutputSpec { samples: 10, snapshots: 2, rupture_density: 1.0, ..OutputSpec::default() },
         plan: PlanMode::Auto,
     }
 }

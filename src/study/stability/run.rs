@@ -119,7 +119,10 @@ pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
         leash.steps.fetch_add(1, Ordering::Relaxed);
         let engine = &watched.engine;
         let now = end.fraction(engine.strain(), engine.time(), engine.steps());
-        (0..ruptures).for_each(|_| schedule.rupture(now));
+        if ruptures > 0 {
+            // No pictures are drawn, so no earlier state is kept for one.
+            schedule.rupture(None, now);
+        }
         let due = schedule.due(now);
         if due.row || due.snapshot {
             watched.row()?;

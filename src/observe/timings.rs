@@ -1,0 +1,112 @@
+//! Where the time of frames goes.
+
+use serde::Serialize;
+use std::fmt;
+use std::time::Duration;
+
+/// Accumulated wall time by stage. As JSON: means per frame in milliseconds, and totals in seconds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(into = "Report")]
+pub struct Timings {
+    /// Frames drawn.
+    pub frames: u32,
+    /// Preparing instances and drawing on the adapter.
+    pub draw: Duration,
+    /// Copying the picture back.
+    pub read_back: Duration,
+    /// Charts and text.
+    pub overlay: Duration,
+    /// PNG encoding and writing, on a thread of its own.
+    pub encode: Duration,
+    /// How long the simulation waited because too many snapshots were not yet drawn.
+    pub waited: Duration,
+    /// Drawing what was still waiting when the simulation had ended.
+    pub drained: Duration,
+    /// Making the animation.
+    pub animation: Duration,
+    /// Size of the animation [bytes].
+    pub animation_bytes: u64,
+}
+
+impl Timings {
+    /// Adds what another thread counted.
+    pub fn merge(&mut self, other: &Timings) {
+        self.frames += other.frames;
+        self.draw += other.draw;
+        self.read_back += other.read_back;
+        self.overlay += other.overlay;
+        self.encode += other.encode;
+        self.waited += other.waited;
+        self.drained += other.drained;
+        self.animation += other.animation;
+        self.animation_bytes += other.animation_bytes;
+    }
+
+    /// Mean per frame [ms]: draw, read-back, overlay, encode.
+    pub fn per_frame_ms(&self) -> [f64; 4] {
+        let n = f64::from(self.frames.max(1));
+        [self.draw, self.read_back, self.overlay, self.encode].map(|d| d.as_secs_f64() * 1e3 / n)
+    }
+}
+
+impl fmt::Display for Timings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [draw, back, overlay, encode] = self.per_frame_ms();
+        let drawing = draw + back + overlay;
+        write!(
+            f,
+            "{}, {drawing:.1} ms each (draw {draw:.1}, read-back {back:.1}, charts and text {overlay:.1}), beside it \
+             PNG {encode:.1} ms",
+            self.frames
+        )
+    }
+}
+
+/// [`Timings`] for people and programs that read `summary.json`.
+#[derive(Serialize)]
+struct Report {
+    count: u32,
+    draw_ms: f64,
+    read_back_ms: f64,
+    charts_and_text_ms: f64,
+    png_ms: f64,
+    simulation_waited_s: f64,
+    drawn_after_the_simulation_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    animation_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    animation_bytes: Option<u64>,
+}
+
+impl From<Timings> for Report {
+    fn from(timings: Timings) -> Self {
+        let [draw_ms, read_back_ms, charts_and_text_ms, png_ms] = timings.per_frame_ms();
+        let animated = timings.animation_bytes > 0;
+        Self {
+            count: timings.frames,
+            draw_ms,
+            read_back_ms,
+            charts_and_text_ms,
+            png_ms,
+            simulation_waited_s: timings.waited.as_secs_f64(),
+            drawn_after_the_simulation_s: timings.drained.as_secs_f64(),
+            animation_s: animated.then(|| timings.animation.as_secs_f64()),
+            animation_bytes: animated.then_some(timings.animation_bytes),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_has_milliseconds_per_frame() {
+        let ms = Duration::from_millis;
+        let timings = Timings { frames: 4, draw: ms(100), read_back: ms(8), encode: ms(40), ..Default::default() };
+        let json = serde_json::to_value(timings).unwrap();
+        assert_eq!((&json["count"], &json["draw_ms"], &json["png_ms"]), (&4.into(), &25.0.into(), &10.0.into()));
+        assert_eq!((&json["read_back_ms"], json.get("animation_s")), (&2.0.into(), None));
+        assert!(timings.to_string().starts_with("4, 27.0 ms each (draw 25.0,"), "{timings}");
+    }
+}

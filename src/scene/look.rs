@@ -1,0 +1,74 @@
+//! What people choose by one word for pictures: views, theme, colouring. One row here is all that a new word needs in
+//! the scene and on the command line.
+
+use serde::Deserialize;
+
+/// An enum whose values are words, each with its meaning, in the order in which they are listed to people.
+macro_rules! words {
+    ($(#[$meta:meta])* $name:ident { $($variant:ident = $word:literal, $about:literal;)+ }) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+        pub enum $name {
+            $(#[doc = $about] #[serde(rename = $word)] $variant,)+
+        }
+
+        impl $name {
+            /// Every value.
+            pub const ALL: [$name; [$($word),+].len()] = [$($name::$variant),+];
+
+            /// The word that people write.
+            pub fn word(self) -> &'static str {
+                match self {
+                    $($name::$variant => $word,)+
+                }
+            }
+
+            /// What it means.
+            pub fn about(self) -> &'static str {
+                match self {
+                    $($name::$variant => $about,)+
+                }
+            }
+        }
+    };
+}
+
+words! {
+    /// A panel of a frame.
+    View {
+        Overview = "overview", "The whole strand, its axis across the width";
+        Midsection = "midsection", "Close-up on the section where it breaks, from the front and from the back";
+        Exploded = "exploded", "The same section with the layers taken apart, one below the other";
+        CrossSection = "cross-section", "The cut at the same section: wires as discs, broken ones hollow";
+        Unrolled = "unrolled", "Wire number against axial position";
+        Curve = "curve", "Stress-strain curve";
+        Scene = "scene", "Everything in one view; what free bodies get";
+    }
+}
+
+words! {
+    /// Dark or light ground.
+    Theme {
+        Dark = "dark", "Dark, for screens";
+        Light = "light", "White, for paper";
+    }
+}
+
+impl Default for Theme {
+    fn default() -> Self {
+        Self::Dark
+    }
+}
+
+words! {
+    /// Quantity that colours the wires.
+    ColourBy {
+        Stress = "stress", "True axial stress";
+        PlasticStrain = "plastic-strain", "Equivalent plastic strain";
+        Utilisation = "utilisation", "Share of the rupture limit";
+        ContactPressure = "contact-pressure", "Contact pressure";
+        Layer = "layer", "Layer";
+        Wire = "wire", "Wire";
+        Velocity = "velocity", "Speed";
+    }
+}
