@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::canvas::Rect;
 use super::style::Style;
 use super::target::{COLOUR, DEPTH, SAMPLES, Target};
-use super::wires::{self, Segment};
+use super::wires::Segment;
 use crate::base::error::Result;
 use std::ops::Range;
 use wgpu::util::DeviceExt;
@@ -23,6 +23,7 @@ struct ViewUniform {
     rim: [f32; 4],
     fade: [f32; 4],
     signal: [f32; 4],
+    cut: [f32; 4],
 }
 
 /// Segments `instances` of the list, seen through a camera into its panel.
@@ -175,7 +176,8 @@ impl SolidPipeline {
             ],
             rim: [r, g, b, style.edge],
             fade: [0.0, drawing.fade, 0.0, 0.0],
-            signal: wires::signal(),
+            signal: super::colour::signal4(),
+            cut: super::colour::linear4(style.cut),
         };
         let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("view"),

@@ -13,8 +13,8 @@ pub struct FrameOptions {
     pub size: [u32; 2],
     /// Quantity that colours the wires.
     pub colour: ColourBy,
-    /// Panels. Empty means the default for the scene: overview, midsection, unrolled map and curve for a body
-    /// between grips, one view of everything for free bodies.
+    /// Panels. Empty means the default for the scene: overview, midsection, exploded layers, cross-section, unrolled
+    /// map and curve for a body between grips, one view of everything for free bodies.
     pub views: Vec<View>,
     /// Dark or light.
     pub theme: Theme,
@@ -61,6 +61,8 @@ pub enum View {
     Overview,
     /// Close-up on the section where it breaks, from the front and from the back.
     Midsection,
+    /// The same section with its outer layers cut open in steps, so that inner wires are seen in place.
+    Cutaway,
     /// The same section with the layers taken apart, one below the other.
     Exploded,
     /// The cut at the same section: wires as discs, broken ones hollow.
@@ -75,9 +77,10 @@ pub enum View {
 
 impl View {
     /// Every view.
-    pub const ALL: [View; 7] = [
+    pub const ALL: [View; 8] = [
         View::Overview,
         View::Midsection,
+        View::Cutaway,
         View::Exploded,
         View::CrossSection,
         View::Unrolled,
@@ -90,6 +93,7 @@ impl View {
         match self {
             View::Overview => "overview",
             View::Midsection => "midsection",
+            View::Cutaway => "cutaway",
             View::Exploded => "exploded",
             View::CrossSection => "cross-section",
             View::Unrolled => "unrolled",
@@ -144,6 +148,7 @@ impl Theme {
                 grid: [44, 50, 62],
                 signal: SIGNAL,
                 accent: [240, 243, 248],
+                cut: [126, 134, 148],
                 rim: [0.10, 0.12, 0.15],
                 edge: 0.0,
             },
@@ -155,6 +160,7 @@ impl Theme {
                 grid: [216, 220, 227],
                 signal: SIGNAL,
                 accent: [30, 36, 48],
+                cut: [150, 156, 166],
                 rim: [0.0, 0.0, 0.0],
                 edge: 0.45,
             },
@@ -193,6 +199,8 @@ pub struct Style {
     pub signal: Rgb,
     /// The curve.
     pub accent: Rgb,
+    /// Faces where wires were cut off to show what lies behind them.
+    pub cut: Rgb,
     /// Light added along silhouettes, linear RGB [-].
     pub rim: [f32; 3],
     /// Darkening along silhouettes, 0 to 1 [-].
