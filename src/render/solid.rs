@@ -48,7 +48,7 @@ impl SolidPipeline {
     /// # Errors
     /// When the driver refuses it.
     pub fn new(gpu: &Gpu) -> Result<Self> {
-        // Two scopes, because an unsupported sample mask is reported as an internal error, not a validation one.
+        // Two scopes, because what a backend cannot translate is reported as an internal error, not a validation one.
         let internal = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let made = Self::compile(gpu);
@@ -108,7 +108,7 @@ impl SolidPipeline {
             multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some(if gpu.sample_mask { "fs_masked" } else { "fs_whole" }),
+                entry_point: Some(if gpu.samples_shaded { "fs_sampled" } else { "fs_whole" }),
                 compilation_options: Default::default(),
                 targets: &[Some(wgpu::ColorTargetState {
                     format: COLOUR,

@@ -242,44 +242,26 @@ fn dithered(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
   return colour + noise / 255.0 * 2.2 * pow(max(colour, vec3<f32>(0.0)), vec3<f32>(0.545));
 }
 
-struct Masked {
-  @location(0) colour: vec4<f32>,
-  @builtin(frag_depth) depth: f32,
-  @builtin(sample_mask) mask: u32,
-};
-
-// Smooth silhouettes: coverage tested at each of the four sample points, shading once, at the middle of those
-// that are covered (the outline is convex, so that point is inside).
-@fragment fn fs_masked(in: Varying) -> Masked {
-  let dx = dpdx(in.p);
-  let dy = dpdy(in.p);
-  var offsets = array<vec2<f32>, 4>(vec2<f32>(-0.125, -0.375), vec2<f32>(0.375, -0.125),
-                                    vec2<f32>(-0.375, 0.125), vec2<f32>(0.125, 0.375));
-  var mask = 0u;
-  var sum = vec2<f32>(0.0);
-  var count = 0.0;
-  let along = outline_axis(in);
-  for (var i = 0u; i < 4u; i++) {
-    let q = in.p + dx * offsets[i].x + dy * offsets[i].y;
-    if (covers(q, in, along)) {
-      mask |= 1u << i;
-      sum += q;
-      count += 1.0;
-    }
-  }
-  if (mask == 0u) { discard; }
-  let lit = shade(sum / count, in, in.clip.xy);
-  return Masked(lit.colour, lit.depth, mask);
-}
-
 struct Whole {
   @location(0) colour: vec4<f32>,
   @builtin(frag_depth) depth: f32,
 };
 
-// For adapters without a sample mask: whole pixels.
-@fragment fn fs_whole(in: Varying) -> Whole {
-  if (!covers(in.p, in, outline_axis(in))) { discard; }
-  let lit = shade(in.p, in, in.clip.xy);
+// Smooth edges: everything at each of the four sample points. Coverage alone would leave the lines jagged where
+// wires press into one another, since those are decided by depth.
+@fragment fn fs_sampled(in: Varying, @builtin(sample_index) sample: u32) -> Whole {
+  var offsets = array<vec2<f32>, 4>(vec2<f32>(-0.125, -0.375), vec2<f32>(0.375, -0.125),
+                                    vec2<f32>(-0.375, 0.125), vec2<f32>(0.125, 0.375));
+  let offset = offsets[sample] * view.scale.w;
+  // Rows of the picture run down, view axes up.
+  return seen(in.p + vec2<f32>(offset.x, -offset.y), in);
+}
+
+// For adapters that cannot: once per pixel.
+@fragment fn fs_whole(in: Varying) -> Whole { return seen(in.p, in); }
+
+fn seen(p: vec2<f32>, in: Varying) -> Whole {
+  if (!covers(p, in, outline_axis(in))) { discard; }
+  let lit = shade(p, in, in.clip.xy);
   return Whole(lit.colour, lit.depth);
 }
