@@ -100,10 +100,12 @@ impl<'a> Opening<'a> {
 
     /// Which particles are left out.
     pub fn removed(&self) -> Vec<bool> {
-        let mut removed = vec![false; self.info.rest_position.len()];
+        let rest = &self.info.rest_position;
+        let mut removed = vec![false; rest.len()];
         for wire in &self.info.wires {
-            for i in wire.first..wire.first + wire.len {
-                removed[i] = self.opens(wire.layer, self.info.rest_position[i]);
+            let particles = wire.first..wire.first + wire.len;
+            for (gone, place) in removed[particles.clone()].iter_mut().zip(&rest[particles]) {
+                *gone = self.opens(wire.layer, *place);
             }
         }
         removed

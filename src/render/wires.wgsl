@@ -236,10 +236,10 @@ fn shade(p: vec2<f32>, in: Varying, pixel: vec2<f32>) -> Lit {
 }
 
 // Half a step of the 8-bit sRGB output, in a fixed pattern of pixels, hides the bands of slow gradients. The pattern
-// is interleaved gradient noise (Jimenez 2014); the slope of sRGB is about 2.2 x^(1.2/2.2) in linear light.
+// is interleaved gradient noise (Jimenez 2014); the slope of sRGB in linear light x is about 2 sqrt(x).
 fn dithered(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
   let noise = fract(52.9829189 * fract(dot(floor(pixel), vec2<f32>(0.06711056, 0.00583715)))) - 0.5;
-  return colour + noise / 255.0 * 2.2 * pow(max(colour, vec3<f32>(0.0)), vec3<f32>(0.545));
+  return colour + noise / 255.0 * 2.0 * sqrt(max(colour, vec3<f32>(0.0)));
 }
 
 struct Whole {
