@@ -253,19 +253,34 @@ impl Engine {
         }
     }
 
-    /// Upper end of a range of contact pressure [MPa], with wires under an axial stress [MPa].
+    /// Nominal axial stress of a wire strained by `strain` [-], by its bond law alone [Pa].
+    fn nominal_stress(&self, strain: f64) -> f64 {
+        let elastic = self.spec.material.young * strain;
+        match &self.spec.bond.law {
+            BondLawSpec::Elastic => elastic,
+            // True stress over stretch, with an incompressible wire.
+            BondLawSpec::ElastoPlastic(h) => elastic.min(h.stress(strain.ln_1p()) / (1.0 + strain)),
+        }
+    }
+
+    /// Upper end of a range of contact pressure [MPa]; `stress` is that of the range of axial stress [MPa].
     ///
     /// A wire under tension N presses inwards with N κ per length, κ = sin²β/R its curvature; a layer carries what
-    /// all layers from itself outwards press, and feels it from both sides. A jaw adds its own pressure.
+    /// all layers from itself outwards press, and feels it from both sides. As the strand stretches by λ its lay
+    /// radii shrink as λ^(−1/2) and its pitch grows as λ, so κ ≈ R (2π/h)² falls as λ^(−5/2), and each particle
+    /// answers for a length that grows as λ: the pressure goes with the nominal stress over λ^(3/2). A jaw adds its
+    /// own pressure.
     fn contact_pressure_range(&self, stress: f32) -> f32 {
         let a = &self.assembly;
+        let end = self.strain_end().unwrap_or(0.0).min(self.rupture_strain()).max(0.0);
+        let pressing = |strain: f64| self.nominal_stress(strain) * 1e-6 / (1.0 + strain).powf(1.5);
+        let tension = (0..=50).map(|k| pressing(end * f64::from(k) / 50.0)).fold(0.0, f64::max);
         let (mut press, mut deepest) = (0.0, 0.0f64);
         for (k, layer) in a.layers.iter().enumerate().rev() {
             let wires = a.wires.iter().filter(|w| w.layer == k);
             let (count, Some(wire)) = (wires.clone().count(), wires.clone().next()) else { continue };
             if layer.lay_radius > 0.0 && layer.pitch.is_finite() {
-                let curvature = helix::curvature(layer.lay_radius, layer.pitch);
-                press += count as f64 * f64::from(stress.abs()) * wire.area() * curvature;
+                press += count as f64 * tension * wire.area() * helix::curvature(layer.lay_radius, layer.pitch);
             }
             deepest = deepest.max(2.0 * press / (count as f64 * wire.diameter));
         }

@@ -10,9 +10,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Name of adapter and driver, for people.
     pub name: String,
-    /// Whether fragment shaders may choose which samples of a pixel they cover. The GL backend of naga 30 cannot;
-    /// there silhouettes are cut by whole pixels.
-    pub sample_mask: bool,
+    /// Whether fragment shaders may run once per sample of a pixel. Where they cannot, edges are cut by whole pixels.
+    pub samples_shaded: bool,
 }
 
 /// Whether frames can be drawn on this machine. Cheap (well below a second), to be called before a simulation.
@@ -39,7 +38,9 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|e| failure(format!("the graphics adapter {name} refused to open: {e}")))?;
-        Ok(Self { device, queue, name, sample_mask: info.backend != wgpu::Backend::Gl })
+        let flags = adapter.get_downlevel_capabilities().flags;
+        let samples_shaded = flags.contains(wgpu::DownlevelFlags::MULTISAMPLED_SHADING);
+        Ok(Self { device, queue, name, samples_shaded })
     }
 }
 
@@ -50,7 +51,7 @@ pub fn failure(what: impl Into<String>) -> Error {
 }
 
 fn request_adapter() -> Result<wgpu::Adapter> {
-    // GL only when there is nothing else: there silhouettes cannot be smoothed (see `Gpu::sample_mask`).
+    // GL only when there is nothing else: there edges may not be smoothed (see `Gpu::samples_shaded`).
     let found = request_from(wgpu::Backends::PRIMARY).or_else(|_| request_from(wgpu::Backends::GL));
     found.map_err(|e| Error::Missing {
         what: format!("no graphics adapter to draw frames with ({e})"),

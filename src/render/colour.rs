@@ -67,6 +67,16 @@ impl ColourScale {
         self.map.map(|_| self.range.map(|v| f64::from(v) * factor))
     }
 
+    /// Whether values below and above the range occur, drawn in the colours of its ends: wires that spring back are
+    /// pressed, single contacts exceed what a smooth wire would feel, and snapped ends whip faster than any grip.
+    pub fn open_ends(&self) -> [bool; 2] {
+        match self.by {
+            ColourBy::Stress => [self.range[0] >= 0.0, false],
+            ColourBy::ContactPressure | ColourBy::Velocity => [false, true],
+            ColourBy::PlasticStrain | ColourBy::Utilisation | ColourBy::Layer | ColourBy::Wire => [false, false],
+        }
+    }
+
     /// Colour at `fraction` of the range [-], clamped to 0–1; grey for categories.
     pub fn at(&self, fraction: f64) -> Rgb {
         let Some(map) = self.map else {

@@ -83,7 +83,8 @@ fn ruptures(canvas: &mut Canvas, axes: &Axes, data: &Data) {
     let [x, y] = axes.point(first.strain * 100.0, first.body_stress / 1e6);
     canvas.ring(x, y, 5.0 * u, 1.8 * u, data.style.signal, 1.0);
     let kind = Type { size: 11.0 * u, weight: Weight::Bold, colour: data.style.signal, align: Align::Right };
-    canvas.text(x + 6.0 * u, y - 11.0 * u, kind, "first break");
+    let text = format!("first break at {:.1} MPa", first.body_stress / 1e6);
+    canvas.text(x + 6.0 * u, y - 11.0 * u, kind, &text);
 }
 
 fn current(canvas: &mut Canvas, axes: &Axes, data: &Data) {

@@ -1,35 +1,27 @@
 //! The layers taken apart: each is drawn beside the others, so that inner wires are seen.
 
 use super::camera::Camera;
-use super::canvas::{Align, Canvas, Rect, Type, Weight};
+use super::canvas::{Canvas, Rect, Weight};
 use super::frame::Data;
+use super::labels::{self, Mark};
 use super::style::CameraOptions;
 use super::viewpoint::Body;
-use crate::engine::view::RunInfo;
 use glam::Vec3;
 
 /// Space between layers over the body's radius [-].
-const SPACE: f32 = 0.45;
+const SPACE: f32 = 0.62;
 
 /// How far each layer is moved up in the picture [mm], outermost on top, and the total height of the stack [mm].
-pub fn lifts(info: &RunInfo, body: &Body) -> (Vec<f32>, f32) {
-    let mut radius = vec![0f32; info.layers.len()];
-    for wire in &info.wires {
-        for i in wire.first..wire.first + wire.len {
-            let [x, y, _] = info.rest_position[i];
-            let r = (x - body.axis.x).hypot(y - body.axis.y) + info.radius[i];
-            radius[wire.layer] = radius[wire.layer].max(r);
-        }
-    }
+pub fn lifts(body: &Body) -> (Vec<f32>, f32) {
     let space = SPACE * body.radius;
-    let height = radius.iter().map(|r| 2.0 * r + space).sum::<f32>();
+    let height = body.layer_radius.iter().map(|r| 2.0 * r + space).sum::<f32>();
     let mut bottom = -0.5 * height;
     let lift = |r: &f32| {
-        let middle = bottom + r + 0.5 * space;
+        let middle = bottom + r;
         bottom += 2.0 * r + space;
         middle
     };
-    (radius.iter().map(lift).collect(), height)
+    (body.layer_radius.iter().map(lift).collect(), height)
 }
 
 /// Positions with every layer moved to its place [mm].
@@ -45,26 +37,40 @@ pub fn positions(data: &Data, lifts: &[f32], camera: &Camera) -> Vec<[f32; 3]> {
     position
 }
 
-/// Camera on the section at `z` [mm] that holds the whole stack.
-pub fn camera(body: &Body, options: &CameraOptions, panel: Rect, unit: f32, z: f32, height: f32) -> Camera {
-    // The title needs room above.
-    let room = panel.h - 24.0 * unit;
-    let scale = options.zoom * room / height.max(1e-6);
-    let rotation = Camera::orientation(0.0, options.elevation_deg);
-    let middle = Vec3::new(body.axis.x, body.axis.y, z) + rotation.transpose() * Vec3::Y * (8.0 * unit / scale);
+/// Camera on the section at `z` [mm] that holds the whole stack; `turn_deg` is added to the elevation.
+pub fn camera(body: &Body, options: &CameraOptions, panel: Rect, unit: f32, z: f32, turn_deg: f32) -> Camera {
+    // The title needs room above, the scale bar below.
+    let (above, below) = (20.0 * unit, 14.0 * unit);
+    let (_, height) = lifts(body);
+    let scale = options.zoom * (panel.h - above - below) / height.max(1e-6);
+    let rotation = Camera::orientation(0.0, options.elevation_deg + turn_deg);
+    let shift = rotation.transpose() * Vec3::Y * (0.5 * (above - below) / scale);
+    let middle = Vec3::new(body.axis.x, body.axis.y, z) + shift;
     Camera { rotation, centre: middle, panel, scale, depth: 10.0 * (body.high - body.low).length().max(body.radius) }
 }
 
-/// Names of the layers beside them.
-pub fn names(canvas: &mut Canvas, camera: &Camera, data: &Data, lifts: &[f32]) {
+/// Names of the layers beside them, and above each the numbers of its breaks on the side that is seen.
+pub fn annotate(canvas: &mut Canvas, camera: &Camera, data: &Data) {
     let u = canvas.unit;
-    let kind = Type { size: 11.0 * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
-    for (name, lift) in data.info.layers.iter().zip(lifts) {
-        let [_, middle] = camera.project(data.body.axis);
-        let y = middle - lift * camera.scale;
-        let w = canvas.fonts.width(name, kind.size, kind.weight);
-        let r = Rect::new(camera.panel.x + 8.0 * u, y - 9.0 * u, w + 10.0 * u, 18.0 * u);
-        canvas.fill_rounded(r, 4.0 * u, data.style.page, 0.8);
-        canvas.text(r.x + 5.0 * u, y + 4.0 * u, kind, name);
+    let panel = camera.panel;
+    let (lifts, _) = lifts(data.body);
+    let [_, axis] = camera.project(data.body.axis);
+    let width = |name: &str| canvas.fonts.width(name, 11.0 * u, Weight::Bold) + 12.0 * u;
+    let room = data.info.layers.iter().map(|n| width(n)).fold(0.0, f32::max) + 8.0 * u;
+    for (layer, name) in data.info.layers.iter().enumerate() {
+        let middle = axis - lifts[layer] * camera.scale;
+        let top = middle - data.body.layer_radius[layer] * camera.scale;
+        let space = SPACE * data.body.radius * camera.scale;
+        let name_at = panel.x + 7.0 * u + 0.5 * (canvas.fonts.width(name, 11.0 * u, Weight::Bold) + 10.0 * u);
+        labels::word(canvas, [name_at, top - 0.5 * space], data, name);
+        let marks: Vec<Mark> = data
+            .first_breaks()
+            .filter(|(_, r)| r.layer == layer && camera.to_view(data.place(r)).z > 0.0)
+            .map(|(number, r)| (number, camera.project(data.place(r))))
+            .filter(|(_, [x, _])| *x > panel.x && *x < panel.right())
+            .map(|(number, [x, y])| Mark { number, at: [x, y - lifts[layer] * camera.scale] })
+            .collect();
+        let band = Rect::new(panel.x + room, top - space, panel.w - room - 4.0 * u, space);
+        labels::badges(canvas, band, data, &marks);
     }
 }

@@ -4,15 +4,16 @@ use super::adapter::Gpu;
 use super::camera::Camera;
 use super::canvas::{Canvas, Fonts, Rect};
 use super::colour::ColourScale;
-use super::layout::{GAP, Layout, default_views, layout};
+use super::layout::{Layout, default_views, layout};
 use super::occlusion::occlusion;
+use super::shots::{Shot, focus, is_solid, shots};
 use super::solid::{Drawing, SolidPipeline};
 use super::style::{FrameOptions, Rgb, Style, View};
 use super::target::Target;
 use super::timings::Timings;
 use super::viewpoint::{self, Body};
 use super::wires::{self, Looks, Segment};
-use super::{curve, cut, exploded, header, marks, unrolled};
+use super::{curve, cut, cutaway, exploded, header, marks, unrolled};
 use crate::base::error::{Error, Result};
 use crate::engine::view::{RunInfo, Rupture, Snapshot};
 use glam::Vec3;
@@ -90,7 +91,7 @@ impl Renderer {
     /// When there is no adapter, when it cannot draw a picture of this size, when no panel would be larger than a
     /// few pixels.
     pub fn new(info: &RunInfo, options: &FrameOptions) -> Result<Self> {
-        let views = if options.views.is_empty() { default_views(info.gauge.is_some()) } else { options.views.clone() };
+        let views = if options.views.is_empty() { default_views(info) } else { options.views.clone() };
         let [w, h] = options.size;
         if !(160..=16384).contains(&w) || !(120..=16384).contains(&h) {
             let what = format!("frames of {w} × {h} pixels cannot be drawn");
@@ -147,7 +148,7 @@ impl Renderer {
         let mut picture = RgbImage::from_pixel(w, h, Pixel(self.style.page));
         let shots = shots(&data, &self.options, &self.layout);
         if let Some(solid) = &self.solid {
-            solid.draw(&data, &shots)?;
+            solid.draw(&data, &self.options, &shots)?;
             self.timings.draw += start.elapsed();
             let start = Instant::now();
             solid.read_into(&mut picture, &shots)?;
@@ -162,75 +163,26 @@ impl Renderer {
     }
 }
 
-/// A camera and what it is for.
-struct Shot {
-    view: View,
-    camera: Camera,
-    caption: &'static str,
-    /// Depth over which things darken [mm].
-    fade: f32,
+/// How wires look with their particles at `position` [mm], each wire in its shade [-], without the removed ones.
+fn looks(data: &Data, position: Vec<[f32; 3]>, shade: Vec<f32>, removed: Vec<bool>) -> Looks {
+    let occlusion = occlusion(data.info, &position, &data.snapshot.radius, &removed);
+    Looks { position, colour: data.colours.to_vec(), occlusion, shade, removed }
 }
 
-fn is_solid(view: View) -> bool {
-    matches!(view, View::Overview | View::Midsection | View::Exploded | View::Scene)
-}
-
-fn shots(data: &Data, options: &FrameOptions, layout: &Layout) -> Vec<Shot> {
-    let u = layout.unit;
-    let body = data.body;
-    let z = viewpoint::current_z(data.info, data.snapshot, focus(data, options));
-    let mut shots = Vec::new();
-    for (view, panel) in &layout.panels {
-        let mut shot = |camera, caption, fade| shots.push(Shot { view: *view, camera, caption, fade });
-        match view {
-            View::Overview => {
-                let camera = viewpoint::overview(data.info, body, &options.camera, *panel, u);
-                shot(camera, "whole strand", body.radius);
-            }
-            View::Midsection => {
-                let (front, back) = halves(*panel, GAP * u);
-                for (panel, caption, turn) in [(front, "front", 0.0), (back, "back", 180.0)] {
-                    let camera = viewpoint::section(body, &options.camera, panel, z, turn);
-                    let slant = options.camera.azimuth_deg.to_radians().sin().abs();
-                    shot(camera, caption, body.radius + slant * panel.w / camera.scale);
-                }
-            }
-            View::Exploded => {
-                let (_, height) = exploded::lifts(data.info, body);
-                shot(exploded::camera(body, &options.camera, *panel, u, z, height), "layers apart", body.radius);
-            }
-            View::Scene => {
-                let camera = viewpoint::everything(body, data.snapshot, &options.camera, *panel);
-                shot(camera, "", 2.0 * (body.high - body.low).length());
-            }
-            View::CrossSection | View::Unrolled | View::Curve => {}
+/// How wires look in a shot, where that is its own.
+fn own_looks(data: &Data, options: &FrameOptions, shot: &Shot) -> Option<Looks> {
+    let bright = || vec![1.0; data.info.wires.len()];
+    match shot.view {
+        View::Exploded => {
+            let (lifts, _) = exploded::lifts(data.body);
+            Some(looks(data, exploded::positions(data, &lifts, &shot.camera), bright(), Vec::new()))
         }
+        View::Cutaway => {
+            let opening = cutaway::Opening::new(data, &shot.camera, focus(data, options));
+            Some(looks(data, data.snapshot.position.clone(), bright(), opening.removed()))
+        }
+        _ => None,
     }
-    shots
-}
-
-/// Two panels of the same size: side by side, or one above the other when that leaves more room along the strand.
-fn halves(panel: Rect, gap: f32) -> (Rect, Rect) {
-    if panel.w < 2.2 * panel.h {
-        let h = (0.5 * (panel.h - gap)).floor();
-        (Rect { h, ..panel }, Rect { h, y: panel.bottom() - h, ..panel })
-    } else {
-        let w = (0.5 * (panel.w - gap)).floor();
-        (Rect { w, ..panel }, Rect { w, x: panel.right() - w, ..panel })
-    }
-}
-
-/// z before loading [mm] of the section that close-ups follow.
-fn focus(data: &Data, options: &FrameOptions) -> f32 {
-    let [low, high] = data.info.gauge.unwrap_or([data.body.low.z, data.body.high.z]);
-    let first = data.ruptures.first().map(|r| r.rest_z as f32 * 1e3);
-    options.camera.focus_z_mm.or(first).unwrap_or(0.5 * (low + high))
-}
-
-/// How wires look with their particles at `position` [mm] and each wire in its shade [-].
-fn looks(data: &Data, position: Vec<[f32; 3]>, shade: Vec<f32>) -> Looks {
-    let occlusion = occlusion(data.info, &position, &data.snapshot.radius);
-    Looks { position, colour: data.colours.to_vec(), occlusion, shade }
 }
 
 /// Bonds that make up about eight pixels.
@@ -256,22 +208,16 @@ impl Solid {
         Ok(Some(Self { gpu, pipeline, target, area }))
     }
 
-    fn draw(&self, data: &Data, shots: &[Shot]) -> Result<()> {
+    fn draw(&self, data: &Data, options: &FrameOptions, shots: &[Shot]) -> Result<()> {
         let shade = data.body.depth.iter().map(|d| 0.45 + 0.55 * d).collect();
-        let whole = looks(data, data.snapshot.position.clone(), shade);
+        let whole = looks(data, data.snapshot.position.clone(), shade, Vec::new());
         let mut all: Vec<Segment> = Vec::new();
         let mut drawings = Vec::new();
         for shot in shots {
             let start = all.len() as u32;
+            let own = own_looks(data, options, shot);
             let stride = stride(data, &shot.camera);
-            let segments = if shot.view == View::Exploded {
-                let (lifts, _) = exploded::lifts(data.info, data.body);
-                let position = exploded::positions(data, &lifts, &shot.camera);
-                let apart = looks(data, position, vec![1.0; data.info.wires.len()]);
-                wires::segments(data.info, data.snapshot, &apart, stride)
-            } else {
-                wires::segments(data.info, data.snapshot, &whole, stride)
-            };
+            let segments = wires::segments(data.info, data.snapshot, own.as_ref().unwrap_or(&whole), stride);
             all.extend(segments.into_iter().filter(|s| shot.camera.sees(s.a, s.b)));
             let instances = start..all.len() as u32;
             drawings.push(Drawing { camera: shot.camera, instances, fade: shot.fade });
@@ -314,20 +260,17 @@ fn overlay(canvas: &mut Canvas, data: &Data, options: &FrameOptions, layout: &La
     });
     for shot in shots {
         marks::scale_bar(canvas, &shot.camera, data);
-        let mut remark = String::new();
         match shot.view {
             View::Overview => marks::overview(canvas, &shot.camera, data, window),
-            View::Midsection => {
-                remark = format!("around z {focus:.1} mm");
-                marks::break_numbers(canvas, &shot.camera, data);
-            }
-            View::Exploded => {
-                let (lifts, _) = exploded::lifts(data.info, data.body);
-                exploded::names(canvas, &shot.camera, data, &lifts);
+            View::Midsection => marks::break_numbers(canvas, &shot.camera, data),
+            View::Exploded => exploded::annotate(canvas, &shot.camera, data),
+            View::Cutaway => {
+                let opening = cutaway::Opening::new(data, &shot.camera, focus);
+                cutaway::annotate(canvas, &shot.camera, data, &opening);
             }
             _ => {}
         }
-        marks::title_over(canvas, shot.camera.panel, data, shot.caption, &remark);
+        marks::title_over(canvas, shot.camera.panel, data, shot.caption, &shot.remark);
     }
     for (view, panel) in &layout.panels {
         match view {

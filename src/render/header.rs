@@ -61,9 +61,13 @@ fn caption(data: &Data) -> Vec<Block> {
         Block::new("bonds broken", sample.bonds_broken.to_string(), format!("of {bonds}")),
     ];
     if let Some(first) = data.ruptures.first() {
-        let layer = data.info.layers.get(first.layer).map_or("", String::as_str);
-        let value = format!("wire {} · {layer} · z {:.1} mm before loading", first.wire + 1, first.rest_z * 1e3);
-        let detail = format!("at {:.2} % and {:.1} MPa", first.strain * 100.0, first.body_stress / 1e6);
+        let layer = match &data.info.layers[..] {
+            [_, _, ..] => format!("{} layer · ", data.info.layers[first.layer]),
+            _ => String::new(),
+        };
+        let value = format!("wire {} · {layer}z {:.1} mm before loading", first.wire + 1, first.rest_z * 1e3);
+        let [strand, wire] = [first.body_stress, first.stress].map(|s| s / 1e6);
+        let detail = format!("strand at {:.2} % and {strand:.1} MPa, wire at {wire:.0} MPa true", first.strain * 100.0);
         blocks.push(Block { size: 14.0, ..Block::new(FIRST_BREAK, value, detail) });
     }
     blocks
@@ -120,6 +124,20 @@ fn colour_bar(canvas: &mut Canvas, area: Rect, data: &Data, range: [f64; 2]) {
     for k in 0..bar.w as i32 {
         let colour = data.scale.at((f64::from(k) + 0.5) / f64::from(bar.w));
         canvas.fill(Rect::new(bar.x + k as f32, bar.y, 1.0, bar.h), colour, 1.0);
+    }
+    // An arrow where values may lie beyond the range.
+    let [below, above] = data.scale.open_ends();
+    for (open, x, out, fraction) in [(below, bar.x - u, -1.0, 0.0), (above, bar.right() + u, 1.0, 1.0)] {
+        for k in (0..(7.0 * u) as i32).filter(|_| open) {
+            let height = bar.h * (1.0 - k as f32 / (7.0 * u));
+            let column = Rect::new(
+                x + out * k as f32 - if out < 0.0 { 1.0 } else { 0.0 },
+                bar.y + 0.5 * (bar.h - height),
+                1.0,
+                height,
+            );
+            canvas.fill(column, data.scale.at(fraction), 1.0);
+        }
     }
     let small = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Centre };
     canvas.text(

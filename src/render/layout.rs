@@ -2,6 +2,7 @@
 
 use super::canvas::Rect;
 use super::style::View;
+use crate::engine::view::RunInfo;
 
 /// A frame divided into header and panels.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,18 +22,35 @@ pub const GAP: f32 = 6.0;
 
 /// Rows of a frame: which views, share of the height, shares of the width.
 const ROWS: [(&[(View, f32)], f32); 3] = [
-    (&[(View::Overview, 1.0)], 0.15),
-    (&[(View::Midsection, 1.0), (View::Exploded, 0.62), (View::CrossSection, 0.29), (View::Scene, 1.0)], 0.44),
+    (&[(View::Overview, 1.0)], 0.13),
+    (
+        &[
+            (View::Midsection, 1.0),
+            (View::Cutaway, 0.8),
+            (View::Exploded, 0.72),
+            (View::CrossSection, 0.4),
+            (View::Scene, 1.0),
+        ],
+        0.46,
+    ),
     (&[(View::Unrolled, 0.6), (View::Curve, 0.4)], 0.41),
 ];
 
-/// The default views: of a body between grips, or of free bodies.
-pub fn default_views(gripped: bool) -> Vec<View> {
-    if gripped {
-        vec![View::Overview, View::Midsection, View::CrossSection, View::Unrolled, View::Curve]
-    } else {
-        vec![View::Scene]
+/// The default views: of a body between grips, or of free bodies. Left out is what would show nothing: layers of
+/// which there is one, the cut of a single wire, the curve of what is not pulled.
+pub fn default_views(info: &RunInfo) -> Vec<View> {
+    if info.gauge.is_none() {
+        return vec![View::Scene];
     }
+    let all = [
+        (View::Overview, true),
+        (View::Midsection, true),
+        (View::Exploded, info.layers.len() > 1),
+        (View::CrossSection, info.wires.len() > 1),
+        (View::Unrolled, true),
+        (View::Curve, info.is_pulled()),
+    ];
+    all.into_iter().filter(|(_, shown)| *shown).map(|(view, _)| view).collect()
 }
 
 /// Lays `views` out on a frame of `size` pixels: each view has its row, rows without a view vanish.

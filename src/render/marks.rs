@@ -3,6 +3,7 @@
 use super::camera::Camera;
 use super::canvas::{Align, Canvas, Rect, Type, Weight};
 use super::frame::Data;
+use super::labels::{self, Mark};
 use super::ticks::{label, round_step};
 use crate::engine::view::Rupture;
 use glam::Vec3;
@@ -109,49 +110,19 @@ fn corners(canvas: &mut Canvas, r: Rect, arm: f32, colour: [u8; 3]) {
 pub fn break_numbers(canvas: &mut Canvas, camera: &Camera, data: &Data) {
     let u = canvas.unit;
     let panel = camera.panel;
-    let radius = 8.5 * u;
-    let mut taken: Vec<Rect> = Vec::new();
-    for (number, rupture) in data.first_breaks() {
-        let place = data.place(rupture);
-        let v = camera.to_view(place);
-        let [x, y] = camera.project(place);
-        let margin = radius + 2.0 * u;
-        if v.z < 0.0 || !outermost(data, rupture) || x < panel.x + margin || x > panel.right() - margin {
-            continue;
-        }
-        // Above the strand for breaks in its upper half, below it for the others.
-        let upper = y < panel.y + 0.5 * panel.h;
-        let level = if upper { panel.y + 36.0 * u } else { panel.bottom() - 30.0 * u };
-        let Some(at) = free_place(&taken, x, level, radius, panel) else {
-            continue;
-        };
-        taken.push(Rect::new(at - radius, level - radius, 2.0 * radius, 2.0 * radius));
-        canvas.line([at, level], [x, y], 1.2 * u, data.style.text, 0.75);
-        badge(canvas, at, level, radius, data, number);
-    }
+    let seen: Vec<Mark> = data
+        .first_breaks()
+        .filter(|(_, r)| outermost(data, r) && camera.to_view(data.place(r)).z > 0.0)
+        .map(|(number, r)| Mark { number, at: camera.project(data.place(r)) })
+        .filter(|m| m.at[0] > panel.x && m.at[0] < panel.right())
+        .collect();
+    // Above the strand for breaks in its upper half, below it for the others.
+    let (upper, lower): (Vec<Mark>, Vec<Mark>) = seen.iter().partition(|m| m.at[1] < panel.y + 0.5 * panel.h);
+    let band = |y: f32| Rect::new(panel.x + 4.0 * u, y, panel.w - 8.0 * u, 20.0 * u);
+    labels::badges(canvas, band(panel.y + 28.0 * u), data, &upper);
+    labels::badges(canvas, band(panel.bottom() - 46.0 * u), data, &lower);
 }
 
 fn outermost(data: &Data, rupture: &Rupture) -> bool {
     rupture.layer + 1 == data.info.layers.len()
-}
-
-/// The nearest place beside `x` where a disc meets no other.
-fn free_place(taken: &[Rect], x: f32, y: f32, radius: f32, panel: Rect) -> Option<f32> {
-    let step = 0.5 * radius;
-    (0..60)
-        .map(|k| x + step * ((k + 1) / 2) as f32 * if k % 2 == 0 { 1.0 } else { -1.0 })
-        .filter(|c| *c > panel.x + radius && *c < panel.right() - radius)
-        .find(|c| {
-            let r = Rect::new(c - 1.1 * radius, y - radius, 2.2 * radius, 2.0 * radius);
-            !taken.iter().any(|t| t.meets(&r))
-        })
-}
-
-/// A number in a disc of the signal colour.
-pub fn badge(canvas: &mut Canvas, x: f32, y: f32, radius: f32, data: &Data, number: usize) {
-    let text = number.to_string();
-    let size = radius * if text.len() > 1 { 1.15 } else { 1.35 };
-    canvas.disc(x, y, radius, data.style.signal, 1.0);
-    let kind = Type { size, weight: Weight::Bold, colour: [255; 3], align: Align::Centre };
-    canvas.text(x, y + 0.36 * size, kind, &text);
 }

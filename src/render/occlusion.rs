@@ -11,7 +11,9 @@ const REACH: f32 = 2.2;
 ///
 /// A surface with normal n under a cosine-weighted sky then loses about ¼ Σw + ½ n·Σ(w d) of its light: to first
 /// order, a small source of occlusion in direction d hides w max(0, n·d), and max(0, c) ≈ ¼ + ½ c.
-pub fn occlusion(info: &RunInfo, position: &[[f32; 3]], radius: &[f32]) -> Vec<[f32; 4]> {
+///
+/// Particles that are `removed` hide nothing; the list is empty when none is.
+pub fn occlusion(info: &RunInfo, position: &[[f32; 3]], radius: &[f32], removed: &[bool]) -> Vec<[f32; 4]> {
     let wire_of = wire_numbers(info, position.len());
     let cells = Cells::new(position, radius);
     let one = |i: usize| {
@@ -20,7 +22,7 @@ pub fn occlusion(info: &RunInfo, position: &[[f32; 3]], radius: &[f32]) -> Vec<[
         let (mut sum, mut total) = (Vec3::ZERO, 0.0);
         for &j in cells.around(centre.z) {
             let j = j as usize;
-            if wire_of[j] == wire_of[i] {
+            if wire_of[j] == wire_of[i] || removed.get(j).is_some_and(|r| *r) {
                 continue;
             }
             let d = Vec3::from(position[j]) - centre;

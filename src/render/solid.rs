@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::canvas::Rect;
 use super::style::Style;
 use super::target::{COLOUR, DEPTH, SAMPLES, Target};
-use super::wires::{self, Segment};
+use super::wires::Segment;
 use crate::base::error::Result;
 use std::ops::Range;
 use wgpu::util::DeviceExt;
@@ -23,6 +23,7 @@ struct ViewUniform {
     rim: [f32; 4],
     fade: [f32; 4],
     signal: [f32; 4],
+    cut: [f32; 4],
 }
 
 /// Segments `instances` of the list, seen through a camera into its panel.
@@ -47,7 +48,7 @@ impl SolidPipeline {
     /// # Errors
     /// When the driver refuses it.
     pub fn new(gpu: &Gpu) -> Result<Self> {
-        // Two scopes, because an unsupported sample mask is reported as an internal error, not a validation one.
+        // Two scopes, because what a backend cannot translate is reported as an internal error, not a validation one.
         let internal = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let made = Self::compile(gpu);
@@ -107,7 +108,7 @@ impl SolidPipeline {
             multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some(if gpu.sample_mask { "fs_masked" } else { "fs_whole" }),
+                entry_point: Some(if gpu.samples_shaded { "fs_sampled" } else { "fs_whole" }),
                 compilation_options: Default::default(),
                 targets: &[Some(wgpu::ColorTargetState {
                     format: COLOUR,
@@ -175,7 +176,8 @@ impl SolidPipeline {
             ],
             rim: [r, g, b, style.edge],
             fade: [0.0, drawing.fade, 0.0, 0.0],
-            signal: wires::signal(),
+            signal: super::colour::signal4(),
+            cut: super::colour::linear4(style.cut),
         };
         let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("view"),

@@ -14,8 +14,8 @@ pub struct FrameOptions {
     pub size: [u32; 2],
     /// Quantity that colours the wires.
     pub colour: ColourBy,
-    /// Panels. Empty means the default for the scene: overview, midsection, unrolled map and curve for a body
-    /// between grips, one view of everything for free bodies.
+    /// Panels. Empty means the default for the scene: overview, midsection, exploded layers, cross-section, unrolled
+    /// map and curve for a body between grips, one view of everything for free bodies.
     pub views: Vec<View>,
     /// Dark or light.
     pub theme: Theme,
@@ -67,6 +67,7 @@ impl Theme {
                 grid: [44, 50, 62],
                 signal: SIGNAL,
                 accent: [240, 243, 248],
+                cut: [126, 134, 148],
                 rim: [0.10, 0.12, 0.15],
                 edge: 0.0,
             },
@@ -78,6 +79,7 @@ impl Theme {
                 grid: [216, 220, 227],
                 signal: SIGNAL,
                 accent: [30, 36, 48],
+                cut: [150, 156, 166],
                 rim: [0.0, 0.0, 0.0],
                 edge: 0.45,
             },
@@ -105,6 +107,8 @@ pub struct Style {
     pub signal: Rgb,
     /// The curve.
     pub accent: Rgb,
+    /// Faces where wires were cut off to show what lies behind them.
+    pub cut: Rgb,
     /// Light added along silhouettes, linear RGB [-].
     pub rim: [f32; 3],
     /// Darkening along silhouettes, 0 to 1 [-].

@@ -4,11 +4,16 @@
 use super::canvas::{Align, Canvas, Rect, Type, Weight};
 use super::colour::desaturated;
 use super::frame::Data;
+use super::labels::{self, Mark};
 use super::marks;
 use super::style::Rgb;
 use super::ticks::{label, ticks};
 use super::wires::{holds, in_grip};
 use crate::engine::view::{BondState, WireInfo};
+
+/// Breaks nearer together than this, in units, are numbered as one group: beside it there must be room for the
+/// columns of the next.
+const GROUP: f32 = 110.0;
 
 /// Rows of the map.
 struct Rows {
@@ -37,8 +42,8 @@ pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data) {
     }
     layers(canvas, panel, &rows, data);
     axis(canvas, &rows, data);
-    breaks(canvas, &rows, data);
     numbers(canvas, &rows, data);
+    breaks(canvas, &rows, data);
 }
 
 fn rows(area: Rect, data: &Data, unit: f32) -> Rows {
@@ -139,47 +144,52 @@ fn breaks(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     }
 }
 
-/// Order numbers beside the first break of each wire, where they cover no other number and no break.
+/// Order numbers of the wires' first breaks, in columns to the left and right of each group of breaks, on lines to
+/// their places.
 fn numbers(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     let u = canvas.unit;
-    let size = 11.0 * u;
-    let mut taken: Vec<Rect> = data
+    let mut places: Vec<Mark> = data
         .first_breaks()
-        .map(|(_, r)| Rect::new(rows.x(r.rest_z as f32 * 1e3) - 4.0 * u, rows.top[r.wire], 8.0 * u, rows.height))
+        .map(|(number, r)| {
+            let at = [rows.x(r.rest_z as f32 * 1e3), rows.top[r.wire] + 0.45 * rows.height];
+            Mark { number, at }
+        })
         .collect();
-    for (number, rupture) in data.first_breaks() {
-        let text = number.to_string();
-        let w = canvas.fonts.width(&text, size, Weight::Bold) + 6.0 * u;
-        let h = 13.0 * u;
-        let x = rows.x(rupture.rest_z as f32 * 1e3);
-        let y = rows.top[rupture.wire] + 0.45 * rows.height;
-        let Some(r) = beside(&taken, x, y, w, h, u, rows.area) else {
-            continue;
-        };
-        taken.push(r);
-        let near = if r.x > x { r.x } else { r.right() };
-        canvas.line([x, y], [near, r.y + 0.5 * h], 1.0 * u, data.style.text, 0.8);
-        canvas.fill_rounded(r, 3.0 * u, data.style.page, 0.88);
-        let kind = Type { size, weight: Weight::Bold, colour: data.style.text, align: Align::Centre };
-        canvas.text(r.x + 0.5 * w, r.y + 0.5 * h + 0.36 * size, kind, &text);
+    places.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
+    for group in places.chunk_by(|a, b| b.at[0] - a.at[0] < GROUP * u) {
+        let (left, right) = group.split_at(group.len() / 2);
+        column(canvas, rows, data, left, false);
+        column(canvas, rows, data, right, true);
     }
 }
 
-/// A free place for a label to the right or left of (x, y), as near as possible.
-fn beside(taken: &[Rect], x: f32, y: f32, w: f32, h: f32, u: f32, area: Rect) -> Option<Rect> {
-    for out in 0..8 {
-        for shift in [0.0, -0.5, 0.5, -1.0, 1.0] {
-            for right in [true, false] {
-                let distance = 7.0 * u + 0.8 * out as f32 * w;
-                let left = if right { x + distance } else { x - distance - w };
-                let r = Rect::new(left, y - 0.5 * h + shift * h, w, h);
-                let inside =
-                    r.x > area.x && r.right() < area.right() && r.y > area.y - h && r.bottom() < area.bottom() + h;
-                if inside && !taken.iter().any(|t| t.meets(&r)) {
-                    return Some(r);
-                }
-            }
-        }
+/// A column of numbers beside a group of breaks.
+fn column(canvas: &mut Canvas, rows: &Rows, data: &Data, marks: &[Mark], right: bool) {
+    let u = canvas.unit;
+    let (size, w, h) = (11.0 * u, 20.0 * u, 13.0 * u);
+    let reach = marks.iter().map(|m| if right { m.at[0] } else { -m.at[0] }).fold(f32::MIN, f32::max);
+    let distance = reach + 14.0 * u;
+    // Against the ends of the map, numbers rather cover a break than leave it.
+    let left = if right { distance } else { -distance - w }.clamp(rows.area.x, rows.area.right() - w);
+    // As many as can be read, the first ones, closer together the more they are.
+    let [low, high] = [rows.area.y - 0.3 * h, rows.area.bottom() + 0.3 * h];
+    let mut marks = marks.to_vec();
+    marks.sort_by_key(|m| m.number);
+    marks.truncate(((high - low) / (0.8 * h)) as usize + 1);
+    marks.sort_by(|a, b| a.at[1].total_cmp(&b.at[1]));
+    let pitch = (h + u).min((high - low) / marks.len().saturating_sub(1).max(1) as f32);
+    let h = h.min(pitch);
+    let wanted: Vec<f32> = marks.iter().map(|m| m.at[1]).collect();
+    let levels = labels::spread(&wanted, pitch, low, high);
+    let near = if right { left } else { left + w };
+    for (mark, y) in marks.iter().zip(&levels) {
+        canvas.line([near, *y], mark.at, 1.1 * u, data.style.text, 0.85);
     }
-    None
+    for (mark, y) in marks.iter().zip(levels) {
+        let first = mark.number == 1;
+        let (ground, ink) = if first { (data.style.signal, [255; 3]) } else { (data.style.page, data.style.text) };
+        canvas.fill_rounded(Rect::new(left, y - 0.5 * h, w, h), 3.0 * u, ground, if first { 1.0 } else { 0.88 });
+        let kind = Type { size, weight: Weight::Bold, colour: ink, align: Align::Centre };
+        canvas.text(left + 0.5 * w, y + 0.36 * size, kind, &mark.number.to_string());
+    }
 }

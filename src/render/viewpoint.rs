@@ -8,7 +8,7 @@ use crate::engine::view::{RunInfo, Snapshot};
 use glam::Vec3;
 
 /// Strain for which the overview leaves room when the run does not know where it will end [-].
-const UNKNOWN_STRAIN: f64 = 0.3;
+pub const UNKNOWN_STRAIN: f64 = 0.3;
 
 /// Size and place of the body before loading [mm].
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Body {
     pub radius: f32,
     /// Mean distance of each wire from the axis over the greatest such distance [-]; 1 when all lie on the axis.
     pub depth: Vec<f32>,
+    /// Greatest distance of a wire's surface from the axis, per layer [mm].
+    pub layer_radius: Vec<f32>,
 }
 
 impl Body {
@@ -38,14 +40,18 @@ impl Body {
         }
         let middle = 0.5 * (low + high);
         let axis = Vec3::new(middle.x, middle.y, 0.0);
-        let radius = info
-            .rest_position
-            .iter()
-            .zip(&info.radius)
-            .map(|(p, r)| (p[0] - axis.x).hypot(p[1] - axis.y) + r)
-            .fold(1e-6, f32::max);
+        let surface = |i: usize| {
+            let [x, y, _] = info.rest_position[i];
+            (x - axis.x).hypot(y - axis.y) + info.radius[i]
+        };
+        let radius = (0..info.rest_position.len()).map(surface).fold(1e-6, f32::max);
         let depth = wire_depth(info, axis);
-        Self { low, high, axis, radius, depth }
+        let mut layer_radius = vec![0f32; info.layers.len()];
+        for wire in &info.wires {
+            let widest = (wire.first..wire.first + wire.len).map(surface).fold(0.0, f32::max);
+            layer_radius[wire.layer] = layer_radius[wire.layer].max(widest);
+        }
+        Self { low, high, axis, radius, depth, layer_radius }
     }
 }
 

@@ -13,7 +13,8 @@ pub struct Segment {
     pub a: [f32; 4],
     /// Second centre and radius [mm].
     pub b: [f32; 4],
-    /// Unit tangent of the wire at `a`, and the kind of this end ([`JOINT`], [`END`], [`BROKEN`]).
+    /// Unit tangent of the wire at `a`, and the kind of this end ([`JOINT`], [`END`], [`CUT`], [`NECK`],
+    /// [`BROKEN`]).
     pub tangent_a: [f32; 4],
     /// The same at `b`.
     pub tangent_b: [f32; 4],
@@ -29,10 +30,18 @@ pub struct Segment {
 
 /// The wire goes on.
 pub const JOINT: f32 = 0.0;
-/// The wire ends as it was made.
+/// The wire ends as it was made: round.
 pub const END: f32 = 1.0;
-/// The wire ends where a bond broke.
-pub const BROKEN: f32 = 2.0;
+/// The wire was cut off to show what lies behind it: flat.
+pub const CUT: f32 = 2.0;
+/// The wire goes on as the tip of a broken end: open, with a band of the signal colour.
+pub const NECK: f32 = 3.0;
+/// The face of a broken end: flat, in the signal colour.
+pub const BROKEN: f32 = 4.0;
+
+/// Length of the tip that a broken end is drawn with, and the radius of its face, both over the wire's radius [-]:
+/// ductile copper necks before it parts. The particle itself is a sphere, so the tip stays inside what collides.
+const TIP: [f32; 2] = [0.8, 0.55];
 
 /// What is drawn of a snapshot, per particle.
 pub struct Looks {
@@ -44,6 +53,14 @@ pub struct Looks {
     pub occlusion: Vec<[f32; 4]>,
     /// Shade per wire [-]: 1 outside, less further in, so that what lies below a gap reads as deeper.
     pub shade: Vec<f32>,
+    /// Particles that are left out, so that what lies behind them is seen; empty when none is.
+    pub removed: Vec<bool>,
+}
+
+impl Looks {
+    fn shows(&self, i: usize) -> bool {
+        !self.removed.get(i).copied().unwrap_or(false)
+    }
 }
 
 /// The segments of every wire and sphere. Where a wire is straight, up to `stride` bonds share a segment: small
@@ -85,19 +102,26 @@ impl Chain<'_> {
         let mut i = self.wire.first;
         while i < last {
             let mut j = i + 1;
-            if holds(self.snapshot, i) {
-                while j < last && j - i < stride && holds(self.snapshot, j) && self.straight(i, j + 1) {
+            if self.drawn(i) {
+                while j < last && j - i < stride && self.drawn(j) && self.straight(i, j + 1) {
                     j += 1;
                 }
-                all.push(self.between(i, j));
+                let segment = self.between(i, j);
+                all.push(segment);
+                all.extend(tips(&segment, self.looks.occlusion[i], self.looks.occlusion[j]));
             }
             i = j;
         }
         for i in self.wire.first..self.wire.first + self.wire.len {
-            if !self.holds_before(i) && !self.holds_after(i) {
-                all.push(self.between(i, i));
+            if self.looks.shows(i) && !self.holds_before(i) && !self.holds_after(i) {
+                all.push(self.lone(i));
             }
         }
+    }
+
+    /// Whether the bond after particle `i` holds and both its particles are shown.
+    fn drawn(&self, i: usize) -> bool {
+        holds(self.snapshot, i) && self.looks.shows(i) && self.looks.shows(i + 1)
     }
 
     /// Whether the wire turns by less than 2.5° between two particles.
@@ -125,23 +149,23 @@ impl Chain<'_> {
         (one(from, i) + one(i, to)).try_normalize().unwrap_or(Vec3::Z)
     }
 
-    /// Kind of the end that the wire has at `i`, seen from a bond on the other side of `i`.
-    fn kind(&self, i: usize, goes_on: bool, outermost: usize) -> f32 {
-        match (goes_on, i == outermost) {
-            (true, _) => JOINT,
-            (false, true) => END,
-            (false, false) => BROKEN,
+    /// Kind of the end that a segment has at `i`; `outside` is the bond on its other side there, if there is one.
+    fn kind(&self, outside: Option<usize>) -> f32 {
+        match outside {
+            None => END,
+            Some(bond) if self.drawn(bond) => JOINT,
+            Some(bond) if holds(self.snapshot, bond) => CUT,
+            Some(_) => NECK,
         }
     }
 
     fn between(&self, i: usize, j: usize) -> Segment {
         let last = self.wire.first + self.wire.len - 1;
-        let point = |k: usize| self.position(k).extend(self.snapshot.radius[k]).to_array();
-        let kind_a = self.kind(i, self.holds_before(i), self.wire.first);
-        let kind_b = self.kind(j, self.holds_after(j), last);
+        let kind_a = self.kind((i > self.wire.first).then(|| i - 1));
+        let kind_b = self.kind((j < last).then_some(j));
         Segment {
-            a: point(i),
-            b: point(j),
+            a: self.point(i),
+            b: self.point(j),
             tangent_a: self.tangent(i).extend(kind_a).to_array(),
             tangent_b: self.tangent(j).extend(kind_b).to_array(),
             colour_a: self.colour(i),
@@ -149,6 +173,19 @@ impl Chain<'_> {
             occlusion_a: self.looks.occlusion[i],
             occlusion_b: self.looks.occlusion[j],
         }
+    }
+
+    /// A particle that no bond holds: a crumb between two breaks.
+    fn lone(&self, i: usize) -> Segment {
+        let tangent = self.tangent(i).extend(END).to_array();
+        let broken = self.wire.len > 1;
+        let colour = if broken { signal4() } else { self.colour(i) };
+        alone(self.point(i), tangent, colour, self.looks.occlusion[i])
+    }
+
+    /// Centre and radius [mm].
+    fn point(&self, i: usize) -> [f32; 4] {
+        self.position(i).extend(self.snapshot.radius[i]).to_array()
     }
 
     fn colour(&self, i: usize) -> [f32; 4] {
@@ -159,11 +196,35 @@ impl Chain<'_> {
     }
 }
 
+/// The necked tips of a segment's broken ends, each a short cone with a flat face.
+fn tips(segment: &Segment, at_a: [f32; 4], at_b: [f32; 4]) -> impl Iterator<Item = Segment> {
+    let [a, b] = [segment.a, segment.b].map(|p| Vec3::new(p[0], p[1], p[2]));
+    let along = (b - a).normalize_or_zero();
+    let tip = |root: [f32; 4], out: Vec3, occlusion| {
+        let [length, face] = TIP.map(|t| t * root[3]);
+        let end = Vec3::new(root[0], root[1], root[2]) + out * length;
+        Segment {
+            a: root,
+            b: end.extend(face).to_array(),
+            tangent_a: out.extend(NECK).to_array(),
+            tangent_b: out.extend(BROKEN).to_array(),
+            colour_a: signal4(),
+            colour_b: signal4(),
+            occlusion_a: occlusion,
+            occlusion_b: occlusion,
+        }
+    };
+    let before = (segment.tangent_a[3] == NECK).then(|| tip(segment.a, -along, at_a));
+    let after = (segment.tangent_b[3] == NECK).then(|| tip(segment.b, along, at_b));
+    before.into_iter().chain(after)
+}
+
 fn sphere(snapshot: &Snapshot, looks: &Looks, i: usize) -> Segment {
     let point = Vec3::from(looks.position[i]).extend(snapshot.radius[i]).to_array();
-    let tangent = Vec3::Z.extend(END).to_array();
-    let colour = linear4(looks.colour[i]);
-    let occlusion = looks.occlusion[i];
+    alone(point, Vec3::Z.extend(END).to_array(), linear4(looks.colour[i]), looks.occlusion[i])
+}
+
+fn alone(point: [f32; 4], tangent: [f32; 4], colour: [f32; 4], occlusion: [f32; 4]) -> Segment {
     Segment {
         a: point,
         b: point,
@@ -174,9 +235,4 @@ fn sphere(snapshot: &Snapshot, looks: &Looks, i: usize) -> Segment {
         occlusion_a: occlusion,
         occlusion_b: occlusion,
     }
-}
-
-/// The colour of broken ends as the shader takes it.
-pub fn signal() -> [f32; 4] {
-    signal4()
 }

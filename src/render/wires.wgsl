@@ -7,13 +7,14 @@ struct View {
   rim: vec4<f32>,      // rgb: light added along silhouettes; w: darkening along silhouettes
   fade: vec4<f32>,     // x: depth of the axis in view [mm], y: radius over which depth darkens [mm]
   signal: vec4<f32>,   // colour of broken ends, linear
+  cut: vec4<f32>,      // colour of faces where a wire was cut to show what lies behind, linear
 };
 @group(0) @binding(0) var<uniform> view: View;
 
 struct Segment {
   @location(0) a: vec4<f32>,   // first centre, radius [mm]
   @location(1) b: vec4<f32>,   // second centre, radius [mm]
-  @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 end, 2 broken end
+  @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 round end, 2 flat, 3 neck, 4 broken face
   @location(3) tb: vec4<f32>,
   @location(4) ca: vec4<f32>,  // linear colour at a; w: shade of wires inside the strand
   @location(5) cb: vec4<f32>,
@@ -71,13 +72,26 @@ fn reach(kind: f32, r: f32, tangent: vec3<f32>, along: vec3<f32>) -> f32 {
   return o;
 }
 
-// Whether p lies inside the segment's outline in the picture. `along` is the axis over its squared length.
-fn covers(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>, along: vec2<f32>) -> bool {
+// Whether an end is a plane across the axis; else it is a sphere.
+fn is_flat(kind: f32) -> bool { return kind > 1.5; }
+
+// Whether a flat end is closed by a disc; a neck goes on as its tip.
+fn has_face(kind: f32) -> bool { return kind == 2.0 || kind == 4.0; }
+
+// Whether p lies inside the outline of a segment with spheres at both ends. `along` is the axis over its squared
+// length.
+fn rounded_covers(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>, along: vec2<f32>) -> bool {
   let w = p - a.xy;
   let s = clamp(dot(w, along), 0.0, 1.0);
   let off = w - (b.xy - a.xy) * s;
   let r = mix(a.w, b.w, s);
   return dot(off, off) <= r * r;
+}
+
+fn covers(p: vec2<f32>, in: Varying, along: vec2<f32>) -> bool {
+  // The outline of a flat end has no formula as short as the ray itself; few segments have one.
+  if (is_flat(in.ta.w) || is_flat(in.tb.w)) { return intersect(p, in).found; }
+  return rounded_covers(p, in.a, in.b, along);
 }
 
 fn outline_axis(in: Varying) -> vec2<f32> {
@@ -86,27 +100,32 @@ fn outline_axis(in: Varying) -> vec2<f32> {
 }
 
 struct Hit {
+  found: bool,
   z: f32,
   s: f32,             // along the axis, 0 to 1
   from_axis: vec3<f32>,
+  face: f32,          // -1: the flat end at a, 1: the flat end at b, 0: elsewhere
 };
 
-// Front-most point over p: the cone between the two spheres, or one of the spheres.
-fn intersect(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>) -> Hit {
+// Front-most point over p: the cone between the two spheres, one of the spheres, or a flat end.
+fn intersect(p: vec2<f32>, in: Varying) -> Hit {
+  let a = in.a;
+  let b = in.b;
   let axis = b.xyz - a.xyz;
   let l = length(axis);
   var hit: Hit;
+  hit.found = false;
   hit.z = -1e30;
   hit.s = 0.0;
+  hit.face = 0.0;
   let wa = p - a.xy;
-  let ha = a.w * a.w - dot(wa, wa);
   let wb = p - b.xy;
-  let hb = b.w * b.w - dot(wb, wb);
-  // The nearest thing to a hit, for pixels whose centre just misses the outline.
+  let ha = select(a.w * a.w - dot(wa, wa), -1.0, is_flat(in.ta.w));
+  let hb = select(b.w * b.w - dot(wb, wb), -1.0, is_flat(in.tb.w));
   let za = a.z + sqrt(max(ha, 0.0));
   let zb = b.z + sqrt(max(hb, 0.0));
-  if (ha > 0.0 || l < 1e-9) { hit.z = za; hit.s = 0.0; }
-  if (hb > 0.0 && zb > hit.z) { hit.z = zb; hit.s = 1.0; }
+  if (ha > 0.0 || l < 1e-9) { hit.z = za; hit.s = 0.0; hit.found = true; }
+  if (hb > 0.0 && zb > hit.z) { hit.z = zb; hit.s = 1.0; hit.found = true; }
   if (l > 1e-9) {
     // |w|^2 - (w.d)^2 = (ra + k w.d)^2 with w = (p, a.z + t) - a, solved for the greater t.
     let d = axis / l;
@@ -120,9 +139,28 @@ fn intersect(p: vec2<f32>, a: vec4<f32>, b: vec4<f32>) -> Hit {
     if (disc > 0.0 && qa > 1e-6) {
       let t = (-qb + sqrt(disc)) / qa;
       let s = (m + t * d.z) / l;
-      if (s >= 0.0 && s <= 1.0 && a.z + t > hit.z) { hit.z = a.z + t; hit.s = s; }
+      // Where a neck joins its tip both reach over the seam, so that no sample falls between them.
+      let over = 0.5 * view.scale.w / l;
+      let low = select(0.0, -over, in.ta.w == 3.0);
+      let high = select(1.0, 1.0 + over, in.tb.w == 3.0);
+      if (s >= low && s <= high && a.z + t > hit.z) { hit.z = a.z + t; hit.s = s; hit.found = true; }
     }
-    if (hit.z < -1e29) {
+    if (abs(d.z) > 1e-4) {
+      if (has_face(in.ta.w)) {
+        let t = -m / d.z;
+        if (dot(wa, wa) + t * t < a.w * a.w && a.z + t > hit.z) {
+          hit.z = a.z + t; hit.s = 0.0; hit.face = -1.0; hit.found = true;
+        }
+      }
+      if (has_face(in.tb.w)) {
+        let t = -dot(wb, d.xy) / d.z;
+        if (dot(wb, wb) + t * t < b.w * b.w && b.z + t > hit.z) {
+          hit.z = b.z + t; hit.s = 1.0; hit.face = 1.0; hit.found = true;
+        }
+      }
+    }
+    // The nearest thing to a hit, for pixels whose centre just misses the outline.
+    if (!hit.found) {
       hit.s = clamp(m / l, 0.0, 1.0);
       hit.z = mix(a.z, b.z, hit.s);
     }
@@ -135,30 +173,36 @@ fn square(x: f32) -> f32 { return x * x; }
 
 struct Lit { colour: vec4<f32>, depth: f32, };
 
-fn shade(p: vec2<f32>, in: Varying) -> Lit {
-  let hit = intersect(p, in.a, in.b);
+// Colour of a flat end; that of a break is a little darker than its flanks, so that the two are told apart.
+fn face_colour(kind: f32) -> vec3<f32> { return select(view.cut.rgb, 0.6 * view.signal.rgb, kind > 3.5); }
+
+fn shade(p: vec2<f32>, in: Varying, pixel: vec2<f32>) -> Lit {
+  let hit = intersect(p, in);
   let s = hit.s;
   // Normals turn steadily along the wire: what lies along the wire's own tangent is taken out, except on end caps.
   let axis = in.b.xyz - in.a.xyz;
+  let l = length(axis);
+  let along = axis / max(l, 1e-9);
   let behind = dot(vec3<f32>(p, hit.z) - in.a.xyz, axis) < 0.0;
   let beyond = dot(vec3<f32>(p, hit.z) - in.b.xyz, axis) > 0.0;
-  let lone = dot(axis, axis) < 1e-12;
-  let cap = lone || (behind && in.ta.w > 0.5) || (beyond && in.tb.w > 0.5);
+  let lone = l < 1e-6;
+  let cap = lone || (behind && in.ta.w == 1.0) || (beyond && in.tb.w == 1.0);
   let tangent = normalize(mix(in.ta.xyz, in.tb.xyz, s) + vec3<f32>(0.0, 0.0, 1e-9));
   let radial = hit.from_axis - tangent * dot(hit.from_axis, tangent);
-  let n = normalize(select(radial, hit.from_axis, cap) + vec3<f32>(0.0, 0.0, 1e-6));
+  // On a cone, normals lean towards the thin end.
+  let lean = tangent * (in.a.w - in.b.w) * length(radial) / max(l, 1e-9);
+  let face = hit.face != 0.0;
+  let n = normalize(select(select(radial + lean, hit.from_axis, cap), along * hit.face, face) + vec3<f32>(0.0, 0.0, 1e-6));
 
-  // Broken ends: a band of the signal colour before the cap, and the cap.
-  let r = mix(in.a.w, in.b.w, s);
-  let l = length(axis);
-  let band = 0.5 * r;
+  // The signal colour begins a little before the neck of a broken end.
+  let band = 0.5 * mix(in.a.w, in.b.w, s);
   let soft = 0.5 * view.scale.w;
-  let from_a = select(s * l, 0.0, behind);
-  let from_b = select((1.0 - s) * l, 0.0, beyond);
   var broken = 0.0;
-  if (in.ta.w > 1.5) { broken = max(broken, 1.0 - smoothstep(band - soft, band + soft, from_a)); }
-  if (in.tb.w > 1.5) { broken = max(broken, 1.0 - smoothstep(band - soft, band + soft, from_b)); }
-  let base = mix(mix(in.ca.rgb, in.cb.rgb, s), view.signal.rgb, broken);
+  if (in.ta.w == 3.0) { broken = max(broken, 1.0 - smoothstep(band - soft, band + soft, s * l)); }
+  if (in.tb.w == 3.0) { broken = max(broken, 1.0 - smoothstep(band - soft, band + soft, (1.0 - s) * l)); }
+  if (in.ta.w == 4.0 || in.tb.w == 4.0) { broken = 1.0; }
+  var base = mix(mix(in.ca.rgb, in.cb.rgb, s), view.signal.rgb, broken);
+  if (face) { base = face_colour(select(in.tb.w, in.ta.w, hit.face < 0.0)); }
 
   let o = mix(in.oa, in.ob, s);
   // Neighbours on both sides cancel in the sum of directions; what is left of the sum of weights lies to the sides.
@@ -166,57 +210,36 @@ fn shade(p: vec2<f32>, in: Varying) -> Lit {
   let lateral = cross(tangent, o.xyz);
   let towards_side = dot(n, lateral) * dot(n, lateral) / max(dot(lateral, lateral), 1e-9);
   let hidden = 0.26 * o.w + 0.5 * dot(o.xyz, n) + 0.55 * sides * towards_side;
-  let open = clamp(1.0 - 0.8 * hidden, 0.08, 1.0);
+  let open = clamp(1.0 - 0.8 * hidden, 0.12, 1.0);
   // Deeper parts are a little darker, so that layers read in depth.
   let deep = clamp(0.2 + 0.8 * (hit.z - view.fade.x) / view.fade.y, 0.0, 1.0);
   let light = normalize(vec3<f32>(-0.35, 0.62, 0.70));
   let diffuse = max(dot(n, light), 0.0);
-  let sky = 0.30 + 0.16 * n.y + 0.14 * n.z;
-  // Powers by squaring: 32 for the highlight, 3 along silhouettes.
-  let half2 = square(max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0));
-  let glint = square(square(square(square(half2))));
+  let sky = 0.29 + 0.14 * n.y + 0.11 * n.z;
+  // Drawn metal: a narrow streak on a broad sheen, both along the wire. Powers by squaring: 8 and 64.
+  let half = max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0);
+  let sheen = square(square(square(half)));
+  let streak = square(square(square(sheen)));
   let rim = 1.0 - clamp(n.z, 0.0, 1.0);
   let slant = rim * rim * rim;
-  var colour = base * (sky * open + 0.78 * diffuse * mix(0.45, 1.0, open)) * mix(0.6, 1.0, deep) * mix(in.ca.w, in.cb.w, s);
-  colour += (0.025 + 0.14 * base) * glint * open;
-  colour = colour * (1.0 - view.rim.w * slant) + view.rim.rgb * (0.35 + 3.0 * base) * slant * open * open;
-  // A broken end keeps its colour also in the shade.
-  colour = mix(colour, max(colour, base * 0.55), broken);
+  var colour = base * (sky * open + 0.58 * diffuse * mix(0.45, 1.0, open)) * mix(0.62, 1.0, deep) * mix(in.ca.w, in.cb.w, s);
+  colour += (base * 0.10 * sheen + (0.05 + 0.28 * base) * streak) * open * select(1.0, 0.25, face);
+  let edged = select(slant, 0.0, face);
+  colour = colour * (1.0 - view.rim.w * edged) + view.rim.rgb * (0.35 + 3.0 * base) * edged * open * open;
+  // Broken ends and cut faces keep their colour also in the shade.
+  colour = mix(colour, max(colour, base * 0.5), select(broken, 1.0, face));
 
   var lit: Lit;
-  lit.colour = vec4<f32>(colour, 1.0);
+  lit.colour = vec4<f32>(dithered(colour, pixel), 1.0);
   lit.depth = clamp(0.5 - 0.5 * hit.z / view.scale.z, 0.0, 1.0);
   return lit;
 }
 
-struct Masked {
-  @location(0) colour: vec4<f32>,
-  @builtin(frag_depth) depth: f32,
-  @builtin(sample_mask) mask: u32,
-};
-
-// Smooth silhouettes: coverage tested at each of the four sample points, shading once, at the middle of those
-// that are covered (the outline is convex, so that point is inside).
-@fragment fn fs_masked(in: Varying) -> Masked {
-  let dx = dpdx(in.p);
-  let dy = dpdy(in.p);
-  var offsets = array<vec2<f32>, 4>(vec2<f32>(-0.125, -0.375), vec2<f32>(0.375, -0.125),
-                                    vec2<f32>(-0.375, 0.125), vec2<f32>(0.125, 0.375));
-  var mask = 0u;
-  var sum = vec2<f32>(0.0);
-  var count = 0.0;
-  let along = outline_axis(in);
-  for (var i = 0u; i < 4u; i++) {
-    let q = in.p + dx * offsets[i].x + dy * offsets[i].y;
-    if (covers(q, in.a, in.b, along)) {
-      mask |= 1u << i;
-      sum += q;
-      count += 1.0;
-    }
-  }
-  if (mask == 0u) { discard; }
-  let lit = shade(sum / count, in);
-  return Masked(lit.colour, lit.depth, mask);
+// Half a step of the 8-bit sRGB output, in a fixed pattern of pixels, hides the bands of slow gradients. The pattern
+// is interleaved gradient noise (Jimenez 2014); the slope of sRGB in linear light x is about 2 sqrt(x).
+fn dithered(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
+  let noise = fract(52.9829189 * fract(dot(floor(pixel), vec2<f32>(0.06711056, 0.00583715)))) - 0.5;
+  return colour + noise / 255.0 * 2.0 * sqrt(max(colour, vec3<f32>(0.0)));
 }
 
 struct Whole {
@@ -224,9 +247,21 @@ struct Whole {
   @builtin(frag_depth) depth: f32,
 };
 
-// For adapters without a sample mask: whole pixels.
-@fragment fn fs_whole(in: Varying) -> Whole {
-  if (!covers(in.p, in.a, in.b, outline_axis(in))) { discard; }
-  let lit = shade(in.p, in);
+// Smooth edges: everything at each of the four sample points. Coverage alone would leave the lines jagged where
+// wires press into one another, since those are decided by depth.
+@fragment fn fs_sampled(in: Varying, @builtin(sample_index) sample: u32) -> Whole {
+  var offsets = array<vec2<f32>, 4>(vec2<f32>(-0.125, -0.375), vec2<f32>(0.375, -0.125),
+                                    vec2<f32>(-0.375, 0.125), vec2<f32>(0.125, 0.375));
+  let offset = offsets[sample] * view.scale.w;
+  // Rows of the picture run down, view axes up.
+  return seen(in.p + vec2<f32>(offset.x, -offset.y), in);
+}
+
+// For adapters that cannot: once per pixel.
+@fragment fn fs_whole(in: Varying) -> Whole { return seen(in.p, in); }
+
+fn seen(p: vec2<f32>, in: Varying) -> Whole {
+  if (!covers(p, in, outline_axis(in))) { discard; }
+  let lit = shade(p, in, in.clip.xy);
   return Whole(lit.colour, lit.depth);
 }

@@ -38,6 +38,7 @@ words! {
     View {
         Overview = "overview", "The whole strand, its axis across the width";
         Midsection = "midsection", "Close-up on the section where it breaks, from the front and from the back";
+        Cutaway = "cutaway", "The same section with its outer layers cut open in steps, so that inner wires are seen";
         Exploded = "exploded", "The same section with the layers taken apart, one below the other";
         CrossSection = "cross-section", "The cut at the same section: wires as discs, broken ones hollow";
         Unrolled = "unrolled", "Wire number against axial position";
