@@ -5,6 +5,7 @@ mod export;
 mod interrupt;
 mod plan;
 mod render;
+mod report;
 mod run;
 mod say;
 mod scene;
@@ -37,6 +38,8 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Draw the frames of a finished run again, without simulating
     Render(render::Args),
+    /// Write one page (HTML) that tells what a run found: answer, curve, map, frames, tables
+    Report(report::Args),
 }
 
 /// How a command ended when nothing went wrong.
@@ -68,6 +71,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
         Command::Render(args) => render::render(args),
+        Command::Report(args) => report::report(&args).map(|()| Ended::Well),
     }
 }
 

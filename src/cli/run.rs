@@ -84,6 +84,7 @@ fn print(summary: &RunSummary, options: &RunOptions) {
         if options.frames {
             say!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
         }
+        say!("Make one page of all of it with: strandsnap report {}", options.out.display());
         if outputs::HAS_RENDER {
             say!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());
         }

@@ -5,22 +5,22 @@ use super::units::percent;
 use crate::base::error::{Error, Result};
 use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::scene::spec::TimeSpec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Rows whose internal energy is below this share of the run's greatest one say nothing about kinetic over internal
 /// energy [-]: a pull starts with kinetic energy and no strain, where the ratio is infinite. The usual demand on
 /// quasi-static analyses by explicit integration is a small ratio throughout most of the process, not at its start.
-const LEAST_INTERNAL_SHARE: f64 = 0.05;
+pub const LEAST_INTERNAL_SHARE: f64 = 0.05;
 
 /// Unbalanced share of the energy ledger above which a run warns [-].
-const ENERGY_LIMIT: f64 = 0.01;
+pub const ENERGY_LIMIT: f64 = 0.01;
 
 /// How far loading was from quasi-static. `None` for free bodies, which are not loaded by grips.
 ///
 /// The quasi-static stage ends with the first rupture: a wire that snaps always throws energy about,
 /// so the whole run is given beside it and judged by nobody.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct QuasiStatic {
     /// Greatest kinetic over internal energy before the first rupture [-], over rows with at least 5 % of the
     /// run's greatest internal energy.
