@@ -29,11 +29,15 @@
   const themed = (key, value) =>
     typeof value === "string" && /^\$[a-z]+[0-9]?$/.test(value) ? colour(value.slice(1)) : value;
 
+  const PRINTED = 700;
+  let printing = false;
   const figures = [...document.querySelectorAll("script.figure")].map((script) => ({
     id: script.dataset.of,
     text: script.textContent,
   }));
-  const config = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+  // Named one by one: the library's own set has a button that sends the chart to a server.
+  const modeBarButtons = [["toImage"], ["zoom2d", "pan2d"], ["zoomIn2d", "zoomOut2d", "resetScale2d"]];
+  const config = { responsive: true, displaylogo: false, modeBarButtons };
 
   const stateData = document.querySelector("script.states");
   const { states, marks } = stateData ? JSON.parse(stateData.textContent) : { states: [], marks: null };
@@ -42,7 +46,7 @@
   // The map's figure with stresses and breaks of the current state.
   function atState(figure) {
     const state = states[current];
-    state.stress.forEach((stress, band) => { figure.data[band].z = { ...stress }; });
+    state.stress.forEach((stress, wire) => { figure.data[wire].z = { ...stress }; });
     const crosses = figure.data[figure.data.length - 1];
     for (const part of ["x", "y", "text"]) crosses[part] = marks[part].slice(0, state.broken);
     const numbers = crosses.x.slice(0, 150).map((x, i) => ({
@@ -57,11 +61,13 @@
   function draw({ id, text }) {
     let figure = JSON.parse(text, themed);
     if (id === "map") figure = atState(figure);
+    if (printing) figure.layout.width = PRINTED;
     return Plotly.react(byId(id), figure.data, figure.layout, config);
   }
   async function drawAll() {
-    for (const figure of figures) await draw(figure);
-    root.dataset.charts = document.querySelectorAll(".plot .main-svg").length && figures.length;
+    await Promise.all(figures.map(draw));
+    // Counted in the page, not in the data: a test looks at it.
+    root.dataset.charts = figures.filter(({ id }) => byId(id).querySelector(".main-svg")).length;
   }
 
   // Theme: the system's until the reader chooses.
@@ -78,12 +84,9 @@
     showTheme();
   });
   dark.addEventListener("change", showTheme);
-  let before;
-  addEventListener("beforeprint", () => { before = root.dataset.theme; root.dataset.theme = "light"; drawAll(); });
-  addEventListener("afterprint", () => {
-    if (before) root.dataset.theme = before; else delete root.dataset.theme;
-    drawAll();
-  });
+  // Paper is light and narrow; charts do not follow it by themselves.
+  addEventListener("beforeprint", () => { printing = true; root.dataset.print = "yes"; drawAll(); });
+  addEventListener("afterprint", () => { printing = false; delete root.dataset.print; drawAll(); });
 
   // Slider, buttons and arrow keys.
   const slider = byId("slider");

@@ -11,7 +11,7 @@ use crate::observe::units::{mm, mpa};
 use crate::observe::wording::wire_number;
 use maud::{Markup, html};
 
-/// Ruptures in the row of chips at most.
+/// Wires in the row of chips at most.
 const MOST_CHIPS: usize = 120;
 
 /// Warnings, the first rupture, strength and elongation, and how failure ran through the layers.
@@ -20,6 +20,7 @@ pub fn section(source: &Source) -> Result<Section> {
         (warnings(source))
         p.headline { (headline(source)) }
         (facts(source))
+        @if !source.cut_short() { p { "The run ended because: " (source.summary.stopped_because) "." } }
         @if !source.ruptures.is_empty() { (sequence(source)) (layers(source)) }
     };
     Ok(Section { id: "answer", title: "What happened", body })
@@ -29,10 +30,10 @@ fn warnings(source: &Source) -> Markup {
     let texts: Vec<&String> = source.notes.iter().chain(&source.summary.warnings).collect();
     html! {
         @if texts.is_empty() && !source.cut_short() {
-            p.good { "No warnings: the run ended by its own conditions, within its limits for quasi-static loading and with a closed energy ledger where they apply." }
+            p.good { "No warnings." @if source.info.is_pulled() { " Loading stayed within its limits up to the first rupture, and the energy ledger closes." } }
         } @else {
             div.warnings role="alert" {
-                @if source.cut_short() { p { strong { "Cut short. " } "The run ended because: " (source.summary.stopped_because) "." } }
+                @if source.cut_short() && source.finished { p { strong { "Cut short. " } "The run did not reach its own end: " (source.summary.stopped_because) "." } }
                 @for text in texts { p { strong { "Warning. " } (text) } }
             }
         }
@@ -43,6 +44,7 @@ fn headline(source: &Source) -> Markup {
     let wires = source.info.wires.len();
     match source.ruptures.first() {
         Some(first) => first_rupture(source, first),
+        None if source.cut_short() && wires > 0 => html! { "No wire had broken when the run was cut short." },
         None if source.info.is_pulled() => html! { "No wire broke." },
         None if wires > 0 => html! { "Nothing broke: this body was not pulled until it snaps." },
         None => html! { "Free bodies only: there is no wire that could break." },
@@ -52,7 +54,7 @@ fn headline(source: &Source) -> Markup {
 fn first_rupture(source: &Source, first: &Rupture) -> Markup {
     let abscissa = Abscissa::of(source);
     html! {
-        "Wire " (wire_number(first.wire)) " (" (layer_name(&source.info, first.layer)) " layer) snapped first, at z = "
+        strong { "Wire " (wire_number(first.wire)) ", " (layer_name(&source.info, first.layer)) " layer," } " snapped first, at z = "
         strong { (format!("{:.1} mm", mm(first.rest_z))) } " before loading (" (format!("{:.1} mm", mm(first.position[2])))
         " when it snapped), at " strong { (abscissa.moment(abscissa.at(first))) }
         @if source.info.is_pulled() { " and " strong { (format!("{:.1} MPa", mpa(first.body_stress))) } " nominal stress" }
@@ -73,27 +75,37 @@ fn facts(source: &Source) -> Markup {
 /// Name, value and remark of everything that the run has.
 fn listed(source: &Source) -> Vec<(&'static str, String, String)> {
     let s = &source.summary;
-    let mut facts = strength(s);
+    let mut facts = strength(s, source.ruptures.is_empty());
     if let (Some(first), Some(mid)) = (source.ruptures.first(), source.mid_length()) {
-        facts.push(("First rupture, from mid-length", from_middle(mm(first.rest_z) - mid), "before loading".into()));
-        facts.push(("True axial stress there", format!("{:.0} MPa", mpa(first.stress)), "just before it broke".into()));
+        let (distance, towards) = from_middle(mm(first.rest_z) - mid);
+        facts.push(("From mid-length", distance, towards.into()));
+        facts.push((
+            "Wire stress there",
+            format!("{:.0} MPa", mpa(first.stress)),
+            "true axial, just before it broke".into(),
+        ));
     }
     if !source.info.wires.is_empty() {
         let of = format!("{} of {}", s.wires_broken, source.info.wires.len());
         facts.push(("Wires broken", of, format!("{} bonds", s.bonds_broken)));
     }
-    facts.push(("Ended because", s.stopped_because.clone(), String::new()));
     facts
 }
 
-fn strength(s: &RunSummary) -> Vec<(&'static str, String, String)> {
+/// What is called strength only where something broke.
+fn strength(s: &RunSummary, whole: bool) -> Vec<(&'static str, String, String)> {
     let mut facts = Vec::new();
     if let (Some(strength), Some(elongation)) = (s.tensile_strength_mpa, s.fracture_elongation_percent) {
-        facts.push(("Tensile strength", format!("{strength:.2} MPa"), "peak nominal stress".into()));
-        facts.push(("Elongation at the peak", format!("{elongation:.2} %"), "nominal strain".into()));
+        let (name, remark) = if whole {
+            ("Greatest stress", "nominal; nothing broke")
+        } else {
+            ("Tensile strength", "peak nominal stress")
+        };
+        facts.push((name, format!("{strength:.2} MPa"), remark.into()));
+        facts.push(("Elongation at peak", format!("{elongation:.2} %"), "nominal strain".into()));
     }
     if let Some(drop) = s.elongation_at_20_percent_drop_percent {
-        facts.push(("Elongation at 20 % drop", format!("{drop:.2} %"), "stress 20 % below its peak".into()));
+        facts.push(("At 20 % drop", format!("{drop:.2} %"), "elongation, stress 20 % below its peak".into()));
     }
     if let (Some(stress), Some(strain)) = (s.residual_stress_mpa, s.final_strain_percent) {
         facts.push(("At the end", format!("{stress:.2} MPa"), format!("at {strain:.2} %")));
@@ -101,14 +113,19 @@ fn strength(s: &RunSummary) -> Vec<(&'static str, String, String)> {
     facts
 }
 
-/// A distance from mid-length before loading [mm], in words.
-pub fn from_middle(distance: f64) -> String {
-    let towards = if distance < 0.0 { "towards the lower grip" } else { "towards the upper grip" };
-    format!("{:.1} mm {towards}", distance.abs())
+/// A distance from mid-length before loading [mm], and its direction.
+fn from_middle(distance: f64) -> (String, &'static str) {
+    let towards = if distance < 0.0 {
+        "first rupture, towards the lower grip, before loading"
+    } else {
+        "first rupture, towards the upper grip, before loading"
+    };
+    (format!("{:.1} mm", distance.abs()), towards)
 }
 
 fn sequence(source: &Source) -> Markup {
-    let shown = &source.ruptures[..source.ruptures.len().min(MOST_CHIPS)];
+    let firsts: Vec<&Rupture> = source.ruptures.iter().filter(|rupture| rupture.first_of_wire).collect();
+    let shown = &firsts[..firsts.len().min(MOST_CHIPS)];
     html! {
         h3 { "How failure ran" }
         p.key {
@@ -120,7 +137,7 @@ fn sequence(source: &Source) -> Markup {
                 li.chip style=(colour(rupture.layer)) title=(layer_name(&source.info, rupture.layer)) { (wire_number(rupture.wire)) }
             }
         }
-        @if shown.len() < source.ruptures.len() { p.remark { "The first " (shown.len()) " of " (source.ruptures.len()) "." } }
+        @if shown.len() < firsts.len() { p.remark { "The first " (shown.len()) " of " (firsts.len()) "." } }
     }
 }
 
@@ -172,7 +189,8 @@ mod tests {
 
     #[test]
     fn distances_say_their_side() {
-        assert_eq!(from_middle(-20.71), "20.7 mm towards the lower grip");
-        assert_eq!(from_middle(0.04), "0.0 mm towards the upper grip");
+        let (distance, towards) = from_middle(-20.71);
+        assert_eq!((distance.as_str(), towards.contains("lower")), ("20.7 mm", true));
+        assert!(from_middle(0.04).1.contains("upper"));
     }
 }

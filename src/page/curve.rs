@@ -77,7 +77,7 @@ pub fn fracture_range(source: &Source) -> Option<[f64; 2]> {
 fn traces(source: &Source, rows: &[&Sample]) -> Vec<Value> {
     let broken: Vec<usize> = rows.iter().map(|row| row.wires_broken).collect();
     let line = json!({
-        "type": "scatter", "mode": "lines", "name": "nominal stress", "line": { "color": "$ink", "width": 2 },
+        "type": "scatter", "mode": "lines", "name": "stress", "line": { "color": "$ink", "width": 2 },
         "x": numbers(rows.iter().map(|row| row.strain * 1e2)), "y": numbers(rows.iter().map(|row| mpa(row.stress))),
         "customdata": broken,
         "hovertemplate": "strain %{x:.3f} %<br>stress %{y:.2f} MPa<br>%{customdata} wires broken<extra></extra>",
@@ -92,7 +92,7 @@ fn ticks(source: &Source, layer: usize, height: impl Fn(&Rupture) -> f64) -> Opt
     let abscissa = Abscissa::of(source);
     (!of.is_empty()).then(|| {
         json!({
-            "type": "scatter", "mode": "markers", "name": format!("{} wire breaks", literal(layer_name(&source.info, layer))),
+            "type": "scatter", "mode": "markers", "name": format!("{} breaks", literal(layer_name(&source.info, layer))),
             "marker": { "symbol": "line-ns-open", "size": 18, "color": layer_colour(layer), "line": { "width": 2, "color": layer_colour(layer) } },
             "x": numbers(of.iter().map(|r| abscissa.at(r))), "y": numbers(of.iter().map(|r| height(r))),
             "text": of.iter().map(|r| told(source, r)).collect::<Vec<_>>(),

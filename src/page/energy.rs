@@ -2,6 +2,7 @@
 
 use super::abscissa::Abscissa;
 use super::figure::{Figure, axis, layout, merged, numbers};
+use super::text::fixed;
 use super::{Section, Source, select};
 use crate::base::error::Result;
 use crate::engine::view::Energy;
@@ -42,22 +43,23 @@ pub fn section(source: &Source) -> Result<Section> {
 
 fn table(source: &Source) -> Markup {
     let end = &source.summary.energy;
-    let share = |value: f64| if end.work == 0.0 { String::new() } else { format!("{:.3}", percent(value / end.work)) };
+    let (factor, unit) = unit(source);
+    let share = |value: f64| if end.work == 0.0 { String::new() } else { fixed(percent(value / end.work), 3) };
     html! {
         div.scroll { table {
             caption {
                 "At the end. Work is that of grips, holds and loads, plus the energy at the start. A run warns when more than "
                 (percent(ENERGY_LIMIT)) " % is unaccounted for."
             }
-            thead { tr { th { "term" } th.number { "energy (mJ)" } th.number { "of the work (%)" } } }
+            thead { tr { th { "term" } th.number { "energy (" (unit) ")" } th.number { "of the work (%)" } } }
             tbody {
                 @for (name, _, value) in TERMS {
-                    tr { td { (name) } td.number { (format!("{:.4}", value(end) * 1e3)) } td.number { (share(value(end))) } }
+                    tr { td { (name) } td.number { (fixed(value(end) * factor, 5)) } td.number { (share(value(end))) } }
                 }
-                tr.total { td { "work done" } td.number { (format!("{:.4}", end.work * 1e3)) } td.number { (share(end.work)) } }
+                tr.total { td { "work done" } td.number { (fixed(end.work * factor, 5)) } td.number { (share(end.work)) } }
                 tr.total {
-                    td { "unaccounted for (residual)" } td.number { (format!("{:.4}", end.residual() * 1e3)) }
-                    td.number { (source.summary.energy_residual_percent.map_or(String::new(), |r| format!("{r:.4}"))) }
+                    td { "unaccounted for (residual)" } td.number { (fixed(end.residual() * factor, 5)) }
+                    td.number { (source.summary.energy_residual_percent.map_or(String::new(), |r| fixed(r, 4))) }
                 }
             }
         } }
@@ -67,13 +69,14 @@ fn table(source: &Source) -> Markup {
 fn chart(source: &Source) -> Figure {
     let abscissa = Abscissa::of(source);
     let rows = select::rows(&source.samples, source.first_rupture_step(), MOST_ROWS);
+    let (factor, unit) = unit(source);
     let line = |name: &str, colour: &str, width: f64, dash: &str, value: &dyn Fn(&Energy) -> f64| -> Value {
         // A logarithm has no place for zero.
-        let y = rows.iter().map(|row| Some(value(&row.energy) * 1e3).filter(|v| *v > 0.0).unwrap_or(f64::NAN));
+        let y = rows.iter().map(|row| Some(value(&row.energy) * factor).filter(|v| *v > 0.0).unwrap_or(f64::NAN));
         json!({
             "type": "scatter", "mode": "lines", "name": name, "line": { "color": colour, "width": width, "dash": dash },
             "x": numbers(rows.iter().map(|row| abscissa.value(row))), "y": numbers(y),
-            "hovertemplate": format!("<b>{name}</b><br>{}<br>%{{y:.4g}} mJ<extra></extra>", abscissa.hover()),
+            "hovertemplate": format!("<b>{name}</b><br>{}<br>%{{y:.4g}} {unit}<extra></extra>", abscissa.hover()),
         })
     };
     let work = line("work done", "$ink", 3.0, "solid", &|e| e.work);
@@ -88,15 +91,25 @@ fn chart(source: &Source) -> Figure {
         data: std::iter::once(work).chain(terms).chain([residual]).collect(),
         layout: layout(
             axis(abscissa.title()),
-            merged(axis("energy (mJ)"), json!({ "type": "log", "range": [low, high], "dtick": 1 })),
-            json!({ "legend": { "orientation": "h", "y": -0.18, "yanchor": "top", "x": 0, "font": { "size": 11 } } }),
+            merged(axis(&format!("energy ({unit})")), json!({ "type": "log", "range": [low, high], "dtick": 1 })),
+            json!({ "margin": { "l": 56, "r": 16, "t": 32, "b": 48 }, "legend": { "orientation": "h", "y": -0.18, "yanchor": "top", "x": 0, "font": { "size": 11 } } }),
         ),
     }
 }
 
-/// Decades of mJ that the chart opens with: seven below the greatest term.
+/// Greatest energy of the run [J].
+fn greatest(source: &Source) -> f64 {
+    source.samples.iter().flat_map(|row| [row.energy.work, row.energy.internal()]).fold(0.0, f64::max)
+}
+
+/// The unit that suits the run: its factor from J, and its name.
+fn unit(source: &Source) -> (f64, &'static str) {
+    if greatest(source) >= 0.1 { (1.0, "J") } else { (1e3, "mJ") }
+}
+
+/// Decades of the unit that the chart opens with: seven below the greatest term.
 fn decades(source: &Source) -> (f64, f64) {
-    let most = source.samples.iter().flat_map(|row| [row.energy.work, row.energy.internal()]).fold(0.0, f64::max) * 1e3;
+    let most = greatest(source) * unit(source).0;
     let high = if most > 0.0 { most.log10().ceil() } else { 0.0 };
     (high - 7.0, high)
 }

@@ -85,7 +85,8 @@ pub fn layout(x: Value, y: Value, more: Value) -> Value {
         "xaxis": x, "yaxis": y,
         "paper_bgcolor": "rgba(0,0,0,0)", "plot_bgcolor": "rgba(0,0,0,0)",
         "font": { "family": "system-ui, sans-serif", "size": 13, "color": "$ink" },
-        "margin": { "l": 56, "r": 16, "t": 28, "b": 48 },
+        "margin": { "l": 56, "r": 16, "t": 68, "b": 48 },
+        "modebar": { "bgcolor": "rgba(0,0,0,0)", "color": "$muted", "activecolor": "$ink" },
         "hoverlabel": { "bgcolor": "$panel", "bordercolor": "$line", "font": { "color": "$ink" }, "align": "left" },
         "hovermode": "closest",
         "legend": { "orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "font": { "size": 12 } },
@@ -108,8 +109,8 @@ pub fn upright(x: f64, word: &str) -> (Value, Value) {
         "line": { "color": "$signal", "width": 1, "dash": "dot" },
     });
     let note = json!({
-        "x": x, "xref": "x", "y": 1, "yref": "paper", "text": word, "showarrow": false, "xanchor": "right",
-        "yanchor": "top", "xshift": -4, "font": { "color": "$signal", "size": 12 },
+        "x": x, "xref": "x", "y": 0.5, "yref": "paper", "text": word, "textangle": -90, "showarrow": false,
+        "xanchor": "right", "yanchor": "middle", "xshift": -2, "font": { "color": "$signal", "size": 12 },
     });
     (line, note)
 }

@@ -17,6 +17,7 @@ mod scene;
 mod select;
 mod source;
 mod states;
+mod text;
 mod unrolled;
 mod wires;
 

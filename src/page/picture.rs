@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 const RENDER: &str = "render";
 /// Pictures are shown no wider than this [px].
 const WIDEST: u32 = 1280;
-/// Of the JPEG [%]: the small print of a frame stays sharp, and sixty of them stay below 10 MB.
-const QUALITY: u8 = 82;
+/// Of the JPEG [%]: the small print of a frame stays sharp, and fifty of them stay below 10 MB.
+const QUALITY: u8 = 75;
 
 /// The numbered pictures of a run, one per snapshot.
 #[derive(Debug, Default)]

@@ -121,7 +121,7 @@ fn chart(
         source.ruptures.first().map(|first| upright(percent(first.strain), "first rupture")).into_iter().unzip();
     Figure {
         id,
-        height: 300,
+        height: 340,
         caption,
         data: std::iter::once(line).chain(limit).collect(),
         layout: layout(

@@ -3,9 +3,9 @@
 use crate::engine::view::{Rupture, Sample};
 
 /// Snapshots on a page at most; frames weigh about 150 kB each.
-pub const MOST_STATES: usize = 60;
+pub const MOST_STATES: usize = 50;
 /// Of those, as many as this after the first rupture.
-const AFTER_RUPTURE: usize = 38;
+const AFTER_RUPTURE: usize = 32;
 
 /// A snapshot that was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,8 +47,8 @@ pub fn states(samples: &[Sample], ruptures: &[Rupture], steps: &[u64], pulled: b
     let label = |number: usize| match number {
         _ if Some(number) == first_broken => Some("first rupture"),
         _ if first_broken.is_some_and(|first| number + 1 == first) => Some("before the first rupture"),
+        _ if number + 1 == steps.len() => Some("last"),
         _ if Some(number) == peak => Some("nearest to the peak"),
-        _ if number + 1 == steps.len() => Some("end"),
         0 => Some("start"),
         _ => None,
     };
@@ -126,7 +126,7 @@ mod tests {
         assert_eq!(at("before the first rupture"), Some(300));
         assert_eq!(at("first rupture"), Some(301));
         assert_eq!(at("nearest to the peak"), Some(346));
-        assert_eq!(at("end"), Some(399));
+        assert_eq!(at("last"), Some(399));
         assert!(chosen.iter().filter(|c| c.number > 300).count() >= AFTER_RUPTURE);
     }
 

@@ -297,9 +297,9 @@ fn summary(run: &Path, pass: &Pass, spec: Option<&Spec>, notes: &mut Vec<String>
             "give the folder of a run as strandsnap wrote it",
         ));
     };
-    notes.push(format!(
-        "The run wrote no {SUMMARY}, so it did not end properly; its numbers here are made from its trajectory."
-    ));
+    if pass.cut.is_none() {
+        notes.push(format!("{SUMMARY} is missing: the numbers here are made from the trajectory."));
+    }
     let last = &pass.samples[pass.samples.len() - 1];
     let cost = Cost { steps: last.step, simulated_s: last.time, ..Cost::default() };
     let reason = "not known, the run did not end properly".to_string();

@@ -2,25 +2,28 @@
 
 use super::Source;
 use super::curve::told;
-use super::figure::{Figure, axis, layout, literal, merged, table};
+use super::figure::{Figure, axis, layout, literal, merged, numbers, table};
 use super::source::State;
 use crate::observe::tables::layer_name;
 use crate::observe::units::mm;
+use crate::observe::wording::wire_number;
 use maud::html;
 use serde_json::{Value, json};
-use std::ops::Range;
 
 /// Cells in a row at most: a screen shows no more.
 const MOST_CELLS: usize = 400;
 /// Height of a wire's row and of what stands above and below them all [px].
 const ROW: usize = 17;
-const AROUND: usize = 130;
+const AROUND: usize = 146;
 const TALLEST: usize = 1400;
+/// Room for half a cell at the ends of the strand [mm].
+const CELL: f64 = 0.5;
 
-/// Neighbouring wires whose cells lie at the same places: one heat map.
-struct Band {
-    layer: usize,
-    wires: Range<usize>,
+/// A wire's row: one heat map of one line, because wires differ in where their bonds are.
+struct Row {
+    wire: usize,
+    /// Height of its middle in the chart: one for each row, with one free between layers [-].
+    y: usize,
     /// Bonds in a cell.
     group: usize,
     /// Centre of each cell before loading [mm].
@@ -30,30 +33,24 @@ struct Band {
 /// The map of a run, for any of its states.
 pub struct Map<'a> {
     source: &'a Source,
-    bands: Vec<Band>,
+    rows: Vec<Row>,
 }
 
 impl<'a> Map<'a> {
     /// The map; `None` for a body without bonds.
     pub fn new(source: &'a Source) -> Option<Self> {
-        let bands = bands(source);
-        (!bands.is_empty()).then_some(Self { source, bands })
+        let rows = rows(source);
+        (!rows.is_empty()).then_some(Self { source, rows })
     }
 
-    /// Bonds that share a cell where they share most [-].
-    fn coarsest(&self) -> usize {
-        self.bands.iter().map(|band| band.group).max().unwrap_or(1)
-    }
-
-    /// Stress of every cell in a state, band by band: the mean of the bonds that hold [MPa].
+    /// Stress of every cell in a state, row by row: the mean of the bonds that hold [MPa].
     pub fn stress(&self, state: &State) -> Vec<Value> {
-        self.bands.iter().map(|band| self.cells(band, &state.stress)).collect()
-    }
-
-    fn cells(&self, band: &Band, stress: &[f32]) -> Value {
-        let wires = band.wires.clone().map(|w| &self.source.info.wires[w]);
-        let rows = wires.flat_map(|wire| stress[wire.first..wire.first + wire.len - 1].chunks(band.group)).map(mean);
-        table(rows, band.wires.len(), band.x.len())
+        let of = |row: &Row| {
+            let wire = &self.source.info.wires[row.wire];
+            let bonds = &state.stress[wire.first..wire.first + wire.len - 1];
+            table(bonds.chunks(row.group).map(mean), 1, row.x.len())
+        };
+        self.rows.iter().map(of).collect()
     }
 
     /// Places and words of the breaks, in order.
@@ -61,24 +58,19 @@ impl<'a> Map<'a> {
         let ruptures = &self.source.ruptures;
         json!({
             "x": ruptures.iter().map(|r| place_of_rupture(self.source, r)).collect::<Vec<_>>(),
-            "y": ruptures.iter().map(|r| row_name(r.wire)).collect::<Vec<_>>(),
+            "y": ruptures.iter().map(|r| self.height_of(r.wire)).collect::<Vec<_>>(),
             "order": ruptures.iter().map(|r| r.order).collect::<Vec<_>>(),
             "text": ruptures.iter().map(|r| told(self.source, r)).collect::<Vec<_>>(),
         })
     }
 
+    fn height_of(&self, wire: usize) -> Option<usize> {
+        self.rows.iter().find(|row| row.wire == wire).map(|row| row.y)
+    }
+
     /// The chart without stresses and marks, which come with a state.
     pub fn figure(&self) -> Figure {
-        let info = &self.source.info;
-        let heat = self.bands.iter().map(|band| {
-            let layer = literal(layer_name(info, band.layer));
-            json!({
-                "type": "heatmap", "coloraxis": "coloraxis", "name": layer, "ygap": 1, "hoverongaps": false,
-                "x": band.x.iter().map(|x| (x * 1e3).round() / 1e3).collect::<Vec<_>>(),
-                "y": band.wires.clone().map(row_name).collect::<Vec<_>>(),
-                "hovertemplate": format!("wire %{{y}}, {layer} layer<br>{} = %{{x:.2f}} mm before loading<br>true axial stress %{{z:.1f}} MPa<extra></extra>", self.letter()),
-            })
-        });
+        let heat = self.rows.iter().map(|row| self.heat(row));
         let marks = json!({
             "type": "scatter", "mode": "markers", "name": "broken", "showlegend": false, "x": [], "y": [],
             "marker": { "symbol": "x", "size": 9, "color": "$signal", "line": { "color": "$paper", "width": 1 } },
@@ -86,61 +78,63 @@ impl<'a> Map<'a> {
         });
         Figure {
             id: "map",
-            height: (self.rows().len() * ROW + AROUND).min(TALLEST),
+            height: (self.top() * ROW + AROUND).min(TALLEST),
             caption: self.caption(),
             data: heat.chain([marks]).collect(),
             layout: self.layout(),
         }
     }
 
+    fn heat(&self, row: &Row) -> Value {
+        let layer = literal(layer_name(&self.source.info, self.source.info.wires[row.wire].layer));
+        json!({
+            "type": "heatmap", "coloraxis": "coloraxis", "ygap": 1, "hoverongaps": false,
+            "x": numbers(row.x.iter().copied()), "y": [row.y],
+            "hovertemplate": format!(
+                "<b>wire {}</b>, {layer} layer<br>{} = %{{x:.2f}} mm before loading<br>true axial stress %{{z:.1f}} MPa<extra></extra>",
+                wire_number(row.wire),
+                if self.source.info.gauge.is_some() { "z" } else { "s" },
+            ),
+        })
+    }
+
+    /// Height above all rows.
+    fn top(&self) -> usize {
+        self.rows.iter().map(|row| row.y + 1).max().unwrap_or(0)
+    }
+
     fn caption(&self) -> maud::Markup {
+        let coarsest = self.rows.iter().map(|row| row.group).max().unwrap_or(1);
         html! {
             "Wires unrolled, innermost layer at the bottom, coloured by the true axial stress of their bonds. Crosses are broken bonds, numbers the order in which they broke; blank cells hold nothing. "
-            @if self.coarsest() > 1 { "A cell is the mean of up to " (self.coarsest()) " bonds. " }
+            @if coarsest > 1 { "A cell is the mean of up to " (coarsest) " bonds. " }
             @if self.source.info.gauge.is_some() { "Shaded ends are held by the grips; the dotted line is mid-length." }
         }
     }
 
-    fn letter(&self) -> &'static str {
-        if self.source.info.gauge.is_some() { "z" } else { "s" }
-    }
-
-    /// Names of the rows from the bottom up, blank ones between layers.
-    fn rows(&self) -> Vec<String> {
-        let mut rows = Vec::new();
-        let mut layer = None;
-        for band in &self.bands {
-            if layer.is_some_and(|layer| layer != band.layer) {
-                // Categories must differ, also blank ones.
-                rows.push(" ".repeat(rows.len() + 1));
-            }
-            layer = Some(band.layer);
-            rows.extend(band.wires.clone().map(row_name));
-        }
-        rows
-    }
-
     fn layout(&self) -> Value {
         let info = &self.source.info;
-        let rows = self.rows();
-        let x = if info.gauge.is_some() {
+        let along = if info.gauge.is_some() {
             "axial position z before loading (mm)"
         } else {
             "place s along the wire before loading (mm)"
         };
+        // Names of rows only where they have room.
+        let named: Vec<&Row> = self.rows.iter().step_by(self.rows.len().div_ceil(TALLEST / ROW)).collect();
         let y = json!({
-            "type": "category", "categoryorder": "array", "categoryarray": rows, "range": [-0.6, rows.len() as f64 - 0.4],
-            "showgrid": false, "tickfont": { "size": 10 }, "ticks": "", "zeroline": false,
+            "range": [-0.6, self.top() as f64 - 0.4], "showgrid": false, "zeroline": false, "ticks": "", "tickfont": { "size": 10 },
+            "tickvals": named.iter().map(|row| row.y).collect::<Vec<_>>(),
+            "ticktext": named.iter().map(|row| wire_number(row.wire).to_string()).collect::<Vec<_>>(),
         });
         layout(
-            merged(axis(x), json!({ "showgrid": false, "zeroline": false })),
+            merged(axis(along), json!({ "showgrid": false, "zeroline": false })),
             merged(axis("wire"), y),
             json!({
-                "shapes": self.shapes(), "annotations": self.names(&rows), "margin": { "l": 56, "r": 24, "t": 84, "b": 48 },
+                "shapes": self.shapes(), "annotations": self.names(), "margin": { "l": 56, "r": 24, "t": 72, "b": 48 },
                 "coloraxis": {
                     "colorscale": "Viridis", "cmin": info.stress_range[0], "cmax": info.stress_range[1],
                     "colorbar": {
-                        "title": { "text": "true axial stress (MPa)", "side": "top" }, "orientation": "h", "y": 1, "yanchor": "bottom", "ypad": 24,
+                        "title": { "text": "true axial stress (MPa)", "side": "top" }, "orientation": "h", "y": 1, "yanchor": "bottom",
                         "x": 1, "xanchor": "right", "len": 0.5, "thickness": 12, "outlinewidth": 0,
                     },
                 },
@@ -148,19 +142,17 @@ impl<'a> Map<'a> {
         )
     }
 
-    /// Layer names above the lowest row of each layer's block.
-    fn names(&self, rows: &[String]) -> Vec<Value> {
+    /// Layer names above the rows of each layer.
+    fn names(&self) -> Vec<Value> {
         let info = &self.source.info;
-        let layers =
-            (0..info.layers.len()).filter_map(|layer| Some((layer, self.bands.iter().rfind(|b| b.layer == layer)?)));
+        let top = |layer| self.rows.iter().filter(|row| info.wires[row.wire].layer == layer).map(|row| row.y).max();
+        let layers = (0..info.layers.len()).filter_map(|layer| Some((layer, top(layer)?)));
         layers
-            .filter_map(|(layer, band)| {
-                let top = row_name(band.wires.end - 1);
-                let index = rows.iter().position(|row| *row == top)?;
-                Some(json!({
-                    "text": format!("<b>{}</b>", literal(layer_name(info, layer))), "showarrow": false, "xref": "paper", "x": 0,
-                    "xanchor": "left", "yref": "y", "y": index, "yanchor": "bottom", "yshift": 8, "font": { "size": 12 },
-                }))
+            .map(|(layer, y)| {
+                json!({
+                    "text": format!("<b>{} layer</b>", literal(layer_name(info, layer))), "showarrow": false, "xref": "paper", "x": 0,
+                    "xanchor": "left", "yref": "y", "y": y, "yanchor": "bottom", "yshift": 8, "font": { "size": 12 },
+                })
             })
             .collect()
     }
@@ -170,7 +162,7 @@ impl<'a> Map<'a> {
         let (Some([low, high]), Some(mid)) = (self.source.info.gauge, self.source.mid_length()) else {
             return Vec::new();
         };
-        let xs = self.bands.iter().flat_map(|band| band.x.iter().copied());
+        let xs = self.rows.iter().flat_map(|row| row.x.iter().copied());
         let (first, last) = xs.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
         let held = |from: f64, to: f64| {
             json!({
@@ -182,37 +174,31 @@ impl<'a> Map<'a> {
             "type": "line", "x0": mid, "x1": mid, "y0": 0, "y1": 1, "yref": "paper", "layer": "above",
             "line": { "color": "$paper", "width": 1, "dash": "dot" },
         });
-        vec![held(first.min(f64::from(low)), f64::from(low)), held(f64::from(high), last.max(f64::from(high))), middle]
+        vec![
+            held(first.min(f64::from(low)) - CELL, f64::from(low)),
+            held(f64::from(high), last.max(f64::from(high)) + CELL),
+            middle,
+        ]
     }
 }
 
-/// Name of a wire's row: its number as people see it.
-fn row_name(wire: usize) -> String {
-    crate::observe::wording::wire_number(wire).to_string()
+fn rows(source: &Source) -> Vec<Row> {
+    let mut rows: Vec<Row> = Vec::new();
+    let wires = &source.info.wires;
+    for (wire, of) in wires.iter().enumerate().filter(|(_, wire)| wire.len > 1) {
+        let y = rows.last().map_or(0, |below| below.y + if wires[below.wire].layer == of.layer { 1 } else { 2 });
+        let group = (of.len - 1).div_ceil(MOST_CELLS);
+        let places = places(source, wire);
+        let x = places.chunks(group).map(|cell| cell.iter().sum::<f64>() / cell.len() as f64).collect();
+        rows.push(Row { wire, y, group, x });
+    }
+    rows
 }
 
 fn mean(bonds: &[f32]) -> f64 {
     let held = bonds.iter().filter(|stress| stress.is_finite());
     let (sum, count) = held.fold((0.0, 0), |(sum, count), stress| (sum + f64::from(*stress), count + 1));
     if count == 0 { f64::NAN } else { sum / f64::from(count) }
-}
-
-fn bands(source: &Source) -> Vec<Band> {
-    let mut bands: Vec<Band> = Vec::new();
-    for (number, wire) in source.info.wires.iter().enumerate().filter(|(_, wire)| wire.len > 1) {
-        let group = (wire.len - 1).div_ceil(MOST_CELLS);
-        let places = places(source, number);
-        let x: Vec<f64> = places.chunks(group).map(|cell| cell.iter().sum::<f64>() / cell.len() as f64).collect();
-        let fits = |band: &&mut Band| {
-            let same = || band.x.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-3);
-            band.wires.end == number && band.layer == wire.layer && band.x.len() == x.len() && same()
-        };
-        match bands.last_mut().filter(fits) {
-            Some(band) => band.wires.end = number + 1,
-            None => bands.push(Band { layer: wire.layer, wires: number..number + 1, group, x }),
-        }
-    }
-    bands
 }
 
 /// Where the bonds of a wire are before loading [mm]: z in a body between grips; for a free one, which may lie in any

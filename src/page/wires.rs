@@ -15,16 +15,24 @@ use serde_json::{Value, json};
 /// Rows per line at most, and points in a chart at most: a strand of many wires gets fewer rows.
 const MOST_ROWS: usize = 800;
 const MOST_POINTS: usize = 40_000;
+/// Stress below which there is nothing to show [MPa].
+const LEAST: f64 = 1e-3;
 
 /// Layer means and wires over strain, whole and around fracture.
 pub fn section(source: &Source) -> Result<Section> {
-    let measured = source.samples.iter().any(|row| !row.wire_stress.is_empty());
+    let stresses = source.samples.iter().flat_map(|row| &row.wire_stress).map(|stress| mpa(*stress).abs());
+    let greatest = stresses.reduce(f64::max);
     let body = if source.info.wires.is_empty() {
         html! { p { "This scene has no wires." } }
-    } else if measured {
-        charts(source)
     } else {
-        html! { p { "Stress at mid-gauge is not measured: no grips hold this body." } }
+        match greatest {
+            None => html! { p { "Stress at mid-gauge is not measured: no grips hold this body." } },
+            // A chart would show the rounding of its zero.
+            Some(most) if most < LEAST => {
+                html! { p { "No wire carried axial stress: it stayed below " (LEAST) " MPa." } }
+            }
+            Some(_) => charts(source),
+        }
     };
     Ok(Section { id: "wires", title: "Stress in layers and wires", body })
 }
