@@ -388,6 +388,20 @@ fn a_browser_draws_every_chart_and_the_slider_moves_frame_and_map() {
     browser.wait_for("document.documentElement.dataset.state", "11");
     assert_eq!(browser.value(picture), last);
 
+    for (chart, told) in
+        [("curve-whole", ["strain", "MPa", "wires broken"]), ("wires-whole", ["wire 1", "inner layer", "MPa"])]
+    {
+        browser.value(&format!("void Plotly.Fx.hover('{chart}', [{{ curveNumber: 0, pointNumber: 60 }}])"));
+        let text = browser.value(&format!("document.querySelector('#{chart} .hoverlayer').textContent"));
+        assert!(told.iter().all(|word| text.as_str().unwrap().contains(word)), "{chart}: {text}");
+    }
+    // Cells of the map have no number to ask for, but fill their row: a mouse finds one.
+    browser.point_at("#map .nsewdrag", [0.6, 0.985]);
+    let text = "document.querySelector('#map .hoverlayer').textContent";
+    browser.wait_for(&format!("String({text} !== '')"), "true");
+    let text = browser.value(text);
+    assert!(["wire 1", "mm before loading", "MPa"].iter().all(|word| text.as_str().unwrap().contains(word)), "{text}");
+
     // Nothing offers to send the run's data anywhere.
     let buttons = browser.value("[...document.querySelectorAll('.modebar-btn')].map(b => b.dataset.title).join()");
     let buttons = buttons.as_str().unwrap().to_lowercase();

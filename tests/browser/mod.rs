@@ -90,7 +90,8 @@ impl Browser {
         self.call("Emulation.setEmulatedMedia", json!({ "features": features }));
         self.size(1280, 900);
         self.call("Page.navigate", json!({ "url": format!("file://{}", page.display()) }));
-        self.wait_for("document.documentElement.dataset.ready", "yes");
+        // There is no root element while the file is being read.
+        self.wait_for("document.documentElement?.dataset.ready", "yes");
     }
 
     fn size(&mut self, width: u32, height: u64) {
@@ -122,6 +123,16 @@ impl Browser {
             let event = json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code });
             self.call("Input.dispatchKeyEvent", event);
         }
+    }
+
+    /// Moves the mouse over an element, to a place in it given as shares of its width and height.
+    pub fn point_at(&mut self, selector: &str, [right, down]: [f64; 2]) {
+        let element = format!("document.querySelector('{selector}')");
+        self.value(&format!("{element}.scrollIntoView({{ block: 'center', behavior: 'instant' }})"));
+        let corner = self.value(&format!("(r => [r.x, r.y, r.width, r.height])({element}.getBoundingClientRect())"));
+        let corner = |k: usize| corner[k].as_f64().expect("a number");
+        let (x, y) = (corner(0) + right * corner(2), corner(1) + down * corner(3));
+        self.call("Input.dispatchMouseEvent", json!({ "type": "mouseMoved", "x": x, "y": y }));
     }
 
     /// Keeps a picture of the whole page.
