@@ -36,7 +36,7 @@ has_vulkan_driver() {
 }
 
 # Installs Debian packages; the first argument says why. Fails where there is no apt-get or no right to use it.
-install() {
+install_packages() {
     local why="$1" as_root=()
     shift
     command -v apt-get >/dev/null || return 1
@@ -50,7 +50,7 @@ install() {
 
 # Whether a Vulkan driver is there or could be installed.
 get_vulkan() {
-    has_vulkan_driver || install "No graphics driver: installing Mesa's software driver" mesa-vulkan-drivers libvulkan1
+    has_vulkan_driver || install_packages "No graphics driver: installing Mesa's software driver" mesa-vulkan-drivers libvulkan1
 }
 
 WITHOUT_VULKAN="No Vulkan driver was found, which frames need. A software driver is enough:
@@ -64,7 +64,7 @@ get_browser() {
     for name in chromium chromium-browser google-chrome google-chrome-stable; do
         command -v "$name" >/dev/null && return 0
     done
-    install "No browser: installing Chromium, which opens the pages of runs in tests" chromium
+    install_packages "No browser: installing Chromium, which opens the pages of runs in tests" chromium
 }
 
 # Rerun's own tool in .venv, in the version that Cargo.lock names; sets RERUN_CLI when it is there.
