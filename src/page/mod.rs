@@ -1,7 +1,7 @@
 //! Floor 8: a page for people: one self-contained HTML file that tells what a run found.
 //!
-//! [`Source`] reads the run's folder; each section is one function in its own file, listed in [`SECTIONS`]; charts are
-//! Plotly figures written as JSON ([`figure`]) and drawn by the copy of plotly.js in `assets/page`. The page fetches
+//! [`Source`] reads the run's folder; each section is one function in its own file, listed in `SECTIONS`; charts are
+//! Plotly figures written as JSON (`figure.rs`) and drawn by the copy of plotly.js in `assets/page`. The page fetches
 //! nothing: its own content policy forbids it.
 
 mod abscissa;
