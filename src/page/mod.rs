@@ -1,4 +1,4 @@
-//! Floor 8: a page for people: one self-contained HTML file that tells what a run found.
+//! The floor between runs and studies: a page for people, one self-contained HTML file that tells what a run found.
 //!
 //! [`Source`] reads the run's folder; each section is one function in its own file, listed in `SECTIONS`; charts are
 //! Plotly figures written as JSON (`figure.rs`) and drawn by the copy of plotly.js in `assets/page`. The page fetches
