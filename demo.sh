@@ -25,6 +25,8 @@ How to open it:
     out/ka4/recording.rrd    pip install rerun-sdk==$version && rerun out/ka4/recording.rrd
     out/ka4/curve.csv        any spreadsheet; wires.csv and ruptures.csv too
     out/ka4/summary.json     strength, elongation, which wires broke and where
+One page with all of it, for any browser:
+    target/release/strandsnap report out/ka4
 Draw it again from elsewhere, without simulating:
     target/release/strandsnap render out/ka4 --views midsection --colour plastic-strain
 TEXT

@@ -6,6 +6,7 @@ source .ci/prepare.sh
 
 need_rust
 get_vulkan || printf '\n%s\nTests of frames will be SKIPPED.\n' "$WITHOUT_VULKAN"
+get_browser || printf '\nNo Chromium is here and none can be installed; tests of pages in a browser will be SKIPPED.\n'
 get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that need it will be SKIPPED.\n'
 
 say "Shell syntax"

@@ -35,24 +35,37 @@ has_vulkan_driver() {
     return 1
 }
 
-# Whether a Vulkan driver is there or could be installed.
-get_vulkan() {
-    has_vulkan_driver && return 0
+# Installs Debian packages; the first argument says why. Fails where there is no apt-get or no right to use it.
+install_packages() {
+    local why="$1" as_root=()
+    shift
     command -v apt-get >/dev/null || return 1
-    local as_root=()
     if [ "$(id -u)" -ne 0 ]; then
         command -v sudo >/dev/null || return 1
         as_root=(sudo)
     fi
-    say "No graphics driver: installing Mesa's software driver (mesa-vulkan-drivers, libvulkan1)"
-    "${as_root[@]}" apt-get update -q &&
-        "${as_root[@]}" apt-get install -y -q --no-install-recommends mesa-vulkan-drivers libvulkan1
+    say "$why ($*)"
+    "${as_root[@]}" apt-get update -q && "${as_root[@]}" apt-get install -y -q --no-install-recommends "$@"
+}
+
+# Whether a Vulkan driver is there or could be installed.
+get_vulkan() {
+    has_vulkan_driver || install_packages "No graphics driver: installing Mesa's software driver" mesa-vulkan-drivers libvulkan1
 }
 
 WITHOUT_VULKAN="No Vulkan driver was found, which frames need. A software driver is enough:
     Debian, Ubuntu   apt-get install mesa-vulkan-drivers libvulkan1
     Fedora           dnf install mesa-vulkan-drivers vulkan-loader
     Arch             pacman -S vulkan-swrast vulkan-icd-loader"
+
+# Whether a browser that works without a window is there or could be installed; tests/browser looks for these names.
+get_browser() {
+    local name
+    for name in chromium chromium-browser google-chrome google-chrome-stable; do
+        command -v "$name" >/dev/null && return 0
+    done
+    install_packages "No browser: installing Chromium, which opens the pages of runs in tests" chromium
+}
 
 # Rerun's own tool in .venv, in the version that Cargo.lock names; sets RERUN_CLI when it is there.
 get_rerun() {

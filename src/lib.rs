@@ -5,6 +5,7 @@ pub mod cli;
 pub mod engine;
 pub mod law;
 pub mod observe;
+pub mod page;
 pub mod reference;
 #[cfg(feature = "render")]
 pub mod render;

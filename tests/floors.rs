@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Floors from the ground up. Those in one row do not see each other.
-const FLOORS: [&[&str]; 10] = [
+const FLOORS: [&[&str]; 11] = [
     &["base"],
     &["law", "reference"],
     &["scene"],
@@ -14,6 +14,7 @@ const FLOORS: [&[&str]; 10] = [
     &["observe"],
     &["render"],
     &["run"],
+    &["page"],
     &["study"],
     &["cli"],
 ];

@@ -7,6 +7,7 @@ mod interrupt;
 mod look;
 mod plan;
 mod render;
+mod report;
 mod run;
 mod say;
 mod scene;
@@ -45,6 +46,8 @@ enum Command {
     Render(render::Args),
     /// Compare the engine with closed forms
     Verify(verify::Args),
+    /// Write one page (HTML) that tells what a run found: answer, curve, map, frames, tables
+    Report(report::Args),
 }
 
 /// How a command ended when nothing went wrong.
@@ -82,6 +85,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Stability(args) => stability::stability(&args),
         Command::Render(args) => render::render(args),
         Command::Verify(args) => verify::verify(&args),
+        Command::Report(args) => report::report(&args).map(|()| Ended::Well),
     }
 }
 

@@ -96,6 +96,7 @@ fn print(summary: &RunSummary, options: &RunOptions) {
         if let (Some(animation), Some(frames)) = (&options.animation, &summary.cost.frames) {
             say!("  {}: {} of animation", animation.file.display(), outputs::megabytes(frames.animation_bytes));
         }
+        say!("Make one page of all of it with: strandsnap report {}", options.out.display());
         if outputs::HAS_RENDER {
             say!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());
         }

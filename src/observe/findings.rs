@@ -2,10 +2,10 @@
 
 use super::units::{mm, mpa, percent};
 use crate::engine::view::{self, StepAt};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The deepest contact, the range of the time step, the ledger's greatest gap.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Findings {
     /// The deepest contact; `None` when nothing touched.
     pub deepest_contact: Option<Deepest>,
@@ -18,7 +18,7 @@ pub struct Findings {
 }
 
 /// The deepest contact of a run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Deepest {
     /// Overlap over the smaller of the two radii [%].
     pub overlap_percent_of_radius: f64,
@@ -39,7 +39,7 @@ pub struct Deepest {
 }
 
 /// A time step and when it was chosen.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Step {
     /// The time step [s].
     pub seconds: f64,

@@ -4,19 +4,19 @@ use super::units::percent;
 use crate::base::error::{Error, Result};
 use crate::engine::view::{Notice, RunInfo, Rupture, Sample};
 use crate::scene::spec::TimeSpec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Rows whose internal energy is below this share of the run's greatest one say nothing about kinetic over internal
 /// energy [-]: a pull starts with kinetic energy and no strain, where the ratio is infinite. The usual demand on
 /// quasi-static analyses by explicit integration is a small ratio throughout most of the process, not at its start.
-const LEAST_INTERNAL_SHARE: f64 = 0.05;
+pub const LEAST_INTERNAL_SHARE: f64 = 0.05;
 
 /// Share of the expected strain from which a row is judged as it comes [-]: even an elastic body, whose energy goes with
 /// the square of its strain, then has [`LEAST_INTERNAL_SHARE`] of its greatest energy.
 const TELLING_STRAIN: f64 = 0.25;
 
 /// Unbalanced share of the energy ledger above which a run warns [-].
-const ENERGY_LIMIT: f64 = 0.01;
+pub const ENERGY_LIMIT: f64 = 0.01;
 
 /// The same, above which it stops [-]. A step that is not stable feeds energy in without end; everything else that was
 /// tried, jaws that crush loose pieces included, stays below the warning.
@@ -26,7 +26,7 @@ const ENERGY_STOP: f64 = 0.2;
 ///
 /// The quasi-static stage ends with the first rupture: a wire that snaps always throws energy about,
 /// so the whole run is given beside it and judged by nobody.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct QuasiStatic {
     /// Greatest kinetic over internal energy before the first rupture [-], over rows with at least 5 % of the
     /// run's greatest internal energy.

@@ -9,7 +9,7 @@ use super::units::{mm, mpa, percent};
 use crate::base::error::Result;
 use crate::engine::view::{Energy, Notice, RunInfo, Rupture, Sample};
 use crate::scene::spec::Spec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use std::sync::Arc;
 const DROP: f64 = 0.2;
 
 /// The result of a run. Quantities that the scene does not have (strength of free bodies) are `None`, `null` in JSON.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunSummary {
     /// Scene name.
     pub scene: String,
@@ -74,7 +74,7 @@ pub struct RunSummary {
 }
 
 /// A warning with its place in the run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     /// Step.
     pub step: u64,
@@ -102,7 +102,7 @@ pub struct Closing {
 }
 
 /// Broken wires of a layer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct BrokenOf {
     /// Wires with at least one broken bond.
     pub broken: usize,
@@ -111,7 +111,7 @@ pub struct BrokenOf {
 }
 
 /// A rupture for people.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Break {
     /// Order among all ruptures, from 1.
     pub order: usize,
@@ -128,11 +128,11 @@ pub struct Break {
     /// True axial stress of the bond just before [MPa].
     pub stress_mpa: f64,
     /// Cause.
-    pub cause: &'static str,
+    pub cause: String,
 }
 
 /// What a run cost and with what it was made.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Cost {
     /// Steps.
     pub steps: u64,
@@ -219,7 +219,7 @@ impl Summariser {
             rest_z_mm: mm(rupture.rest_z),
             strain_percent: percent(rupture.strain),
             stress_mpa: mpa(rupture.stress),
-            cause: cause(rupture.cause),
+            cause: cause(rupture.cause).to_string(),
         }
     }
 

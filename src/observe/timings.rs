@@ -1,12 +1,12 @@
 //! Where the time of frames goes.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::time::Duration;
 
 /// Accumulated wall time by stage. As JSON: means per frame in milliseconds, and totals in seconds.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[serde(into = "Report")]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "Report", from = "Report")]
 pub struct Timings {
     /// Frames drawn.
     pub frames: u32,
@@ -63,7 +63,7 @@ impl fmt::Display for Timings {
 }
 
 /// [`Timings`] for people and programs that read `summary.json`.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct Report {
     count: u32,
     draw_ms: f64,
@@ -72,9 +72,9 @@ struct Report {
     png_ms: f64,
     simulation_waited_s: f64,
     drawn_after_the_simulation_s: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     animation_s: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     animation_bytes: Option<u64>,
 }
 
@@ -96,6 +96,23 @@ impl From<Timings> for Report {
     }
 }
 
+impl From<Report> for Timings {
+    fn from(report: Report) -> Self {
+        let total = |ms: f64| Duration::from_secs_f64(ms * 1e-3 * f64::from(report.count));
+        Self {
+            frames: report.count,
+            draw: total(report.draw_ms),
+            read_back: total(report.read_back_ms),
+            overlay: total(report.charts_and_text_ms),
+            encode: total(report.png_ms),
+            waited: Duration::from_secs_f64(report.simulation_waited_s),
+            drained: Duration::from_secs_f64(report.drawn_after_the_simulation_s),
+            animation: Duration::from_secs_f64(report.animation_s.unwrap_or(0.0)),
+            animation_bytes: report.animation_bytes.unwrap_or(0),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -107,6 +124,7 @@ mod tests {
         let json = serde_json::to_value(timings).unwrap();
         assert_eq!((&json["count"], &json["draw_ms"], &json["png_ms"]), (&4.into(), &25.0.into(), &10.0.into()));
         assert_eq!((&json["read_back_ms"], json.get("animation_s")), (&2.0.into(), None));
+        assert_eq!(serde_json::from_value::<Timings>(json).unwrap(), timings);
         assert!(timings.to_string().starts_with("4, 27.0 ms each (draw 25.0,"), "{timings}");
     }
 }

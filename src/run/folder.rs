@@ -13,6 +13,8 @@ pub const SUMMARY: &str = "summary.json";
 pub const RECORDING: &str = "recording.rrd";
 /// Snapshots for drawing again.
 pub const TRAJECTORY: &str = "trajectory.bin";
+/// The page for people, which is made from all the others.
+pub const REPORT: &str = "report.html";
 /// Folder of numbered pictures.
 pub const FRAMES: &str = "frames";
 /// Animation of them, where no other name is given.
@@ -51,7 +53,7 @@ impl OutFolder {
     pub fn open(&self) -> Result<()> {
         fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
         let tables = tables::FILES.into_iter();
-        for name in tables.chain([SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION]) {
+        for name in tables.chain([SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT]) {
             let file = self.path.join(name);
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;

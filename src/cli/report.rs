@@ -1,0 +1,32 @@
+//! `strandsnap report`.
+
+use super::say::say;
+use crate::base::error::Result;
+use crate::page;
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Folder of a run, such as out/ka4; also of one that was interrupted
+    run: PathBuf,
+    /// The page [default: RUN/report.html]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    overwrite: bool,
+}
+
+pub fn report(args: &Args) -> Result<()> {
+    let written = page::write(&args.run, args.out.as_deref(), args.overwrite)?;
+    for note in &written.notes {
+        eprintln!("WARNING: {note}");
+    }
+    let [shown, of] = written.frames;
+    say!(
+        "{} ({:.1} MB, {shown} of {of} frames): open it in any browser",
+        written.path.display(),
+        written.bytes as f64 / 1e6
+    );
+    Ok(())
+}

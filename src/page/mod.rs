@@ -1,0 +1,104 @@
+//! The floor between runs and studies: a page for people, one self-contained HTML file that tells what a run found.
+//!
+//! [`Source`] reads the run's folder; each section is one function in its own file, listed in `SECTIONS`; charts are
+//! Plotly figures written as JSON (`figure.rs`) and drawn by the copy of plotly.js in `assets/page`. The page fetches
+//! nothing: its own content policy forbids it.
+
+mod abscissa;
+mod answer;
+mod breaks;
+mod curve;
+mod document;
+mod energy;
+mod figure;
+mod picture;
+mod quasi_static;
+mod scene;
+mod select;
+mod source;
+mod states;
+mod text;
+mod unrolled;
+mod wires;
+
+pub use source::Source;
+
+use crate::base::error::{Error, Result};
+use crate::observe::files::write_whole;
+use crate::run::folder::REPORT;
+use maud::Markup;
+use std::path::{Path, PathBuf};
+
+/// A part of the page. One that has nothing to show says so in a sentence.
+pub struct Section {
+    /// Its anchor.
+    pub id: &'static str,
+    /// Its heading.
+    pub title: &'static str,
+    /// What it says.
+    pub body: Markup,
+}
+
+/// The sections, in their order on the page. A new one is a file with such a function, and a row here.
+const SECTIONS: [fn(&Source) -> Result<Section>; 8] = [
+    answer::section,
+    curve::section,
+    states::section,
+    breaks::section,
+    wires::section,
+    quasi_static::section,
+    energy::section,
+    scene::section,
+];
+
+/// A page that was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Written {
+    /// Where it is.
+    pub path: PathBuf,
+    /// How big it is [bytes].
+    pub bytes: usize,
+    /// Frames in it, and pictures that the run has.
+    pub frames: [usize; 2],
+    /// What the folder lacks; also at the top of the page.
+    pub notes: Vec<String>,
+}
+
+/// Writes the page of the run in folder `run` to `out`, by default `report.html` in that folder.
+///
+/// # Errors
+/// [`Error::Input`] when the folder holds no run that can be read, or the file exists and `overwrite` is not set;
+/// [`Error::Io`] when the file system refuses.
+pub fn write(run: &Path, out: Option<&Path>, overwrite: bool) -> Result<Written> {
+    let path = out.map_or_else(|| run.join(REPORT), Path::to_path_buf);
+    // What stands in the way is said before a long run is read.
+    source::check(run)?;
+    check_target(&path, overwrite)?;
+    let source = Source::read(run)?;
+    let text = html(&source)?;
+    write_whole(&path, &text)?;
+    let frames = [source.pictures_shown(), source.pictures.found];
+    Ok(Written { path, bytes: text.len(), frames, notes: source.notes })
+}
+
+/// The page as text.
+///
+/// # Errors
+/// [`Error::Io`] or [`Error::Input`] when a picture cannot be read.
+pub fn html(source: &Source) -> Result<String> {
+    let sections = SECTIONS.iter().map(|build| build(source)).collect::<Result<Vec<_>>>()?;
+    Ok(document::document(source, &sections).into_string())
+}
+
+fn check_target(path: &Path, overwrite: bool) -> Result<()> {
+    if path.is_dir() {
+        return Err(Error::input(format!("{} is a folder", path.display()), "give the name of a file with --out"));
+    }
+    if path.exists() && !overwrite {
+        return Err(Error::input(
+            format!("{} exists", path.display()),
+            "give --overwrite to replace it, or another file with --out",
+        ));
+    }
+    Ok(())
+}
