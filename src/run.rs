@@ -7,6 +7,8 @@ mod drive;
 pub mod estimate;
 pub mod folder;
 pub mod outputs;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod replay;
 mod schedule;
 mod stop;

@@ -4,6 +4,7 @@ mod calibrate;
 mod export;
 mod interrupt;
 mod plan;
+mod record;
 mod render;
 mod run;
 mod say;
@@ -37,6 +38,8 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Draw the frames of a finished run again, without simulating
     Render(render::Args),
+    /// Write the recording of a finished run again, without simulating
+    Record(record::Args),
 }
 
 /// How a command ended when nothing went wrong.
@@ -68,6 +71,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
         Command::Render(args) => render::render(args),
+        Command::Record(args) => record::record(args),
     }
 }
 

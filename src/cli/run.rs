@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 /// Where a Rerun viewer listens when nobody says otherwise.
-const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
+pub(super) const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

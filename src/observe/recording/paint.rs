@@ -8,6 +8,8 @@ use colorous::{CIVIDIS, Gradient, PLASMA, TABLEAU10, VIRIDIS};
 pub(super) const BROKEN: u32 = 0xFF2A4DFF;
 /// Marks of ruptures and their labels.
 pub(super) const MARK: u32 = 0xFFFFFFFF;
+/// The first break: apart from the maps, from red and from white.
+pub(super) const FIRST: u32 = 0xFF9A1FFF;
 /// Grips and other things that carry no value.
 pub(super) const NEUTRAL: u32 = 0x9AA3AEFF;
 
@@ -103,9 +105,11 @@ fn at_broken_bond(snapshot: &Snapshot, wire: &WireInfo, k: usize) -> bool {
     (k > 0 && broken(i - 1)) || (k + 1 < wire.len && broken(i))
 }
 
-/// One of ten colours (0xRRGGBBAA) that are easily told apart.
+/// One of eight colours (0xRRGGBBAA) that are easily told apart, and from [`BROKEN`] and [`FIRST`].
 pub(super) fn distinct(i: usize) -> u32 {
-    rgba(TABLEAU10[i % TABLEAU10.len()])
+    /// Tableau's ten without orange and red.
+    const APART: [usize; 8] = [0, 3, 6, 4, 5, 7, 8, 9];
+    rgba(TABLEAU10[APART[i % APART.len()]])
 }
 
 fn at(gradient: Gradient, i: usize) -> u32 {

@@ -1,18 +1,23 @@
 //! Particles: a batch of snapshots becomes one chunk per wire.
 
-use super::paint::{Palette, slot};
+use super::paint::{self, Palette, slot};
 use super::stream::{Instant, Stream, bond_field, classes, colours, numbers, vectors};
 use super::{map, names, tubes};
 use crate::base::error::Result;
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use crate::scene::spec::ColourBy;
-use rerun::{Points2D, Points3D, SerializedComponentBatch};
+use rerun::components::FillMode;
+use rerun::{Capsules3D, Color, Points2D, Points3D, Radius, SerializedComponentBatch};
 use std::sync::Arc;
 
 /// Field of a particle: true axial stress of its bond [MPa].
 pub const STRESS: &str = "Bond:true_axial_stress_MPa";
 /// Field of a particle: equivalent plastic strain of its bond [-].
 pub const PLASTIC_STRAIN: &str = "Bond:equivalent_plastic_strain";
+/// Field of a particle: share of the rupture limit that its bond has reached [-].
+pub const UTILISATION: &str = "Bond:utilisation_to_rupture";
+/// Field of a particle: contact pressure [MPa].
+pub const CONTACT_PRESSURE: &str = "Bond:contact_pressure_MPa";
 /// Field of a particle: state of its bond, named by the annotation context.
 pub const STATE: &str = "Bond:state";
 /// Field of a particle, recorded when speed gives the colour [m/s].
@@ -38,6 +43,7 @@ impl Batch<'_> {
         for number in 0..self.info.wires.len() {
             stream.rows(names::wire(names::STRAND, self.info, number), self.instants, self.wire(number))?;
             stream.rows(names::tube(names::STRAND, self.info, number), self.instants, self.tube(number))?;
+            self.send_ends(stream, number)?;
         }
         for layer in 0..self.info.layers.len() {
             stream.rows(names::layer(names::MAP, self.info, layer), self.instants, [self.map_colours(layer)])?;
@@ -56,15 +62,18 @@ impl Batch<'_> {
         let range = wire.first..wire.first + wire.len;
         let positions = self.snapshots.iter().flat_map(|s| s.position[range.clone()].iter().copied());
         let paint = particles().map(|(s, k)| self.palette.particle(s, wire, number, k));
+        let field = |name, values: fn(&Snapshot) -> &[f32]| {
+            (numbers(bond_field(name), particles().map(|(s, k)| values(s)[slot(wire, k)])), each.clone())
+        };
+        let pressure = particles().map(|(s, k)| s.contact_pressure[wire.first + k]);
         let mut batches = vec![
             (vectors(Points3D::descriptor_positions(), positions), each.clone()),
             (colours(Points3D::descriptor_colors(), paint), each.clone()),
             (numbers(Points3D::descriptor_radii(), self.snapshots.iter().map(|s| mean_radius(s, wire))), once),
-            (numbers(bond_field(STRESS), particles().map(|(s, k)| s.bond_stress[slot(wire, k)])), each.clone()),
-            (
-                numbers(bond_field(PLASTIC_STRAIN), particles().map(|(s, k)| s.plastic_strain[slot(wire, k)])),
-                each.clone(),
-            ),
+            field(STRESS, |s| &s.bond_stress),
+            field(PLASTIC_STRAIN, |s| &s.plastic_strain),
+            field(UTILISATION, |s| &s.utilisation),
+            (numbers(bond_field(CONTACT_PRESSURE), pressure), each.clone()),
             (classes(STATE, particles().map(|(s, k)| s.bond_state[slot(wire, k)] as u16)), each.clone()),
         ];
         if self.palette.by() == ColourBy::Velocity {
@@ -75,7 +84,27 @@ impl Batch<'_> {
 
     fn tube(&self, number: usize) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
         let wire = &self.info.wires[number];
-        tubes::batches(self.snapshots, self.palette, wire, number, |s| mean_radius(s, wire))
+        tubes::batches(self.snapshots, self.palette, wire, number)
+    }
+
+    /// The two particles at each broken bond, from the first snapshot with one on.
+    fn send_ends(&self, stream: &Stream, number: usize) -> Result<()> {
+        let wire = &self.info.wires[number];
+        let ends = |s: &Snapshot| -> Vec<[f32; 3]> {
+            let bonds = wire.first..wire.first + wire.len.saturating_sub(1);
+            let broken = bonds.filter(|slot| s.bond_state[*slot] == BondState::Broken);
+            broken.flat_map(|slot| [s.position[slot], s.position[slot + 1]]).collect()
+        };
+        let rows: Vec<_> = self.snapshots.iter().map(|s| ends(s)).collect();
+        let broken: Vec<_> = rows.iter().zip(self.instants).filter(|(ends, _)| !ends.is_empty()).collect();
+        if broken.is_empty() {
+            return Ok(());
+        }
+        let instants: Vec<_> = broken.iter().map(|(_, instant)| **instant).collect();
+        let lengths = broken.iter().map(|(ends, _)| ends.len()).collect();
+        let places =
+            vectors(Points3D::descriptor_positions(), broken.iter().flat_map(|(ends, _)| ends.iter().copied()));
+        stream.rows(names::ends(names::STRAND, self.info, number), &instants, [(places, lengths)])
     }
 
     fn map_colours(&self, layer: usize) -> (SerializedComponentBatch, Vec<usize>) {
@@ -101,6 +130,23 @@ impl Batch<'_> {
             (numbers(bond_field(SPEED), speed), each),
         ]
     }
+}
+
+/// Sends the style of tubes and broken ends.
+///
+/// # Errors
+/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+pub(super) fn send_styles(stream: &Stream, info: &RunInfo) -> Result<()> {
+    for (number, wire) in info.wires.iter().enumerate() {
+        let solid = Capsules3D::update_fields().with_fill_mode(FillMode::Solid);
+        stream.fixed(names::tube(names::STRAND, info, number), &solid)?;
+        // As thick as the wire was, so that they stand out from it.
+        let ends = Points3D::update_fields()
+            .with_colors([Color::from_u32(paint::BROKEN)])
+            .with_radii([Radius::new_scene_units(0.5 * wire.diameter)]);
+        stream.fixed(names::ends(names::STRAND, info, number), &ends)?;
+    }
+    Ok(())
 }
 
 /// Mean radius of a wire now [mm]. One value per wire and snapshot: a wire thins as a whole, and a radius per
