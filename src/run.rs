@@ -12,6 +12,8 @@ pub mod record;
 pub mod replay;
 mod schedule;
 mod stop;
+#[cfg(feature = "record")]
+pub mod view;
 
 pub use crate::observe::summary::RunSummary;
 pub use drive::{Outcome, simulate};

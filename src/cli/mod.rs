@@ -10,6 +10,7 @@ mod run;
 mod say;
 mod scene;
 mod values;
+mod view;
 
 use crate::base::error::Result;
 use clap::{Parser, Subcommand};
@@ -40,6 +41,8 @@ enum Command {
     Render(render::Args),
     /// Write the recording of a finished run again, without simulating
     Record(record::Args),
+    /// Open the recording of a run in an installed Rerun viewer, or serve it to a browser
+    View(view::Args),
 }
 
 /// How a command ended when nothing went wrong.
@@ -72,6 +75,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
         Command::Render(args) => render::render(args),
         Command::Record(args) => record::record(args),
+        Command::View(args) => view::view(args),
     }
 }
 

@@ -88,7 +88,7 @@ fn print(summary: &RunSummary, options: &RunOptions) {
             say!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());
         }
         if options.recording {
-            say!("Open the recording with: rerun {}", options.out.join(RECORDING).display());
+            say!("Open the recording ({RECORDING}) with: strandsnap view {}", options.out.display());
         }
     }
 }

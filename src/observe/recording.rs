@@ -6,8 +6,7 @@
 //! | --- | --- |
 //! | `/headline` | what happened: the first break, the result, notices |
 //! | `/strand/<layer>/wire_<NN>` | particles: positions [mm], mean radius [mm], colours; fields `Bond`: true axial stress [MPa], equivalent plastic strain [-], utilisation to rupture [-], contact pressure [MPa], state |
-//! | `/strand/<layer>/wire_<NN>/tube` | the same wire as a smooth tube, apart where it broke; fields as above |
-//! | `/strand/<layer>/wire_<NN>/ends` | the particles at its broken bonds, moving with the wire |
+//! | `/strand/<layer>/wire_<NN>/tube` | the same wire as a smooth tube, apart where it broke, with coloured tips; fields as above |
 //! | `/strand/<layer>/wire_<NN>/ruptures` | labelled points at the places of rupture [mm], from their time on |
 //! | `/first_break`, `/focus` | mark and label of the first break; what the eye of the close view follows |
 //! | `/spheres`, `/grips` | free spheres; boxes around what the grips hold [mm] |

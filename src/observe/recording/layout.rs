@@ -23,8 +23,10 @@ use rerun::log::LogMsg;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Background of the strand's views: dark, so that bright stresses stand out.
+/// Background of maps and charts: dark, so that bright stresses stand out.
 const BACKGROUND: [u8; 3] = [17, 20, 26];
+/// Background of the strand's views: light enough to see the dark end of the colour map on it, shaded.
+const SPACE: [u8; 3] = [62, 68, 78];
 /// Width over height that the view of the whole strand has in a window of usual shape [-].
 const ASPECT: f32 = 6.5;
 /// Rerun's vertical field of view [rad].
@@ -172,8 +174,7 @@ impl Layout {
                 Wires::Tubes => names::tube(names::STRAND, info, number),
                 Wires::Particles => names::wire(names::STRAND, info, number),
             };
-            let marked = [names::ends(names::STRAND, info, number), names::marks(names::STRAND, info, number)];
-            contents.extend(marked.into_iter().chain([drawn]).map(|path| path.to_string()));
+            contents.extend([drawn, names::marks(names::STRAND, info, number)].map(|path| path.to_string()));
         }
         let Gaze { eye, up } = scenery.gaze;
         let distance = 2.0 * thickness(info).max(1e-3);
@@ -195,7 +196,7 @@ impl Layout {
         let contents: Vec<_> = contents.iter().map(String::as_str).collect();
         let view = self.view("3D", name, "/", &contents)?;
         self.property(&view, "EyeControls3D", eye)?;
-        self.background(&view)?;
+        self.background(&view, SPACE)?;
         self.property(&view, "LineGrid3D", &blueprint::LineGrid3D::new().with_visible(false))?;
         Ok(view)
     }
@@ -203,14 +204,14 @@ impl Layout {
     fn map_view(&mut self, map: &Map) -> RecordingStreamResult<Item> {
         let view = self.view("2D", "Unrolled: a row per wire, position before loading", names::MAP, &["/map/**"])?;
         self.bounds(&view, map.bounds())?;
-        self.background(&view)?;
+        self.background(&view, BACKGROUND)?;
         Ok(view)
     }
 
     fn chart_view(&mut self, chart: &Chart) -> RecordingStreamResult<Item> {
         let view = self.view("2D", "Nominal stress over strain", names::CHART, &[&format!("/{}/**", names::CHART)])?;
         self.bounds(&view, chart.bounds())?;
-        self.background(&view)?;
+        self.background(&view, BACKGROUND)?;
         // The curve is the sum of its pieces up to the cursor.
         let range = TimeRange { start: TimeRangeBoundary::Infinite, end: TimeRangeBoundary::AT_CURSOR };
         let timelines = [stream::STEP, stream::TIME, stream::STRAIN];
@@ -224,8 +225,8 @@ impl Layout {
         self.property(view, "VisualBounds2D", &blueprint::VisualBounds2D::new(VisualBounds2D(range)))
     }
 
-    fn background(&mut self, view: &Item) -> RecordingStreamResult<()> {
-        let background = blueprint::Background::new(BackgroundKind::SolidColor).with_color(BACKGROUND);
+    fn background(&mut self, view: &Item, colour: [u8; 3]) -> RecordingStreamResult<()> {
+        let background = blueprint::Background::new(BackgroundKind::SolidColor).with_color(colour);
         self.property(view, "Background", &background)
     }
 

@@ -74,11 +74,6 @@ pub fn tube(root: &str, info: &RunInfo, number: usize) -> EntityPath {
     wire(root, info, number).join(&EntityPath::from("tube"))
 }
 
-/// Entity of the ends of a broken wire, below the wire so that they are hidden with it.
-pub fn ends(root: &str, info: &RunInfo, number: usize) -> EntityPath {
-    wire(root, info, number).join(&EntityPath::from("ends"))
-}
-
 /// Entity of a wire's rupture marks, below the wire so that they are hidden with it.
 pub fn marks(root: &str, info: &RunInfo, number: usize) -> EntityPath {
     wire(root, info, number).join(&EntityPath::from("ruptures"))

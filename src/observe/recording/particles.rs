@@ -1,13 +1,13 @@
 //! Particles: a batch of snapshots becomes one chunk per wire.
 
-use super::paint::{self, Palette, slot};
+use super::paint::{Palette, slot};
 use super::stream::{Instant, Stream, bond_field, classes, colours, numbers, vectors};
 use super::{map, names, tubes};
 use crate::base::error::Result;
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use crate::scene::spec::ColourBy;
 use rerun::components::FillMode;
-use rerun::{Capsules3D, Color, Points2D, Points3D, Radius, SerializedComponentBatch};
+use rerun::{Capsules3D, Points2D, Points3D, SerializedComponentBatch};
 use std::sync::Arc;
 
 /// Field of a particle: true axial stress of its bond [MPa].
@@ -43,7 +43,6 @@ impl Batch<'_> {
         for number in 0..self.info.wires.len() {
             stream.rows(names::wire(names::STRAND, self.info, number), self.instants, self.wire(number))?;
             stream.rows(names::tube(names::STRAND, self.info, number), self.instants, self.tube(number))?;
-            self.send_ends(stream, number)?;
         }
         for layer in 0..self.info.layers.len() {
             stream.rows(names::layer(names::MAP, self.info, layer), self.instants, [self.map_colours(layer)])?;
@@ -87,26 +86,6 @@ impl Batch<'_> {
         tubes::batches(self.snapshots, self.palette, wire, number)
     }
 
-    /// The two particles at each broken bond, from the first snapshot with one on.
-    fn send_ends(&self, stream: &Stream, number: usize) -> Result<()> {
-        let wire = &self.info.wires[number];
-        let ends = |s: &Snapshot| -> Vec<[f32; 3]> {
-            let bonds = wire.first..wire.first + wire.len.saturating_sub(1);
-            let broken = bonds.filter(|slot| s.bond_state[*slot] == BondState::Broken);
-            broken.flat_map(|slot| [s.position[slot], s.position[slot + 1]]).collect()
-        };
-        let rows: Vec<_> = self.snapshots.iter().map(|s| ends(s)).collect();
-        let broken: Vec<_> = rows.iter().zip(self.instants).filter(|(ends, _)| !ends.is_empty()).collect();
-        if broken.is_empty() {
-            return Ok(());
-        }
-        let instants: Vec<_> = broken.iter().map(|(_, instant)| **instant).collect();
-        let lengths = broken.iter().map(|(ends, _)| ends.len()).collect();
-        let places =
-            vectors(Points3D::descriptor_positions(), broken.iter().flat_map(|(ends, _)| ends.iter().copied()));
-        stream.rows(names::ends(names::STRAND, self.info, number), &instants, [(places, lengths)])
-    }
-
     fn map_colours(&self, layer: usize) -> (SerializedComponentBatch, Vec<usize>) {
         let wires: Vec<_> = map::wires_of(self.info, layer).collect();
         let count = wires.iter().map(|(_, wire)| wire.len).sum();
@@ -132,21 +111,13 @@ impl Batch<'_> {
     }
 }
 
-/// Sends the style of tubes and broken ends.
+/// Sends the style of tubes.
 ///
 /// # Errors
 /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
 pub(super) fn send_styles(stream: &Stream, info: &RunInfo) -> Result<()> {
-    for (number, wire) in info.wires.iter().enumerate() {
-        let solid = Capsules3D::update_fields().with_fill_mode(FillMode::Solid);
-        stream.fixed(names::tube(names::STRAND, info, number), &solid)?;
-        // As thick as the wire was, so that they stand out from it.
-        let ends = Points3D::update_fields()
-            .with_colors([Color::from_u32(paint::BROKEN)])
-            .with_radii([Radius::new_scene_units(0.5 * wire.diameter)]);
-        stream.fixed(names::ends(names::STRAND, info, number), &ends)?;
-    }
-    Ok(())
+    let solid = Capsules3D::update_fields().with_fill_mode(FillMode::Solid);
+    (0..info.wires.len()).try_for_each(|w| stream.fixed(names::tube(names::STRAND, info, w), &solid))
 }
 
 /// Mean radius of a wire now [mm]. One value per wire and snapshot: a wire thins as a whole, and a radius per

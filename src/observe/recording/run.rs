@@ -94,6 +94,7 @@ impl Run {
         self.headline.rupture(rupture);
         if self.first.is_none() {
             self.first = Some(FirstBreak::new(rupture));
+            self.palette.set_first(rupture.bond);
         }
         Ok(())
     }
@@ -116,7 +117,6 @@ impl Run {
             gaze = Gaze::towards(first.last(), axis);
             first.send(&self.stream, &self.info, gaze, 0)?;
             self.sections.send_focus(&self.stream, &self.info, first.rest_z(), 0)?;
-            self.stream.checked(self.stream.rerun.flush_blocking()).ok();
         }
         layout::send(&self.stream, &format!("{}-layout-end", self.id), &self.scenery(gaze), active)
     }

@@ -14,7 +14,7 @@ const SECTIONS: usize = 64;
 /// not document it.
 const SHOWN: f32 = 1.5;
 /// Height of the close view over the thickness of the body [-]: the body, and room above for a label.
-const HEIGHT: f32 = 2.5;
+const HEIGHT: f32 = 1.9;
 
 /// Mean position of the particles of each section in each snapshot.
 pub(super) struct Sections {

@@ -2,9 +2,9 @@
 //!
 //! A capsule spans a few bonds: over three bonds of a stretched KA4 wire its axis departs from the helix by less than
 //! a twentieth of the wire's radius. Its radius is the mean over the particles that it spans, so that a wire that
-//! necks is seen to neck.
+//! necks is seen to neck. At a broken bond a capsule spans one bond, so that the coloured tip is short.
 
-use super::paint::Palette;
+use super::paint::{Palette, at_broken_bond};
 use super::particles::{PLASTIC_STRAIN, STRESS, UTILISATION};
 use super::stream::{bond_field, colours, numbers, vectors};
 use crate::engine::view::{BondState, Snapshot, WireInfo};
@@ -35,7 +35,10 @@ pub(super) fn batches(
     let starts = all().map(|(s, piece)| s.position[wire.first + piece.start]);
     let turns = axes.iter().map(|a| Quat::from_rotation_arc(Vec3::Z, a.normalize_or(Vec3::Z)).to_array());
     let radii = all().map(|(s, piece)| radius(s, wire, piece));
-    let paint = all().map(|(s, piece)| palette.particle(s, wire, number, middle(piece)));
+    let paint = all().map(|(s, piece)| {
+        let shown = [piece.start, piece.end].into_iter().find(|k| at_broken_bond(s, wire, *k));
+        palette.particle(s, wire, number, shown.unwrap_or(middle(piece)))
+    });
     vec![
         (vectors(Capsules3D::descriptor_translations(), starts), each.clone()),
         (vectors(Capsules3D::descriptor_quaternions(), turns), each.clone()),
@@ -60,18 +63,21 @@ fn radius(snapshot: &Snapshot, wire: &WireInfo, piece: &Range<usize>) -> f32 {
 
 /// Pieces from particle to particle, counted along the wire; none spans a broken bond.
 fn pieces(snapshot: &Snapshot, wire: &WireInfo) -> Vec<Range<usize>> {
+    let bonds = wire.len.saturating_sub(1);
+    let broken = |bond: usize| snapshot.bond_state[wire.first + bond] == BondState::Broken;
     let mut pieces = Vec::new();
     let mut start = 0;
-    for bond in 0..wire.len.saturating_sub(1) {
-        let broken = snapshot.bond_state[wire.first + bond] == BondState::Broken;
-        let last = bond + 2 == wire.len;
-        let end = if broken { bond } else { bond + 1 };
-        if end > start && (broken || last || end - start == SPAN) {
+    for bond in 0..bonds {
+        if broken(bond) {
+            start = bond + 1;
+            continue;
+        }
+        let end = bond + 1;
+        let last = end == bonds || broken(end);
+        let tip = (start > 0 && broken(start - 1) && end - start == 1) || (end + 1 < bonds && broken(end + 1));
+        if last || tip || end - start == SPAN {
             pieces.push(start..end);
             start = end;
-        }
-        if broken {
-            start = bond + 1;
         }
     }
     pieces
@@ -103,6 +109,10 @@ mod tests {
             let covered: Vec<usize> = pieces(&snapshot, &wire).into_iter().flatten().collect();
             let expected: Vec<usize> = (0..len - 1).filter(|b| !broken.contains(b)).collect();
             assert_eq!(covered, expected, "{broken:?}");
+            for piece in pieces(&snapshot, &wire) {
+                let tip = at_broken_bond(&snapshot, &wire, piece.start) || at_broken_bond(&snapshot, &wire, piece.end);
+                assert!(piece.len() == 1 || !tip && piece.len() <= SPAN, "{piece:?} of {broken:?}");
+            }
         }
     }
 }
