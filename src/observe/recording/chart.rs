@@ -9,7 +9,7 @@ use crate::base::error::Result;
 use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::observe::units::{mpa, percent};
 use crate::observe::wording::wire_number;
-use rerun::{Color, LineStrips2D, Points2D, Radius};
+use rerun::{Color, EntityPath, LineStrips2D, Points2D, Radius};
 
 /// Width and height of the drawing, in its own units.
 const SIZE: [f32; 2] = [190.0, 100.0];
@@ -66,13 +66,13 @@ impl Chart {
         let below = along.iter().map(|e| (shift(self.place(*e, 0.0), [0.0, 1.5]), format!("{e} %")));
         let beside = up.iter().map(|s| (shift(self.place(0.0, *s), [-15.0, -5.0]), format!("{s} MPa")));
         stream.fixed(path("axes"), &labels(below.chain(beside), paint::NEUTRAL))?;
-        for (i, (name, colour)) in series(info).into_iter().enumerate() {
+        for (i, Series { path: curve, name, colour }) in series(info).into_iter().enumerate() {
             let style = LineStrips2D::update_fields()
                 .with_colors([Color::from_u32(colour)])
                 .with_radii([Radius::new_ui_points(if i == 0 { 1.75 } else { 1.0 })]);
-            stream.fixed(path(&name), &style)?;
+            stream.fixed(curve.clone(), &style)?;
             let place = [(0.25 + 0.2 * (i % 2) as f32) * SIZE[0], (-0.32 + 0.13 * (i / 2) as f32) * SIZE[1]];
-            stream.fixed(path("legend").join(&path_part(&name)), &labels([(place, name)], colour))?;
+            stream.fixed(curve.join(&"name".into()), &labels([(place, name)], colour))?;
         }
         let marks = Points2D::update_fields()
             .with_colors([Color::from_u32(paint::BROKEN)])
@@ -91,11 +91,11 @@ impl Chart {
         let instants: Vec<_> = samples.iter().map(curve::instant).collect();
         let Some(first) = points.first().cloned() else { return Ok(()) };
         let before = self.last.take().unwrap_or(first);
-        for (i, (name, _)) in series(info).iter().enumerate() {
+        for (i, Series { path, .. }) in series(info).into_iter().enumerate() {
             let ends = std::iter::once(before[i]).chain(points.iter().map(|p| p[i]));
             let pieces = ends.zip(points.iter().map(|p| p[i])).flat_map(|(a, b)| [a, b]);
             let batch = strips(LineStrips2D::descriptor_strips(), pieces, 2);
-            stream.rows(path(name), &instants, [(batch, vec![1; instants.len()])])?;
+            stream.rows(path, &instants, [(batch, vec![1; instants.len()])])?;
         }
         self.last = points.last().cloned();
         Ok(())
@@ -135,15 +135,15 @@ impl Chart {
         let label = [0.65 * x, 0.72 * y];
         let leader = LineStrips2D::new([[[x, y], label], [[x, y], [x, 0.0]], [[x, y], [0.0, y]]]);
         let leader = leader.with_colors([colour]).with_radii([Radius::new_ui_points(0.75)]);
-        let instant = [Instant::from(first)];
         let points = Points2D::new([[x, y], label])
             .with_colors([colour])
             .with_radii([Radius::new_ui_points(5.0), Radius::new_ui_points(0.1)])
             .with_labels([String::new(), text])
             .with_show_labels(true)
             .with_draw_order(20.0);
-        stream.row(path("first_break"), instant[0], &leader.with_draw_order(15.0))?;
-        stream.row(path("first_break").join(&path_part("mark")), instant[0], &points)
+        let instant = Instant::from(first);
+        stream.row(path("first_break"), instant, &leader.with_draw_order(15.0))?;
+        stream.row(path("first_break").join(&"mark".into()), instant, &points)
     }
 
     /// The strand's point of a row, then those of layers.
@@ -153,19 +153,28 @@ impl Chart {
     }
 }
 
-/// Names and colours of the curves: the strand, then layers.
-fn series(info: &RunInfo) -> Vec<(String, u32)> {
-    let body = if info.wires.len() > 1 { "strand" } else { "wire" };
-    let layers = (0..info.layers.len()).map(|layer| (names::layer_name(info, layer), distinct(layer)));
-    std::iter::once((body.to_owned(), WHITE)).chain(layers).collect()
+/// A curve.
+struct Series {
+    path: EntityPath,
+    name: String,
+    colour: u32,
 }
 
-fn path(part: &str) -> rerun::EntityPath {
-    rerun::EntityPath::from(names::CHART).join(&path_part(part))
+/// The curve of the strand, then those of layers.
+fn series(info: &RunInfo) -> Vec<Series> {
+    let name = if info.wires.len() > 1 { "strand" } else { "wire" };
+    let body = Series { path: path("body"), name: name.to_owned(), colour: WHITE };
+    let layers = (0..info.layers.len()).map(|layer| Series {
+        path: names::layer(&format!("{}/layers", names::CHART), info, layer),
+        name: names::layer_name(info, layer),
+        colour: distinct(layer),
+    });
+    // One layer alone has the curve of the body.
+    std::iter::once(body).chain(layers.filter(|_| info.layers.len() > 1)).collect()
 }
 
-fn path_part(part: &str) -> rerun::EntityPath {
-    vec![rerun::external::re_log_types::EntityPathPart::new(part)].into()
+fn path(part: &str) -> EntityPath {
+    EntityPath::from(format!("{}/{part}", names::CHART))
 }
 
 fn shift([x, y]: [f32; 2], [dx, dy]: [f32; 2]) -> [f32; 2] {
