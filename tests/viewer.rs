@@ -16,7 +16,7 @@ use strandsnap::observe::recording::{RERUN_VERSION, Recording, RecordingOptions}
 use synthetic::Run;
 
 /// Longest wait for a program to start or to end.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(180);
 
 /// Rerun's tool; `None`, said aloud, when it is not there.
 fn tool(test: &str) -> Option<PathBuf> {
@@ -110,7 +110,8 @@ fn a_live_stream_has_the_contents_of_the_file() {
     command.args(["--bind", "127.0.0.1", "--port", &port.to_string(), "--save"]).arg(&saved);
     let _server = Running::start(command.stdout(Stdio::null()).stderr(Stdio::null()));
     wait_until("the server listens", || listens(port));
-    let run = Run::new(30);
+    // Few snapshots: each goes out by itself.
+    let run = Run::new(8);
     let live = options(Some(format!("rerun+http://127.0.0.1:{port}/proxy")));
     let mut recording = Recording::new(&file, live).unwrap();
     run.show_unfinished(&mut recording).unwrap();
