@@ -215,7 +215,7 @@ impl Layout {
         // The curve is the sum of its pieces up to the cursor.
         let range = TimeRange { start: TimeRangeBoundary::Infinite, end: TimeRangeBoundary::AT_CURSOR };
         let timelines = [stream::STEP, stream::TIME, stream::STRAIN];
-        let ranges = timelines.map(|timeline| VisibleTimeRange { timeline: timeline.into(), range: range.clone() });
+        let ranges = timelines.map(|timeline| VisibleTimeRange { timeline: timeline.into(), range });
         self.property(&view, "VisibleTimeRanges", &blueprint::VisibleTimeRanges::new(ranges))?;
         Ok(view)
     }
