@@ -181,7 +181,7 @@ fn output_cost(args: &Args) -> Result<()> {
     let folder = tempfile::tempdir().map_err(|e| strandsnap::base::error::Error::io("cannot make", "a folder", e))?;
     let info = Arc::new(engine.info());
     let file = folder.path().join("bench.rrd");
-    let options = RecordingOptions { live: None, colour: scene.spec.output.colour };
+    let options = RecordingOptions { live: None, scene: scene.spec.clone() };
     let mut recording = Recording::new(&file, options)?;
     let mut renderer = match check() {
         Ok(()) => Some(Renderer::new(&info, &FrameOptions::default())?),

@@ -4,7 +4,7 @@
 #   examples/viewer_screenshot.sh RECORDING.rrd PICTURE.png [WIDTHxHEIGHT]
 #
 # Needs the viewer and its Python package (`pip install rerun-sdk==0.36.3`; its program on PATH as `rerun`, or its path
-# in $RERUN) and a Vulkan driver (Debian: apt-get install mesa-vulkan-drivers).
+# in $RERUN_CLI) and a Vulkan driver (Debian: apt-get install mesa-vulkan-drivers).
 # Exit codes: 0 done, 1 the viewer made no picture, 2 bad arguments, 3 something missing on this machine.
 set -eu
 
@@ -26,7 +26,7 @@ echo "$size" | grep -Eq '^[1-9][0-9]*x[1-9][0-9]*$' || fail 2 "\"$size\" is no s
 mkdir -p "$(dirname "$2")"
 picture=$(cd "$(dirname "$2")" && pwd)/$(basename "$2")
 
-wrapper=${RERUN:-$(command -v rerun || true)}
+wrapper=${RERUN_CLI:-$(command -v rerun || true)}
 [ -n "$wrapper" ] || fail 3 "no Rerun viewer: pip install rerun-sdk==$VERSION"
 # The `rerun` of the Python package is a script around the real program; ending the script would leave that running.
 head -c 2 "$wrapper" | grep -q '#!' || fail 3 "$wrapper is not the rerun of the Python package rerun-sdk"
@@ -38,6 +38,15 @@ case $found in
     *" $VERSION "*) ;;
     *) fail 3 "the viewer is not of version $VERSION but \"$found\": pip install rerun-sdk==$VERSION" ;;
 esac
+
+has_vulkan() {
+    [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0
+    for file in /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json; do
+        [ ! -e "$file" ] || return 0
+    done
+    return 1
+}
+[ "$(uname)" != Linux ] || has_vulkan || fail 3 "no Vulkan driver: on Debian, apt-get install mesa-vulkan-drivers"
 
 # A fresh home: the viewer would otherwise show a layout that it remembers instead of the file's own.
 home=$(mktemp -d)

@@ -7,9 +7,13 @@ mod drive;
 pub mod estimate;
 pub mod folder;
 pub mod outputs;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod replay;
 mod schedule;
 mod stop;
+#[cfg(feature = "record")]
+pub mod view;
 
 pub use crate::observe::summary::RunSummary;
 pub use drive::{Outcome, simulate};

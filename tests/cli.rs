@@ -440,6 +440,63 @@ fn the_recording_passes_the_check_of_reruns_own_tool() {
     assert!(check.status.success(), "{}{}", stdout(&check), stderr(&check));
 }
 
+/// A single wire that is pulled until it breaks: the recording holds what the tables say.
+#[cfg(feature = "record")]
+#[test]
+fn the_recording_agrees_with_the_tables() {
+    use strandsnap::observe::recording::read::contents;
+    let folder = tempfile::tempdir().unwrap();
+    assert_code(&strandsnap(folder.path(), &["run", "single-wire", "--no-frames", "--quiet"]), 0);
+    let out = folder.path().join("out/single-wire");
+    let read = contents(&out.join("recording.rrd")).unwrap();
+    let value = |row: &std::collections::HashMap<String, String>, key: &str| row[key].parse::<f64>().unwrap();
+    let curve = rows(&out.join("curve.csv"));
+    assert_eq!(read.nominal_stress.len(), curve.len());
+    for ((microstrain, stress), row) in read.nominal_stress.iter().zip(&curve) {
+        assert_eq!(*microstrain, (value(row, "strain_percent") * 1e4).round() as i64);
+        assert!((stress - value(row, "stress_mpa")).abs() <= 1e-7 * stress.abs().max(1.0), "{stress} is not {row:?}");
+    }
+    let ruptures = rows(&out.join("ruptures.csv"));
+    assert!(!ruptures.is_empty() && read.log.len() == ruptures.len());
+    for ((microstrain, line), row) in read.log.iter().zip(&ruptures) {
+        assert_eq!(*microstrain, (value(row, "strain_percent") * 1e4).round() as i64);
+        let words = [format!("{}. wire {}", row["order"], row["wire"]), format!("z = {:.1} mm", value(row, "z_mm"))];
+        assert!(words.iter().all(|words| line.contains(words)), "{line} is not {row:?}");
+    }
+    let first = &ruptures[0];
+    let words = format!("z = {:.1} mm, strain {:.2} %", value(first, "rest_z_mm"), value(first, "strain_percent"));
+    assert!(read.headline.contains(&words), "{words} in {}", read.headline);
+
+    let again = strandsnap(folder.path(), &["record", "out/single-wire"]);
+    assert_code(&again, 2);
+    assert!(plain(&stderr(&again)).contains("--overwrite"), "{}", stderr(&again));
+    assert_code(&strandsnap(folder.path(), &["record", "out/single-wire", "--out", "again.rrd"]), 0);
+    assert_eq!(contents(&folder.path().join("again.rrd")).unwrap(), read, "recorded again, but not the same");
+}
+
+#[test]
+fn viewing_says_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let view = || {
+        Command::new(env!("CARGO_BIN_EXE_strandsnap"))
+            .args(["view", "."])
+            .env("RERUN_CLI", "/nowhere/rerun")
+            .current_dir(folder.path())
+            .output()
+            .expect("the program starts")
+    };
+    let built = cfg!(feature = "record");
+    let nothing = view();
+    assert_code(&nothing, if built { 2 } else { 3 });
+    fs::write(folder.path().join("recording.rrd"), "").unwrap();
+    let no_viewer = view();
+    assert_code(&no_viewer, 3);
+    if built {
+        assert!(plain(&stderr(&nothing)).contains("no recording at ./recording.rrd"), "{}", stderr(&nothing));
+        assert!(plain(&stderr(&no_viewer)).contains("pip install rerun-sdk==0.36.3"), "{}", stderr(&no_viewer));
+    }
+}
+
 /// Rows of a CSV file by column name.
 fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
     let mut reader = csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));

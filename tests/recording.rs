@@ -6,14 +6,16 @@ mod synthetic;
 use std::path::Path;
 use std::time::Instant;
 use strandsnap::base::error::Error;
+use strandsnap::engine::view::{Notice, Snapshot};
 use strandsnap::observe::Observer;
 use strandsnap::observe::recording::read::{RecordingContents, contents};
-use strandsnap::observe::recording::{PLASTIC_STRAIN, Recording, RecordingOptions, STATE, STRAIN, STRESS};
-use strandsnap::scene::spec::ColourBy;
+use strandsnap::observe::recording::{
+    CONTACT_PRESSURE, PLASTIC_STRAIN, Recording, RecordingOptions, STATE, STRAIN, STRESS, UTILISATION,
+};
 use synthetic::Run;
 
 fn options() -> RecordingOptions {
-    RecordingOptions { live: None, colour: ColourBy::Stress }
+    RecordingOptions { live: None, scene: strandsnap::scene::load("ka4", &[]).unwrap().spec }
 }
 
 fn recorded(run: &Run, file: &Path) -> RecordingContents {
@@ -32,8 +34,14 @@ fn every_wire_has_its_particles_in_every_snapshot() {
     for wire in ["/strand/inner/wire_01", "/strand/middle/wire_06", "/strand/outer/wire_17", "/strand/outer/wire_34"] {
         let entity = &read.entities[wire];
         assert_eq!(entity.rows, 30, "{wire}");
-        for component in ["Points3D:positions", "Points3D:colors", "Points3D:radii", STRESS, PLASTIC_STRAIN, STATE] {
-            assert!(entity.components.contains(component), "{wire} lacks {component}");
+        let fields = [STRESS, PLASTIC_STRAIN, UTILISATION, CONTACT_PRESSURE, STATE];
+        for component in ["Points3D:positions", "Points3D:colors", "Points3D:radii"].iter().chain(&fields) {
+            assert!(entity.components.contains(*component), "{wire} lacks {component}");
+        }
+        let tube = &read.entities[&format!("{wire}/tube")];
+        assert_eq!(tube.rows, 30, "{wire}/tube");
+        for component in ["Capsules3D:lengths", "Capsules3D:radii", "Capsules3D:quaternions", STRESS, UTILISATION] {
+            assert!(tube.components.contains(component), "{wire}/tube lacks {component}");
         }
         let timelines: Vec<_> = entity.timelines.iter().map(String::as_str).collect();
         assert_eq!(timelines, [STRAIN, "sim_time", "step"], "{wire}");
@@ -41,6 +49,70 @@ fn every_wire_has_its_particles_in_every_snapshot() {
     let wires = read.entities.keys().filter(|path| path.starts_with("/strand/") && path.matches('/').count() == 3);
     assert_eq!(wires.count(), 34);
     assert!(read.layout);
+}
+
+#[test]
+fn last_fields_are_those_of_the_last_snapshot() {
+    let (run, folder) = (Run::new(20), folder());
+    let read = recorded(&run, &folder.path().join("recording.rrd"));
+    let last = *run.snapshots().last().unwrap();
+    for (number, wire) in run.info.wires.iter().enumerate() {
+        let path = format!("/strand/{}/wire_{:02}", run.info.layers[wire.layer], number + 1);
+        // The last particle has no bond after it and shows the one before.
+        let of_bonds =
+            |all: &[f32]| -> Vec<f32> { (0..wire.len).map(|k| all[wire.first + k.min(wire.len - 2)]).collect() };
+        let fields = &read.last_fields[&path];
+        assert_eq!(fields[STRESS], of_bonds(&last.bond_stress), "{path}");
+        assert_eq!(fields[PLASTIC_STRAIN], of_bonds(&last.plastic_strain), "{path}");
+        assert_eq!(fields[UTILISATION], of_bonds(&last.utilisation), "{path}");
+        assert_eq!(fields[CONTACT_PRESSURE], last.contact_pressure[wire.first..wire.first + wire.len], "{path}");
+    }
+}
+
+/// The section of the first break: the middle of what the eye follows lies on the axis, where that section is now.
+#[test]
+fn the_eye_follows_the_place_of_the_first_break() {
+    let (run, folder) = (Run::new(20), folder());
+    let read = recorded(&run, &folder.path().join("recording.rrd"));
+    let first = run.ruptures()[0].clone();
+    let last: &Snapshot = run.snapshots().last().unwrap();
+    let specks = &read.last_positions["/focus"];
+    let middle: Vec<f32> = (0..3).map(|axis| 0.5 * (specks[0][axis] + specks[1][axis])).collect();
+    let z = (first.rest_z * 1e3 * (1.0 + last.sample.strain)) as f32;
+    assert!(middle[0].abs() < 0.1 && middle[1].abs() < 0.1 && (middle[2] - z).abs() < 0.5, "{middle:?} for {z}");
+    assert_eq!(read.layouts, 2);
+    let mark = read.last_positions["/first_break"][0];
+    assert!((mark[2] - z).abs() < 1.0, "{mark:?} for {z}");
+}
+
+#[test]
+fn the_headline_says_what_broke_first_and_at_what_stress() {
+    let (run, folder) = (Run::new(30), folder());
+    let read = recorded(&run, &folder.path().join("recording.rrd"));
+    let first = run.ruptures()[0];
+    let words = ["# 1st break: wire 24, outer layer".to_owned(), format!("z = {:.1} mm", first.rest_z * 1e3)];
+    let more = [format!("{:.2} %", first.strain * 1e2), format!("{:.1} MPa", first.body_stress * 1e-6)];
+    for words in words.iter().chain(&more) {
+        assert!(read.headline.contains(words), "{words} in {}", read.headline);
+    }
+    assert!(read.headline.contains("inner 1 of 5, middle 1 of 11, outer 4 of 18"), "{}", read.headline);
+    assert!(read.headline.contains("24, 31, 19, 27, 13, 3 (6 of 34)"), "{}", read.headline);
+}
+
+#[test]
+fn notices_are_warnings_in_the_log_and_in_the_headline() {
+    let (run, folder) = (Run::new(5), folder());
+    let file = folder.path().join("recording.rrd");
+    let mut recording = Recording::new(&file, options()).unwrap();
+    run.show_unfinished(&mut recording).unwrap();
+    let text = "two wires pass through each other at z = 12 mm".to_owned();
+    recording.notice(&Notice { step: 7, time: 1e-3, strain: 0.1, text: text.clone() }).unwrap();
+    recording.finish().unwrap();
+    let read = contents(&file).unwrap();
+    let at = read.log.iter().position(|line| *line == (100_000, text.clone())).unwrap();
+    assert_eq!(read.levels[at], "WARN");
+    assert!(read.levels.iter().enumerate().all(|(i, level)| i == at || level == "INFO"));
+    assert!(read.headline.contains(&format!("**WARNING** {text}")), "{}", read.headline);
 }
 
 #[test]
@@ -63,7 +135,10 @@ fn every_rupture_is_marked_and_logged() {
     assert_eq!(read.log.len(), 6);
     assert_eq!(
         read.log[0],
-        (234_000, "wire 24, outer layer, snapped at z = 76.9 mm, strain 23.4 %, 379 MPa".to_owned())
+        (
+            234_000,
+            "1. wire 24, outer layer, snapped at z = 76.9 mm, strain 23.4 %, 379 MPa; nominal 307 MPa".to_owned()
+        )
     );
     for rupture in ruptures {
         let path = format!("/strand/{}/wire_{:02}/ruptures", run.info.layers[rupture.layer], rupture.wire + 1);
@@ -80,7 +155,8 @@ fn the_curve_has_every_sample() {
     let read = recorded(&run, &folder.path().join("recording.rrd"));
     let expected: Vec<_> = run.samples().iter().map(|s| ((s.strain * 1e6).round() as i64, s.stress * 1e-6)).collect();
     assert_eq!(read.nominal_stress, expected);
-    for entity in ["/stress/layers", "/stress/wires/outer", "/broken", "/energy"] {
+    for entity in ["/stress/layers", "/stress/wires/outer", "/broken", "/energy", "/chart/body", "/chart/layers/outer"]
+    {
         assert_eq!(read.entities[entity].rows, 200, "{entity}");
     }
 }
@@ -90,8 +166,9 @@ fn the_same_run_gives_the_same_contents() {
     let (run, folder) = (Run::new(20), folder());
     let first = recorded(&run, &folder.path().join("a.rrd"));
     assert_eq!(first, recorded(&run, &folder.path().join("b.rrd")));
-    let other = Recording::new(&folder.path().join("c.rrd"), options()).unwrap();
-    run.show(&mut other.identified_by("seed 2")).unwrap();
+    let mut other = options();
+    other.scene.seed += 1;
+    run.show(&mut Recording::new(&folder.path().join("c.rrd"), other).unwrap()).unwrap();
     assert_ne!(first.id, contents(&folder.path().join("c.rrd")).unwrap().id);
 }
 
@@ -162,9 +239,9 @@ fn size_stays_within_bounds() {
     let in_run = start.elapsed();
     recording.finish().unwrap();
     let snapshots = run.snapshots().len();
-    // Position, colour, stress, plastic strain, state of a particle; its colour on the map; two ends and a colour of a
-    // piece of tube over four bonds.
-    let raw = run.info.particles * snapshots * (12 + 4 + 4 + 4 + 2 + 4 + (24 + 4) / 4);
+    // Position, colour, four fields and state of a particle; its colour on the map; place, turn, length, radius, colour
+    // and three fields of a capsule over three bonds.
+    let raw = run.info.particles * snapshots * (12 + 4 + 16 + 2 + 4 + (12 + 16 + 4 + 4 + 4 + 12) / 3);
     let size = std::fs::metadata(&file).unwrap().len() as usize;
     println!(
         "{} particles, {snapshots} snapshots: {size} bytes for {raw} raw ({:.2}), {:.2} ms a snapshot in the run, {:.2} with the end",

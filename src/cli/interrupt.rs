@@ -13,11 +13,19 @@ static STOP: AtomicBool = AtomicBool::new(false);
 /// # Errors
 /// [`Error::Missing`] when the system refuses the handler.
 pub fn install() -> Result<&'static AtomicBool> {
-    let handler = || {
+    install_saying("\nstopping; results so far are kept. Press Ctrl-C again to end at once, without them.")
+}
+
+/// [`install`] with words of one's own.
+///
+/// # Errors
+/// As for [`install`].
+pub fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
+    let handler = move || {
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(EXIT_CODE));
         }
-        eprintln!("\nstopping; results so far are kept. Press Ctrl-C again to end at once, without them.");
+        eprintln!("{words}");
     };
     ctrlc::set_handler(handler)
         .map_err(|e| Error::Missing { what: format!("cannot listen for Ctrl-C: {e}"), help: None })?;

@@ -6,14 +6,17 @@ mod export;
 mod interrupt;
 mod look;
 mod plan;
+mod record;
 mod render;
 mod report;
 mod run;
 mod say;
 mod scene;
+mod select;
 mod stability;
 mod values;
 mod verify;
+mod view;
 
 use crate::base::error::Result;
 use clap::{Parser, Subcommand};
@@ -36,18 +39,22 @@ enum Command {
     /// List, show or check scenes
     #[command(subcommand)]
     Scene(scene::Command),
+    /// Open the recording of a run in an installed Rerun viewer, or serve it to a browser
+    View(view::Args),
+    /// Write one page (HTML) that tells what a run found: answer, curve, map, frames, tables
+    Report(report::Args),
+    /// Draw the frames of a finished run again, without simulating
+    Render(render::Args),
+    /// Write the recording of a finished run again, without simulating
+    Record(record::Args),
     /// Write the wires' centre lines of a scene to a text file
     Export(export::Args),
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
-    /// Run stiff and extreme cases: each must be stable, or be refused or stopped with its reason
-    Stability(stability::Args),
-    /// Draw the frames of a finished run again, without simulating
-    Render(render::Args),
     /// Compare the engine with closed forms
     Verify(verify::Args),
-    /// Write one page (HTML) that tells what a run found: answer, curve, map, frames, tables
-    Report(report::Args),
+    /// Run stiff and extreme cases: each must be stable, or be refused or stopped with its reason
+    Stability(stability::Args),
 }
 
 /// How a command ended when nothing went wrong.
@@ -86,6 +93,8 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Render(args) => render::render(args),
         Command::Verify(args) => verify::verify(&args),
         Command::Report(args) => report::report(&args).map(|()| Ended::Well),
+        Command::Record(args) => record::record(args),
+        Command::View(args) => view::view(args),
     }
 }
 

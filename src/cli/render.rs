@@ -3,7 +3,7 @@
 use super::Ended;
 use super::animation::AnimationArgs;
 use super::look::LookArgs;
-use super::values::strain_range;
+use super::select::SelectArgs;
 use crate::base::error::Result;
 use std::path::PathBuf;
 
@@ -17,15 +17,8 @@ pub struct Args {
     /// Replace earlier pictures in that folder
     #[arg(long)]
     overwrite: bool,
-    /// Draw only this range of strain, in per cent, such as 20..26
-    #[arg(long, value_name = "A..B", value_parser = strain_range)]
-    strain_range: Option<[f64; 2]>,
-    /// Draw only the last state before and the first one after each rupture, the first and the last
-    #[arg(long)]
-    events: bool,
-    /// Draw every Nth of the snapshots only
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
-    every: u32,
+    #[command(flatten)]
+    select: SelectArgs,
     #[command(flatten)]
     animation: AnimationArgs,
     /// Show no progress, and one line at the end
@@ -46,13 +39,11 @@ pub fn render(args: Args) -> Result<Ended> {
     use super::say::say;
     use crate::observe::progress::Counted;
     use crate::render::FrameWriter;
-    use crate::run::replay::{Replay, Selection};
+    use crate::run::replay::Replay;
     use crate::run::{folder, outputs};
     use std::sync::atomic::Ordering;
 
-    let whole = Selection::default().strain;
-    let strain = args.strain_range.unwrap_or(whole);
-    let run = Replay::open(&args.run, &Selection { strain, events: args.events, every: args.every as usize })?;
+    let run = Replay::open(&args.run, &args.select.into())?;
     let mut output = look_of(&args.run);
     args.look.apply(&mut output);
     let out = args.out.unwrap_or_else(|| args.run.join("render"));

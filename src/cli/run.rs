@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 /// Where a Rerun viewer listens when nobody says otherwise.
-const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
+pub(super) const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -101,7 +101,7 @@ fn print(summary: &RunSummary, options: &RunOptions) {
             say!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());
         }
         if options.recording {
-            say!("Open the recording with: rerun {}", options.out.join(RECORDING).display());
+            say!("Open the recording ({RECORDING}) with: strandsnap view {}", options.out.display());
         }
     }
 }

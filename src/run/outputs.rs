@@ -183,11 +183,8 @@ fn check_recording(_live: Option<&str>) -> Result<()> {
 #[cfg(feature = "record")]
 fn recording(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Box<dyn Observer>> {
     use crate::observe::recording::{Recording, RecordingOptions};
-    use crate::scene::write::to_toml;
-    let wanted = RecordingOptions { live: options.live.clone(), colour: spec.output.colour };
-    let recording = Recording::new(&folder.file(folder::RECORDING), wanted)?;
-    // The viewer merges recordings of one identity; only the same resolved scene is the same run.
-    Ok(Box::new(recording.identified_by(&to_toml(spec))))
+    let wanted = RecordingOptions { live: options.live.clone(), scene: spec.clone() };
+    Ok(Box::new(Recording::new(&folder.file(folder::RECORDING), wanted)?))
 }
 
 #[cfg(not(feature = "record"))]

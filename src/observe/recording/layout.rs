@@ -3,7 +3,10 @@
 //! Rerun's blueprint builder cannot set cameras, backgrounds, grids or axis ranges, so the blueprint is logged by
 //! hand: entity by entity into a store of its own, which is then sent with the recording.
 
+use super::chart::Chart;
+use super::first_break::Gaze;
 use super::map::{Map, extent};
+use super::sections::thickness;
 use super::{names, stream};
 use crate::base::error::Result;
 use crate::engine::view::RunInfo;
@@ -12,57 +15,69 @@ use rerun::blueprint::components::{
     VisualBounds2D,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
-use rerun::datatypes::{Range2D, TimeRange};
+use rerun::datatypes::{Range2D, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes as blueprint;
 use rerun::external::uuid::Uuid;
 use rerun::log::LogMsg;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
+use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Background of the strand's views: dark, so that bright stresses stand out.
+/// Background of maps and charts: dark, so that bright stresses stand out.
 const BACKGROUND: [u8; 3] = [17, 20, 26];
-/// Length of strand that the close view shows [mm].
-const CLOSE_VIEW: f32 = 20.0;
-/// Width over height that the view of the whole strand and the close view have in a window of usual shape [-].
-const ASPECTS: [f32; 2] = [6.0, 3.2];
+/// Background of the strand's views: light enough to see the dark end of the colour map on it, shaded.
+const SPACE: [u8; 3] = [62, 68, 78];
+/// Width over height that the view of the whole strand has in a window of usual shape [-].
+const ASPECT: f32 = 6.5;
 /// Rerun's vertical field of view [rad].
 const FIELD_OF_VIEW: f32 = 0.96;
 
-/// Sends the default layout of a run with the recording.
+/// What a layout shows.
+pub(super) struct Scenery<'a> {
+    pub info: &'a RunInfo,
+    pub map: &'a Map,
+    pub chart: Option<&'a Chart>,
+    /// How the close view looks at the body, about `target` [mm].
+    pub gaze: Gaze,
+    pub target: [f32; 3],
+    /// Layer of the first break, when there was one.
+    pub broken_layer: Option<usize>,
+}
+
+/// Sends a layout with the recording under an id of its own. A viewer that is open takes it up at once when `active`;
+/// otherwise when the user asks for the default.
 ///
 /// # Errors
 /// [`crate::base::error::Error::Io`] when Rerun refuses it.
 pub(super) fn send(
     stream: &stream::Stream,
-    application: &'static str,
     id: &str,
-    info: &RunInfo,
-    map: &Map,
-) -> Result<()> {
-    let messages = stream.checked(messages(application, id, info, map))?;
+    scenery: &Scenery,
+    active: bool,
+) -> Result<BlueprintActivationCommand> {
+    let messages = stream.checked(messages(id, scenery))?;
     let store = messages.iter().find_map(|message| match message {
         LogMsg::SetStoreInfo(store) => Some(store.info.store_id.clone()),
         _ => None,
     });
     let blueprint_id = stream.checked(store.ok_or("the layout has no store"))?;
-    stream
-        .rerun
-        .send_blueprint(messages, BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true });
-    Ok(())
+    let activation = BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true };
+    stream.rerun.send_blueprint(messages, BlueprintActivationCommand { make_active: active, ..activation.clone() });
+    Ok(activation)
 }
 
-fn messages(application: &'static str, id: &str, info: &RunInfo, map: &Map) -> RecordingStreamResult<Vec<LogMsg>> {
-    let (store, memory) = RecordingStreamBuilder::new(application)
+fn messages(id: &str, scenery: &Scenery) -> RecordingStreamResult<Vec<LogMsg>> {
+    let (store, memory) = RecordingStreamBuilder::new(super::APPLICATION)
         .enabled(true)
-        .recording_id(format!("{id}-layout"))
+        .recording_id(id.to_owned())
         .blueprint()
         .memory()?;
     // Clock times would make two recordings of the same run differ.
     store.set_log_time_enabled(false);
     store.set_log_tick_enabled(false);
     store.set_time_sequence("blueprint", 0);
-    let mut layout = Layout { store, ids: 0 };
-    let root = layout.root(info, map)?;
+    let mut layout = Layout { store, ids: first_id(id) };
+    let root = layout.root(scenery)?;
     layout.panels(root)?;
     Ok(memory.take())
 }
@@ -80,56 +95,139 @@ struct Item {
 }
 
 impl Layout {
-    fn root(&mut self, info: &RunInfo, map: &Map) -> RecordingStreamResult<Item> {
-        let whole = self.strand_view("Whole strand", info, None)?;
-        let close = self.strand_view("Mid-section", info, Some(CLOSE_VIEW))?;
-        let map = self.map_view(map)?;
+    fn root(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
+        let whole = self.whole_view(scenery)?;
+        let close = self.close_views(scenery)?;
+        let map = self.map_view(scenery.map)?;
         let states = self.view("StateTimeline", "State of each wire", "states", &["/states/**"])?;
         let lower = self.container(ContainerKind::Tabs, &[map, states], &[])?;
-        let left = self.container(ContainerKind::Vertical, &[whole, close, lower], &[1.0, 2.4, 3.0])?;
+        let left = self.container(ContainerKind::Vertical, &[whole, close, lower], &[0.8, 2.2, 3.6])?;
 
-        let curve = self.plot("Nominal stress over strain [MPa]", names::BODY_STRESS, Corner2D::RightBottom)?;
-        let layers = self.plot("Stress by layer [MPa]", names::LAYER_STRESS, Corner2D::RightBottom)?;
-        let wires = self.plot("Stress by wire [MPa]", names::WIRE_STRESS, Corner2D::RightTop)?;
-        let broken = self.plot("Broken wires and bonds", names::BROKEN, Corner2D::LeftTop)?;
-        let energy = self.plot("Energy [J]", names::ENERGY, Corner2D::LeftTop)?;
-        let stresses = self.container(ContainerKind::Tabs, &[layers, wires, broken, energy], &[])?;
+        let headline =
+            self.view("TextDocument", "What happened", names::HEADLINE, &[&format!("/{}", names::HEADLINE)])?;
+        let curves = self.curves(scenery)?;
         let log = self.log_view()?;
         let about = self.view("TextDocument", "About this run", names::ABOUT, &["/about"])?;
         let notes = self.container(ContainerKind::Tabs, &[log, about], &[])?;
-        let right = self.container(ContainerKind::Vertical, &[curve, stresses, notes], &[1.0, 1.0, 1.1])?;
-        self.container(ContainerKind::Horizontal, &[left, right], &[1.7, 1.0])
+        let right = self.container(ContainerKind::Vertical, &[headline, curves, notes], &[1.45, 1.6, 1.1])?;
+        self.container(ContainerKind::Horizontal, &[left, right], &[1.5, 1.0])
     }
 
-    fn strand_view(&mut self, name: &str, info: &RunInfo, length: Option<f32>) -> RecordingStreamResult<Item> {
-        let mut contents = vec!["/strand/**".to_owned(), "/spheres/**".to_owned(), "/grips/**".to_owned()];
-        if length.is_none() {
-            // At this scale labels would only cover each other.
-            let labels = (0..info.wires.len()).map(|w| names::marks(names::STRAND, info, w).join(&names::LABEL.into()));
-            contents.extend(labels.map(|path| format!("- {path}")));
+    /// The drawing of stress over strain in front, where there is one, then plots over the time cursor.
+    fn curves(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
+        let mut tabs = Vec::new();
+        if let Some(chart) = scenery.chart {
+            tabs.push(self.chart_view(chart)?);
         }
+        tabs.push(self.plot("Nominal stress [MPa]", names::BODY_STRESS, Corner2D::RightBottom)?);
+        tabs.push(self.plot("Layers [MPa]", names::LAYER_STRESS, Corner2D::RightBottom)?);
+        tabs.push(self.plot("Wires [MPa]", names::WIRE_STRESS, Corner2D::RightTop)?);
+        tabs.push(self.plot("Broken", names::BROKEN, Corner2D::LeftTop)?);
+        tabs.push(self.plot("Energy [J]", names::ENERGY, Corner2D::LeftTop)?);
+        self.container(ContainerKind::Tabs, &tabs, &[])
+    }
+
+    fn whole_view(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
+        let mut contents = vec!["/strand/**".to_owned(), "/spheres/**".to_owned(), "/grips/**".to_owned()];
+        contents.push(format!("/{}", names::FIRST_BREAK_FAR));
+        // Particles are cheaper to draw, and as good at this scale.
+        contents
+            .extend(wires_of_all(scenery.info).map(|w| format!("- {}", names::tube(names::STRAND, scenery.info, w))));
+        let eye = whole_eye(scenery);
+        self.strand_view("Whole strand", &contents, &eye)
+    }
+
+    /// The place of the first break close up. A break below the outermost layer is shown without the layers over it
+    /// as well: nobody would see it otherwise.
+    fn close_views(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
+        let info = scenery.info;
+        let outermost = info.layers.len().saturating_sub(1);
+        let place = if scenery.broken_layer.is_some() { "Where it first broke" } else { "Mid-section" };
+        let outside = self.close_view(place, scenery, outermost, Wires::Tubes)?;
+        let mut shown = Vec::new();
+        if let Some(layer) = scenery.broken_layer.filter(|layer| *layer < outermost) {
+            let off: Vec<_> = (layer + 1..=outermost).map(|layer| names::layer_name(info, layer)).collect();
+            let name = format!("The same without the {}", off.join(" and "));
+            let inside = self.close_view(&name, scenery, layer, Wires::Tubes)?;
+            let particles = self.close_view("Particles", scenery, layer, Wires::Particles)?;
+            shown.push(self.container(ContainerKind::Tabs, &[inside, particles], &[])?);
+        }
+        let particles = self.close_view("Particles", scenery, outermost, Wires::Particles)?;
+        shown.insert(0, self.container(ContainerKind::Tabs, &[outside, particles], &[])?);
+        let shares = vec![1.0; shown.len()];
+        self.container(ContainerKind::Horizontal, &shown, &shares)
+    }
+
+    /// Layers up to `outermost`.
+    fn close_view(
+        &mut self,
+        name: &str,
+        scenery: &Scenery,
+        outermost: usize,
+        wires: Wires,
+    ) -> RecordingStreamResult<Item> {
+        let info = scenery.info;
+        let mut contents =
+            vec!["/spheres/**".to_owned(), format!("/{}", names::FIRST_BREAK), format!("/{}", names::FOCUS)];
+        for number in wires_of_all(info).filter(|number| info.wires[*number].layer <= outermost) {
+            let drawn = match wires {
+                Wires::Tubes => names::tube(names::STRAND, info, number),
+                Wires::Particles => names::wire(names::STRAND, info, number),
+            };
+            contents.extend([drawn, names::marks(names::STRAND, info, number)].map(|path| path.to_string()));
+        }
+        let Gaze { eye, up } = scenery.gaze;
+        let distance = 2.0 * thickness(info).max(1e-3);
+        let controls = blueprint::EyeControls3D::new()
+            .with_kind(Eye3DKind::Orbital)
+            .with_position(offset(scenery.target, eye, distance))
+            .with_look_target(scenery.target)
+            .with_eye_up(up)
+            .with_tracking_entity(format!("/{}", names::FOCUS));
+        self.strand_view(name, &contents, &controls)
+    }
+
+    fn strand_view(
+        &mut self,
+        name: &str,
+        contents: &[String],
+        eye: &blueprint::EyeControls3D,
+    ) -> RecordingStreamResult<Item> {
         let contents: Vec<_> = contents.iter().map(String::as_str).collect();
         let view = self.view("3D", name, "/", &contents)?;
-        let eye = eye(info, length);
-        self.property(&view, "EyeControls3D", &eye)?;
-        let background = blueprint::Background::new(BackgroundKind::SolidColor).with_color(BACKGROUND);
-        self.property(&view, "Background", &background)?;
+        self.property(&view, "EyeControls3D", eye)?;
+        self.background(&view, SPACE)?;
         self.property(&view, "LineGrid3D", &blueprint::LineGrid3D::new().with_visible(false))?;
         Ok(view)
     }
 
     fn map_view(&mut self, map: &Map) -> RecordingStreamResult<Item> {
-        let view =
-            self.view("2D", "Unrolled: a row per wire, position before loading [mm]", names::MAP, &["/map/**"])?;
-        let length = f64::from(map.z[1] - map.z[0]);
-        let range = Range2D {
-            x_range: [f64::from(map.z[0]) - 0.14 * length, f64::from(map.z[1]) + 0.03 * length].into(),
-            y_range: [-0.04 * length, f64::from(map.height + 6.0 * map.row)].into(),
-        };
-        self.property(&view, "VisualBounds2D", &blueprint::VisualBounds2D::new(VisualBounds2D(range)))?;
-        let background = blueprint::Background::new(BackgroundKind::SolidColor).with_color(BACKGROUND);
-        self.property(&view, "Background", &background)?;
+        let view = self.view("2D", "Unrolled: a row per wire, position before loading", names::MAP, &["/map/**"])?;
+        self.bounds(&view, map.bounds())?;
+        self.background(&view, BACKGROUND)?;
         Ok(view)
+    }
+
+    fn chart_view(&mut self, chart: &Chart) -> RecordingStreamResult<Item> {
+        let view = self.view("2D", "Nominal stress over strain", names::CHART, &[&format!("/{}/**", names::CHART)])?;
+        self.bounds(&view, chart.bounds())?;
+        self.background(&view, BACKGROUND)?;
+        // The curve is the sum of its pieces up to the cursor.
+        let range = TimeRange { start: TimeRangeBoundary::Infinite, end: TimeRangeBoundary::AT_CURSOR };
+        let timelines = [stream::STEP, stream::TIME, stream::STRAIN];
+        let ranges = timelines.map(|timeline| VisibleTimeRange { timeline: timeline.into(), range });
+        self.property(&view, "VisibleTimeRanges", &blueprint::VisibleTimeRanges::new(ranges))?;
+        Ok(view)
+    }
+
+    fn bounds(&mut self, view: &Item, [x, y]: [[f64; 2]; 2]) -> RecordingStreamResult<()> {
+        let range = Range2D { x_range: x.into(), y_range: y.into() };
+        self.property(view, "VisualBounds2D", &blueprint::VisualBounds2D::new(VisualBounds2D(range)))
+    }
+
+    fn background(&mut self, view: &Item, colour: [u8; 3]) -> RecordingStreamResult<()> {
+        let background = blueprint::Background::new(BackgroundKind::SolidColor).with_color(colour);
+        self.property(view, "Background", &background)
     }
 
     fn plot(&mut self, name: &str, origin: &str, legend: Corner2D) -> RecordingStreamResult<Item> {
@@ -196,28 +294,46 @@ impl Layout {
         self.store.log("time_panel", &time)
     }
 
-    /// Ids are counted, not drawn, so that the same run gives the same file.
+    /// Ids are counted, not drawn, so that the same run gives the same file; they start elsewhere in each layout,
+    /// because the viewer keeps what it knows of a view under its id.
     fn item(&mut self, kind: &str) -> Item {
-        self.ids += 1;
+        self.ids = self.ids.wrapping_add(1);
         let id = Uuid::from_u128(self.ids);
         Item { path: format!("{kind}/{id}"), id }
     }
 }
 
-/// The camera: the strand's axis to the right, seen from the side; either all of it at its longest, or a length
-/// about its middle.
-fn eye(info: &RunInfo, length: Option<f32>) -> blueprint::EyeControls3D {
-    let [low, high] = extent(info);
-    let longest = (high - low) * (1.0 + info.strain_end.unwrap_or(0.0) as f32);
-    let middle = low + 0.5 * longest;
-    let width = length.unwrap_or(1.04 * longest).min(1.04 * longest);
-    let aspect = ASPECTS[usize::from(length.is_some())];
-    // Room for labels above.
-    let up = length.map_or(0.0, |length| 0.04 * length);
-    let distance = 0.5 * width / aspect / (0.5 * FIELD_OF_VIEW).tan();
+fn first_id(layout: &str) -> u128 {
+    let mut hasher = DefaultHasher::new();
+    layout.hash(&mut hasher);
+    u128::from(hasher.finish()) << 64
+}
+
+/// How wires are drawn.
+#[derive(Clone, Copy)]
+enum Wires {
+    Tubes,
+    Particles,
+}
+
+fn wires_of_all(info: &RunInfo) -> std::ops::Range<usize> {
+    0..info.wires.len()
+}
+
+/// The camera that sees the whole strand at its longest, its axis to the right.
+fn whole_eye(scenery: &Scenery) -> blueprint::EyeControls3D {
+    let [low, high] = extent(scenery.info);
+    let longest = (high - low) * (1.0 + scenery.info.strain_end.unwrap_or(0.0) as f32);
+    let middle = [0.0, 0.0, low + 0.5 * longest];
+    let distance = 0.5 * 1.04 * longest / ASPECT / (0.5 * FIELD_OF_VIEW).tan();
+    let Gaze { eye, up } = scenery.gaze;
     blueprint::EyeControls3D::new()
         .with_kind(Eye3DKind::Orbital)
-        .with_position([-distance, up + 0.15 * distance, middle])
-        .with_look_target([0.0, up, middle])
-        .with_eye_up([0.0, 1.0, 0.0])
+        .with_position(offset(offset(middle, eye, distance), up, 0.15 * distance))
+        .with_look_target(middle)
+        .with_eye_up(up)
+}
+
+fn offset(from: [f32; 3], direction: [f32; 3], by: f32) -> [f32; 3] {
+    std::array::from_fn(|axis| from[axis] + by * direction[axis])
 }

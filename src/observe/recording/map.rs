@@ -2,21 +2,32 @@
 //! each wire is loaded and where it broke. Places are those before loading, so that only colours change.
 
 use super::names;
-use super::paint::{NEUTRAL, Scale};
+use super::paint::{FIRST, NEUTRAL, Scale};
 use super::stream::Stream;
 use crate::base::error::Result;
-use crate::engine::view::{RunInfo, WireInfo};
+use crate::engine::view::{RunInfo, Rupture, WireInfo};
 use crate::observe::wording::wire_number;
 use rerun::{Color, LineStrips2D, Points2D, Radius};
 
 /// Height of the map over its width [-]: wires are far thinner than they are long.
-const ASPECT: f32 = 0.45;
+const ASPECT: f32 = 0.5;
 /// Gap between layers, in rows.
 const LAYER_GAP: f32 = 1.5;
 
 /// Wires of a layer with their indices.
 pub(super) fn wires_of(info: &RunInfo, layer: usize) -> impl Iterator<Item = (usize, &WireInfo)> {
     info.wires.iter().enumerate().filter(move |(_, wire)| wire.layer == layer)
+}
+
+/// Columns in which neighbours write their place in the order of break.
+const ORDER_COLUMNS: usize = 2;
+/// Width of such a column over the length of the map [-].
+const ORDER_WIDTH: f32 = 0.115;
+
+/// Where a wire's place in the order of break is written, and the line that leads there.
+pub(super) struct Order {
+    pub leader: [[f32; 2]; 2],
+    pub label: [f32; 2],
 }
 
 /// Where things are on the map.
@@ -65,6 +76,57 @@ impl Map {
         }
         self.send_names(stream, info)?;
         self.send_ticks(stream)
+    }
+
+    /// x and y range that the view shows.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        let length = self.z[1] - self.z[0];
+        let x = [self.z[0] - 0.13 * length, self.z[1] + (0.03 + ORDER_WIDTH * ORDER_COLUMNS as f32) * length];
+        let y = [-4.0 * self.row, self.height + 6.0 * self.row];
+        [x.map(f64::from), y.map(f64::from)]
+    }
+
+    /// Where a rupture is on the map.
+    pub fn place(&self, rupture: &Rupture) -> [f32; 2] {
+        [(rupture.rest_z * 1e3) as f32, self.wire_y[rupture.wire]]
+    }
+
+    /// Where a wire's place in the order of break is written: in a column on the right, beside its row. Texts are
+    /// higher than rows, so neighbours take turns in [`ORDER_COLUMNS`] columns.
+    pub fn order(&self, rupture: &Rupture) -> Order {
+        let y = self.wire_y[rupture.wire];
+        let length = self.z[1] - self.z[0];
+        let column = (rupture.wire % ORDER_COLUMNS) as f32;
+        let x = self.z[1] + (0.08 + ORDER_WIDTH * column) * length;
+        // Texts stand below their point.
+        Order { leader: [[self.z[1], y], [x - 0.5 * ORDER_WIDTH * length, y]], label: [x, y - 0.85 * self.row] }
+    }
+
+    /// Leads from the first break to the axis of z, where its place is written.
+    ///
+    /// # Errors
+    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+    pub fn send_first_break(&self, stream: &Stream, info: &RunInfo, first: &Rupture) -> Result<()> {
+        let [z, y] = self.place(first);
+        let colour = Color::from_u32(FIRST);
+        let path = format!("{}/first_break", names::MAP);
+        let cross =
+            LineStrips2D::new([[[z, -self.row], [z, self.height + self.row]], [[self.z[0], y], [self.z[1], y]]])
+                .with_colors([colour])
+                .with_radii([Radius::new_ui_points(0.75)])
+                .with_draw_order(15.0);
+        stream.row(path.clone(), first.into(), &cross)?;
+        let words = format!(
+            "1st break: wire {}, {}, z = {z:.1} mm",
+            wire_number(first.wire),
+            names::layer_name(info, first.layer)
+        );
+        let label = Points2D::new([[z, -2.6 * self.row]])
+            .with_labels([words])
+            .with_show_labels(true)
+            .with_colors([colour])
+            .with_radii([Radius::new_ui_points(0.1)]);
+        stream.row(format!("{path}/label"), first.into(), &label)
     }
 
     fn send_ticks(&self, stream: &Stream) -> Result<()> {
@@ -121,12 +183,16 @@ impl Map {
 
 /// Round positions along z [mm], about six of them.
 fn ticks([low, high]: [f32; 2]) -> Vec<f32> {
-    let rough = (high - low) / 6.0;
-    let decade = 10f32.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(rough);
+    let step = round_step((high - low) / 6.0);
     let first = (low / step).ceil() as i64;
     let last = (high / step).floor() as i64;
     (first..=last).map(|i| i as f32 * step).collect()
+}
+
+/// The least round number that is not below `rough`.
+pub(super) fn round_step(rough: f32) -> f32 {
+    let decade = 10f32.powf(rough.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(rough)
 }
 
 /// Extent of the particles along z before loading [mm].

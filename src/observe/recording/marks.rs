@@ -1,18 +1,14 @@
-//! Ruptures: marked, labelled points that stay from their time on, and a log.
+//! Ruptures: a mark in space where a bond broke, a mark and the order of break on the map, and a line of the log.
 
 use super::map::Map;
-use super::stream::{Instant, Stream, strips, texts, vectors};
+use super::stream::{Instant, Stream, texts, vectors};
 use super::{names, paint};
 use crate::base::error::Result;
-use crate::engine::view::{RunInfo, Rupture};
+use crate::engine::view::{Notice, RunInfo, Rupture};
+use crate::observe::units::mpa;
 use crate::observe::wording::{rupture_line, wire_number};
-use rerun::{Color, LineStrips3D, Points2D, Points3D, Radius, TextLog, TextLogLevel};
+use rerun::{Color, LineStrips2D, Points2D, Points3D, Radius, TextLog, TextLogLevel};
 use std::collections::BTreeMap;
-
-/// Heights at which labels of successive ruptures stand.
-const LABEL_TIERS: usize = 5;
-/// Step from one height to the next, in thicknesses of the body [-].
-const LABEL_STEP: f32 = 0.155;
 
 /// Ruptures of one wire so far.
 #[derive(Default)]
@@ -21,39 +17,63 @@ struct WireMarks {
     sent: usize,
 }
 
-/// Ruptures so far.
+/// A line of the log.
+struct Line {
+    instant: Instant,
+    level: &'static str,
+    text: String,
+}
+
+/// Ruptures and notices so far.
 #[derive(Default)]
 pub(super) struct Marks {
     wires: BTreeMap<usize, WireMarks>,
     unsent: Vec<Rupture>,
+    lines: Vec<Line>,
 }
 
 impl Marks {
     /// Takes note of a rupture.
-    pub fn add(&mut self, rupture: &Rupture) {
+    pub fn add(&mut self, info: &RunInfo, rupture: &Rupture) {
         self.wires.entry(rupture.wire).or_default().all.push(rupture.clone());
         self.unsent.push(rupture.clone());
+        let text =
+            format!("{}. {}; nominal {:.0} MPa", rupture.order, rupture_line(info, rupture), mpa(rupture.body_stress));
+        self.lines.push(Line { instant: rupture.into(), level: TextLogLevel::INFO, text });
     }
 
-    /// Sends what is new.
+    /// Takes note of a notice.
+    pub fn add_notice(&mut self, notice: &Notice) {
+        let instant = Instant { step: notice.step, time: notice.time, strain: notice.strain };
+        self.lines.push(Line { instant, level: TextLogLevel::WARN, text: notice.text.clone() });
+    }
+
+    /// Sends what is new, and gives the ruptures in it.
     ///
     /// # Errors
     /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
-    pub fn send(&mut self, stream: &Stream, info: &RunInfo, map: &Map) -> Result<()> {
-        if self.unsent.is_empty() {
-            return Ok(());
-        }
-        send_log(stream, info, &self.unsent)?;
-        self.unsent.clear();
+    pub fn send(&mut self, stream: &Stream, info: &RunInfo, map: &Map) -> Result<Vec<Rupture>> {
+        self.send_log(stream)?;
         for (number, wire) in self.wires.iter_mut().filter(|(_, wire)| wire.sent < wire.all.len()) {
             if wire.sent == 0 {
-                send_style(stream, info, *number)?;
+                wire.send_first_time(stream, info, *number, map)?;
             }
-            wire.send_in_space(stream, info, *number)?;
-            wire.send_on_map(stream, info, *number, map)?;
+            wire.send_places(stream, info, *number, map)?;
             wire.sent = wire.all.len();
         }
-        Ok(())
+        Ok(std::mem::take(&mut self.unsent))
+    }
+
+    fn send_log(&mut self, stream: &Stream) -> Result<()> {
+        let lines = std::mem::take(&mut self.lines);
+        if lines.is_empty() {
+            return Ok(());
+        }
+        let instants: Vec<_> = lines.iter().map(|line| line.instant).collect();
+        let one = vec![1; lines.len()];
+        let levels = texts(TextLog::descriptor_level(), lines.iter().map(|line| line.level.to_owned()));
+        let words = texts(TextLog::descriptor_text(), lines.into_iter().map(|line| line.text));
+        stream.rows(names::LOG, &instants, [(words, one.clone()), (levels, one)])
     }
 }
 
@@ -64,101 +84,65 @@ impl WireMarks {
     }
 
     fn instants(&self) -> Vec<Instant> {
-        self.all[self.sent..].iter().map(instant).collect()
+        self.all[self.sent..].iter().map(Instant::from).collect()
     }
 
     fn labels(&self) -> impl Iterator<Item = String> {
-        self.rows().flatten().map(|r| format!("{}: wire {}", r.order, wire_number(r.wire)))
+        self.rows().flatten().map(label)
     }
 
     fn lengths(&self) -> Vec<usize> {
         self.rows().map(<[_]>::len).collect()
     }
 
-    fn send_in_space(&self, stream: &Stream, info: &RunInfo, number: usize) -> Result<()> {
+    fn send_places(&self, stream: &Stream, info: &RunInfo, number: usize, map: &Map) -> Result<()> {
+        let places = vectors(Points3D::descriptor_positions(), self.rows().flatten().map(place));
+        let words = texts(Points3D::descriptor_labels(), self.labels());
         let marks = names::marks(names::STRAND, info, number);
-        let places = self.rows().flatten().map(place);
-        let places = vectors(Points3D::descriptor_positions(), places);
-        stream.rows(marks.clone(), &self.instants(), [(places, self.lengths())])?;
-        let ends = self.rows().flatten().map(|r| label_place(info, r));
-        let leaders = self.rows().flatten().flat_map(|r| [place(r), label_place(info, r)]);
-        stream.rows(
-            marks.join(&names::LABEL.into()),
-            &self.instants(),
-            [
-                (vectors(Points3D::descriptor_positions(), ends), self.lengths()),
-                (texts(Points3D::descriptor_labels(), self.labels()), self.lengths()),
-                (strips(LineStrips3D::descriptor_strips(), leaders, 2), self.lengths()),
-            ],
-        )
+        stream.rows(marks, &self.instants(), [(places, self.lengths()), (words, self.lengths())])?;
+        let places = vectors(Points2D::descriptor_positions(), self.rows().flatten().map(|r| map.place(r)));
+        let words = texts(Points2D::descriptor_labels(), self.labels());
+        let marks = names::marks(names::MAP, info, number);
+        stream.rows(marks, &self.instants(), [(places, self.lengths()), (words, self.lengths())])
     }
 
-    fn send_on_map(&self, stream: &Stream, info: &RunInfo, number: usize, map: &Map) -> Result<()> {
-        let places = self.rows().flatten().map(|r| [(r.rest_z * 1e3) as f32, map.wire_y[r.wire]]);
-        stream.rows(
-            names::marks(names::MAP, info, number),
-            &self.instants(),
-            [
-                (vectors(Points2D::descriptor_positions(), places), self.lengths()),
-                (texts(Points2D::descriptor_labels(), self.labels()), self.lengths()),
-            ],
-        )
+    /// What a wire gets with its first rupture only: the style of its marks, and its place in the order of break.
+    fn send_first_time(&self, stream: &Stream, info: &RunInfo, number: usize, map: &Map) -> Result<()> {
+        let first = &self.all[0];
+        let colour = Color::from_u32(if first.order == 1 { paint::FIRST } else { paint::MARK });
+        let in_space = Points3D::update_fields()
+            .with_colors([colour])
+            .with_radii([Radius::new_ui_points(2.0)])
+            .with_show_labels(false);
+        stream.fixed(names::marks(names::STRAND, info, number), &in_space)?;
+        let on_map = Points2D::update_fields()
+            .with_colors([Color::from_u32(if first.order == 1 { paint::FIRST } else { paint::BROKEN })])
+            .with_radii([Radius::new_ui_points(if first.order == 1 { 6.0 } else { 3.5 })])
+            .with_draw_order(if first.order == 1 { 20.0 } else { 10.0 })
+            .with_show_labels(false);
+        let marks = names::marks(names::MAP, info, number);
+        stream.fixed(marks.clone(), &on_map)?;
+        let order = map.order(first);
+        let leader = LineStrips2D::new([order.leader]).with_colors([colour]).with_radii([Radius::new_ui_points(0.5)]);
+        let words = Points2D::new([order.label])
+            .with_labels([label(first)])
+            .with_show_labels(true)
+            .with_colors([colour])
+            .with_radii([Radius::new_ui_points(0.1)]);
+        let path = marks.join(&names::ORDER.into());
+        stream.row(path.clone(), first.into(), &leader)?;
+        stream.row(path.join(&"label".into()), first.into(), &words)?;
+        if first.order == 1 { map.send_first_break(stream, info, first) } else { Ok(()) }
     }
 }
 
-fn send_style(stream: &Stream, info: &RunInfo, number: usize) -> Result<()> {
-    let colour = Color::from_u32(paint::MARK);
-    let marks = names::marks(names::STRAND, info, number);
-    let radius = Radius::new_scene_units(0.5 * info.wires[number].diameter);
-    let in_space = Points3D::update_fields().with_colors([colour]).with_radii([radius]);
-    stream.fixed(marks.clone(), &in_space)?;
-    let labels = marks.join(&names::LABEL.into());
-    let thin = Radius::new_ui_points(0.75);
-    let points = Points3D::update_fields().with_colors([colour]).with_radii([thin]).with_show_labels(true);
-    stream.fixed(labels.clone(), &points)?;
-    stream.fixed(labels, &LineStrips3D::update_fields().with_colors([colour]).with_radii([thin]))?;
-    let on_map = Points2D::update_fields()
-        .with_colors([colour])
-        .with_radii([Radius::new_ui_points(3.5)])
-        .with_draw_order(10.0)
-        .with_show_labels(true);
-    stream.fixed(names::marks(names::MAP, info, number), &on_map)
-}
-
-fn send_log(stream: &Stream, info: &RunInfo, ruptures: &[Rupture]) -> Result<()> {
-    let instants: Vec<_> = ruptures.iter().map(instant).collect();
-    let level = |r: &Rupture| if r.first_of_wire { TextLogLevel::WARN } else { TextLogLevel::INFO };
-    let one = vec![1; ruptures.len()];
-    stream.rows(
-        names::LOG,
-        &instants,
-        [
-            (texts(TextLog::descriptor_text(), ruptures.iter().map(|r| rupture_line(info, r))), one.clone()),
-            (texts(TextLog::descriptor_level(), ruptures.iter().map(|r| level(r).to_owned())), one),
-        ],
-    )
-}
-
-fn instant(rupture: &Rupture) -> Instant {
-    Instant { step: rupture.step, time: rupture.time, strain: rupture.strain }
+/// `5: wire 14`, with `1st` for the first.
+fn label(rupture: &Rupture) -> String {
+    let order = if rupture.order == 1 { "1st".to_owned() } else { rupture.order.to_string() };
+    format!("{order}: wire {}", wire_number(rupture.wire))
 }
 
 /// Place of the bond when it broke [mm].
 fn place(rupture: &Rupture) -> [f32; 3] {
     rupture.position.map(|x| (x * 1e3) as f32)
-}
-
-/// Place of a rupture's label [mm]: off the wires, and labels that follow each other at different heights, because
-/// ruptures come close together.
-fn label_place(info: &RunInfo, rupture: &Rupture) -> [f32; 3] {
-    let tier = ((rupture.order - 1) % LABEL_TIERS) as f32;
-    let y = thickness(info) * (0.62 + LABEL_STEP * tier);
-    let [_, _, z] = place(rupture);
-    [0.0, y, z]
-}
-
-/// Largest distance of a particle's surface from the z axis before loading [mm].
-fn thickness(info: &RunInfo) -> f32 {
-    let reach = info.rest_position.iter().zip(&info.radius).map(|([x, y, _], r)| x.hypot(*y) + r);
-    2.0 * reach.fold(0.0, f32::max)
 }

@@ -25,10 +25,20 @@ pub const ENERGY: &str = "energy";
 pub const MAP: &str = "map";
 /// State of each wire over time.
 pub const STATES: &str = "states";
-/// Labels of a wire's rupture marks, below them.
-pub const LABEL: &str = "label";
-/// One line per rupture.
+/// Order of break of a wire on the map, below its marks.
+pub const ORDER: &str = "order";
+/// One line per rupture or notice.
 pub const LOG: &str = "ruptures";
+/// Mark and label of the first break.
+pub const FIRST_BREAK: &str = "first_break";
+/// The same for the view of the whole strand, where it has to stand further off.
+pub const FIRST_BREAK_FAR: &str = "first_break_far";
+/// What the eye of the close view follows.
+pub const FOCUS: &str = "focus";
+/// Stress over strain as a drawing with axes in per cent and MPa.
+pub const CHART: &str = "chart";
+/// What the run found, in a few words.
+pub const HEADLINE: &str = "headline";
 /// What the run is.
 pub const ABOUT: &str = "about";
 
@@ -37,6 +47,14 @@ fn layer_part(info: &RunInfo, layer: usize) -> String {
     match info.layers[layer].as_str() {
         "" => format!("layer_{}", layer + 1),
         name => name.to_owned(),
+    }
+}
+
+/// The layer's name as people say it: "outer layer".
+pub fn layer_name(info: &RunInfo, layer: usize) -> String {
+    match info.layers[layer].as_str() {
+        "" => format!("layer {}", layer + 1),
+        name => format!("{name} layer"),
     }
 }
 

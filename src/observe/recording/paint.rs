@@ -8,6 +8,8 @@ use colorous::{CIVIDIS, Gradient, PLASMA, TABLEAU10, VIRIDIS};
 pub(super) const BROKEN: u32 = 0xFF2A4DFF;
 /// Marks of ruptures and their labels.
 pub(super) const MARK: u32 = 0xFFFFFFFF;
+/// The first break: apart from the maps, from red and from white.
+pub(super) const FIRST: u32 = 0xFF9A1FFF;
 /// Grips and other things that carry no value.
 pub(super) const NEUTRAL: u32 = 0x9AA3AEFF;
 
@@ -16,6 +18,8 @@ pub(super) struct Palette {
     by: ColourBy,
     range: [f32; 2],
     table: Vec<u32>,
+    /// The bond that broke first.
+    first: Option<usize>,
 }
 
 /// A colour bar: colours (0xRRGGBBAA) from low to high, and what stands at its ends.
@@ -35,7 +39,12 @@ impl Palette {
             ColourBy::Velocity => (CIVIDIS, info.speed_range),
             ColourBy::Layer | ColourBy::Wire => (VIRIDIS, [0.0, 1.0]),
         };
-        Self { by, range, table: (0..256).map(|i| at(gradient, i)).collect() }
+        Self { by, range, table: (0..256).map(|i| at(gradient, i)).collect(), first: None }
+    }
+
+    /// Gives the ends of the bond that broke first a colour of their own.
+    pub fn set_first(&mut self, bond: usize) {
+        self.first = Some(bond);
     }
 
     /// Quantity that colours.
@@ -47,7 +56,8 @@ impl Palette {
     pub fn particle(&self, snapshot: &Snapshot, wire: &WireInfo, number: usize, k: usize) -> u32 {
         let slot = slot(wire, k);
         if at_broken_bond(snapshot, wire, k) {
-            return BROKEN;
+            let i = wire.first + k;
+            return if self.first.is_some_and(|first| first == i || first + 1 == i) { FIRST } else { BROKEN };
         }
         match self.by {
             ColourBy::Stress => self.value(snapshot.bond_stress[slot]),
@@ -97,15 +107,18 @@ pub(super) fn slot(wire: &WireInfo, k: usize) -> usize {
     wire.first + k.min(wire.len.saturating_sub(2))
 }
 
-fn at_broken_bond(snapshot: &Snapshot, wire: &WireInfo, k: usize) -> bool {
+/// Whether a bond of a wire's particle `k` is broken.
+pub(super) fn at_broken_bond(snapshot: &Snapshot, wire: &WireInfo, k: usize) -> bool {
     let broken = |slot: usize| snapshot.bond_state[slot] == BondState::Broken;
     let i = wire.first + k;
     (k > 0 && broken(i - 1)) || (k + 1 < wire.len && broken(i))
 }
 
-/// One of ten colours (0xRRGGBBAA) that are easily told apart.
+/// One of eight colours (0xRRGGBBAA) that are easily told apart, and from [`BROKEN`] and [`FIRST`].
 pub(super) fn distinct(i: usize) -> u32 {
-    rgba(TABLEAU10[i % TABLEAU10.len()])
+    /// Tableau's ten without orange and red.
+    const APART: [usize; 8] = [0, 3, 6, 4, 5, 7, 8, 9];
+    rgba(TABLEAU10[APART[i % APART.len()]])
 }
 
 fn at(gradient: Gradient, i: usize) -> u32 {

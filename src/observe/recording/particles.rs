@@ -6,13 +6,18 @@ use super::{map, names, tubes};
 use crate::base::error::Result;
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use crate::scene::spec::ColourBy;
-use rerun::{Points2D, Points3D, SerializedComponentBatch};
+use rerun::components::FillMode;
+use rerun::{Capsules3D, Points2D, Points3D, SerializedComponentBatch};
 use std::sync::Arc;
 
 /// Field of a particle: true axial stress of its bond [MPa].
 pub const STRESS: &str = "Bond:true_axial_stress_MPa";
 /// Field of a particle: equivalent plastic strain of its bond [-].
 pub const PLASTIC_STRAIN: &str = "Bond:equivalent_plastic_strain";
+/// Field of a particle: share of the rupture limit that its bond has reached [-].
+pub const UTILISATION: &str = "Bond:utilisation_to_rupture";
+/// Field of a particle: contact pressure [MPa].
+pub const CONTACT_PRESSURE: &str = "Bond:contact_pressure_MPa";
 /// Field of a particle: state of its bond, named by the annotation context.
 pub const STATE: &str = "Bond:state";
 /// Field of a particle, recorded when speed gives the colour [m/s].
@@ -56,15 +61,18 @@ impl Batch<'_> {
         let range = wire.first..wire.first + wire.len;
         let positions = self.snapshots.iter().flat_map(|s| s.position[range.clone()].iter().copied());
         let paint = particles().map(|(s, k)| self.palette.particle(s, wire, number, k));
+        let field = |name, values: fn(&Snapshot) -> &[f32]| {
+            (numbers(bond_field(name), particles().map(|(s, k)| values(s)[slot(wire, k)])), each.clone())
+        };
+        let pressure = particles().map(|(s, k)| s.contact_pressure[wire.first + k]);
         let mut batches = vec![
             (vectors(Points3D::descriptor_positions(), positions), each.clone()),
             (colours(Points3D::descriptor_colors(), paint), each.clone()),
             (numbers(Points3D::descriptor_radii(), self.snapshots.iter().map(|s| mean_radius(s, wire))), once),
-            (numbers(bond_field(STRESS), particles().map(|(s, k)| s.bond_stress[slot(wire, k)])), each.clone()),
-            (
-                numbers(bond_field(PLASTIC_STRAIN), particles().map(|(s, k)| s.plastic_strain[slot(wire, k)])),
-                each.clone(),
-            ),
+            field(STRESS, |s| &s.bond_stress),
+            field(PLASTIC_STRAIN, |s| &s.plastic_strain),
+            field(UTILISATION, |s| &s.utilisation),
+            (numbers(bond_field(CONTACT_PRESSURE), pressure), each.clone()),
             (classes(STATE, particles().map(|(s, k)| s.bond_state[slot(wire, k)] as u16)), each.clone()),
         ];
         if self.palette.by() == ColourBy::Velocity {
@@ -75,7 +83,7 @@ impl Batch<'_> {
 
     fn tube(&self, number: usize) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
         let wire = &self.info.wires[number];
-        tubes::batches(self.snapshots, self.palette, wire, number, |s| mean_radius(s, wire))
+        tubes::batches(self.snapshots, self.palette, wire, number)
     }
 
     fn map_colours(&self, layer: usize) -> (SerializedComponentBatch, Vec<usize>) {
@@ -101,6 +109,15 @@ impl Batch<'_> {
             (numbers(bond_field(SPEED), speed), each),
         ]
     }
+}
+
+/// Sends the style of tubes.
+///
+/// # Errors
+/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+pub(super) fn send_styles(stream: &Stream, info: &RunInfo) -> Result<()> {
+    let solid = Capsules3D::update_fields().with_fill_mode(FillMode::Solid);
+    (0..info.wires.len()).try_for_each(|w| stream.fixed(names::tube(names::STRAND, info, w), &solid))
 }
 
 /// Mean radius of a wire now [mm]. One value per wire and snapshot: a wire thins as a whole, and a radius per

@@ -1,10 +1,10 @@
 //! Reading a recording back: for tests, and to check a finished run against its tables.
 
-use super::{names, stream};
+use super::{CONTACT_PRESSURE, PLASTIC_STRAIN, STRESS, UTILISATION, names, stream};
 use crate::base::error::{Error, Result};
 use rerun::external::re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
 use rerun::log::{Chunk, LogMsg};
-use rerun::{Points3D, Scalars, StoreKind, TextLog};
+use rerun::{Points3D, Scalars, StoreKind, TextDocument, TextLog};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -34,10 +34,18 @@ pub struct RecordingContents {
     pub log: Vec<(i64, String)>,
     /// Positions of points in space [mm] by entity: those of the last row.
     pub last_positions: BTreeMap<String, Vec<[f32; 3]>>,
+    /// Level of each line of the log.
+    pub levels: Vec<String>,
+    /// Fields of the particles by entity, then by name: those of the last row.
+    pub last_fields: BTreeMap<String, BTreeMap<String, Vec<f32>>>,
+    /// What the headline says in the end.
+    pub headline: String,
     /// Strain [10⁻⁶] and nominal stress of the body [MPa], in the order of the file.
     pub nominal_stress: Vec<(i64, f64)>,
     /// Whether a layout is embedded, ahead of all data, so that a viewer opens with it.
     pub layout: bool,
+    /// Layouts: one from the start, one from the end, when the place of the first break is known.
+    pub layouts: usize,
     /// Messages, for an estimate of overhead.
     pub messages: usize,
 }
@@ -55,7 +63,8 @@ pub fn contents(path: &Path) -> Result<RecordingContents> {
         let message = message.map_err(|e| broken(&e))?;
         all.messages += 1;
         if let LogMsg::BlueprintActivationCommand(_) = message {
-            all.layout = all.entities.is_empty();
+            all.layout |= all.entities.is_empty();
+            all.layouts += 1;
         }
         if let LogMsg::ArrowMsg(store, arrow) = message
             && store.kind() == StoreKind::Recording
@@ -87,6 +96,12 @@ impl RecordingContents {
         self.add_entity(&path, chunk);
         self.add_log(&path, chunk);
         self.add_stress(&path, chunk);
+        self.add_fields(&path, chunk);
+        if path == format!("/{}", names::HEADLINE)
+            && let Some(text) = chunk.iter_slices::<String>(TextDocument::descriptor_text().component).last()
+        {
+            self.headline = text.iter().map(ToString::to_string).collect();
+        }
         let positions = Points3D::descriptor_positions().component;
         if let Some(last) = chunk.iter_slices::<[f32; 3]>(positions).last() {
             self.last_positions.insert(path, last.to_vec());
@@ -105,6 +120,16 @@ impl RecordingContents {
             let lines = chunk.iter_slices::<String>(TextLog::descriptor_text().component);
             let lines = lines.flatten().map(|line| line.to_string());
             self.log.extend(strains(chunk).zip(lines));
+            let levels = chunk.iter_slices::<String>(TextLog::descriptor_level().component);
+            self.levels.extend(levels.flatten().map(|level| level.to_string()));
+        }
+    }
+
+    fn add_fields(&mut self, path: &str, chunk: &Chunk) {
+        for field in [STRESS, PLASTIC_STRAIN, UTILISATION, CONTACT_PRESSURE] {
+            if let Some(last) = chunk.iter_slices::<f32>(field.into()).last() {
+                self.last_fields.entry(path.to_owned()).or_default().insert(field.to_owned(), last.to_vec());
+            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! A thin layer over Rerun's stream: everything goes out as columns, so that a run always gives the same chunks.
 
 use crate::base::error::{Error, Result};
+use crate::engine::view::Rupture;
 use rerun::external::arrow::array::{
     Array, ArrayRef, FixedSizeListArray, Float32Array, ListArray, StringArray, UInt16Array, UInt32Array,
 };
@@ -16,7 +17,7 @@ use std::sync::Arc;
 pub const STEP: &str = "step";
 /// Timeline of simulated time.
 pub const TIME: &str = "sim_time";
-/// Timeline of strain, in whole millionths, because Rerun has no timelines of real numbers: 234,000 is 23.4 %.
+/// Timeline of strain, in whole µm/m, because Rerun has no timelines of real numbers: 234,000 is 23.4 %.
 pub const STRAIN: &str = "microstrain";
 
 /// Where on the timelines something is.
@@ -37,6 +38,12 @@ impl Instant {
     }
 }
 
+impl From<&Rupture> for Instant {
+    fn from(rupture: &Rupture) -> Self {
+        Self { step: rupture.step, time: rupture.time, strain: rupture.strain }
+    }
+}
+
 /// The stream that the recording is sent through.
 pub(super) struct Stream {
     pub rerun: RecordingStream,
@@ -54,15 +61,25 @@ impl Stream {
     /// # Errors
     /// [`Error::Io`] when Rerun refuses the data.
     pub fn fixed(&self, path: impl Into<EntityPath>, what: &dyn AsComponents) -> Result<()> {
-        let columns: SerializationResult<Vec<_>> = what
-            .as_serialized_batches()
-            .into_iter()
-            .map(|batch| {
-                let len = batch.array.len();
-                batch.partitioned([len])
-            })
-            .collect();
-        self.send(path.into(), Vec::new(), self.checked(columns)?)
+        self.send(path.into(), Vec::new(), self.columns(what)?)
+    }
+
+    /// Logs one row.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when Rerun refuses the data.
+    pub fn row(&self, path: impl Into<EntityPath>, instant: Instant, what: &dyn AsComponents) -> Result<()> {
+        self.send(path.into(), time_columns(&[instant]), self.columns(what)?)
+    }
+
+    /// One row of everything in `what`.
+    fn columns(&self, what: &dyn AsComponents) -> Result<Vec<SerializedComponentColumn>> {
+        let whole = |batch: SerializedComponentBatch| {
+            let len = batch.array.len();
+            batch.partitioned([len])
+        };
+        let columns: SerializationResult<Vec<_>> = what.as_serialized_batches().into_iter().map(whole).collect();
+        self.checked(columns)
     }
 
     /// Logs one row per instant; each batch is cut into rows of the given lengths.
@@ -110,9 +127,9 @@ pub(super) fn vectors<const N: usize>(
 }
 
 /// Lines of `corners` points each as Rerun stores them.
-pub(super) fn strips(
+pub(super) fn strips<const N: usize>(
     descriptor: ComponentDescriptor,
-    points: impl Iterator<Item = [f32; 3]>,
+    points: impl Iterator<Item = [f32; N]>,
     corners: usize,
 ) -> SerializedComponentBatch {
     let points = vectors(descriptor.clone(), points).array;

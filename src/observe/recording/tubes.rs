@@ -1,20 +1,20 @@
-//! Wires as tubes: straight pieces along each unbroken stretch, so that a stretched wire still looks like one.
+//! Wires as smooth tubes: capsules along each unbroken stretch.
 //!
-//! A piece spans a few bonds, because positions are already there with the particles: over four bonds of a KA4 wire
-//! a chord departs from the helix by less than a twentieth of the wire's radius.
+//! A capsule spans a few bonds: over three bonds of a stretched KA4 wire its axis departs from the helix by less than
+//! a twentieth of the wire's radius. Its radius is the mean over the particles that it spans, so that a wire that
+//! necks is seen to neck. At a broken bond a capsule spans one bond, so that the coloured tip is short.
 
-use super::paint::Palette;
-use super::stream::{colours, numbers, strips};
+use super::paint::{Palette, at_broken_bond};
+use super::particles::{PLASTIC_STRAIN, STRESS, UTILISATION};
+use super::stream::{bond_field, colours, numbers, vectors};
 use crate::engine::view::{BondState, Snapshot, WireInfo};
-use rerun::{LineStrips3D, SerializedComponentBatch};
+use glam::{Quat, Vec3};
+use rerun::{Capsules3D, SerializedComponentBatch};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Bonds that one piece spans.
-const SPAN: usize = 4;
-/// Radius of a tube over that of its particles [-]: it fills the gaps of a stretched chain and leaves the particles,
-/// which are shaded and can be clicked, in front.
-const RADIUS: f32 = 0.8;
+/// Bonds that one capsule spans.
+const SPAN: usize = 3;
 
 /// Tubes of one wire in a batch of snapshots.
 pub(super) fn batches(
@@ -22,35 +22,62 @@ pub(super) fn batches(
     palette: &Palette,
     wire: &WireInfo,
     number: usize,
-    radius: impl Fn(&Snapshot) -> f32,
 ) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
     let pieces: Vec<Vec<Range<usize>>> = snapshots.iter().map(|s| pieces(s, wire)).collect();
     let each: Vec<usize> = pieces.iter().map(Vec::len).collect();
     let all = || snapshots.iter().zip(&pieces).flat_map(|(s, pieces)| pieces.iter().map(move |piece| (s, piece)));
-    let ends = all().flat_map(|(s, piece)| [piece.start, piece.end].map(|k| s.position[wire.first + k]));
-    let paint = all().map(|(s, piece)| palette.particle(s, wire, number, (piece.start + piece.end) / 2));
-    let radii = snapshots.iter().map(|s| RADIUS * radius(s));
+    let middle = |piece: &Range<usize>| (piece.start + piece.end) / 2;
+    let value = |field: &'static str, of: fn(&Snapshot) -> &[f32]| {
+        let values = all().map(|(s, piece)| of(s)[wire.first + middle(piece)]);
+        (numbers(bond_field(field), values), each.clone())
+    };
+    let axes: Vec<Vec3> = all().map(|(s, piece)| axis(s, wire, piece)).collect();
+    let starts = all().map(|(s, piece)| s.position[wire.first + piece.start]);
+    let turns = axes.iter().map(|a| Quat::from_rotation_arc(Vec3::Z, a.normalize_or(Vec3::Z)).to_array());
+    let radii = all().map(|(s, piece)| radius(s, wire, piece));
+    let paint = all().map(|(s, piece)| {
+        let shown = [piece.start, piece.end].into_iter().find(|k| at_broken_bond(s, wire, *k));
+        palette.particle(s, wire, number, shown.unwrap_or(middle(piece)))
+    });
     vec![
-        (strips(LineStrips3D::descriptor_strips(), ends, 2), each.clone()),
-        (colours(LineStrips3D::descriptor_colors(), paint), each),
-        (numbers(LineStrips3D::descriptor_radii(), radii), vec![1; snapshots.len()]),
+        (vectors(Capsules3D::descriptor_translations(), starts), each.clone()),
+        (vectors(Capsules3D::descriptor_quaternions(), turns), each.clone()),
+        (numbers(Capsules3D::descriptor_lengths(), axes.iter().map(|a| a.length())), each.clone()),
+        (numbers(Capsules3D::descriptor_radii(), radii), each.clone()),
+        (colours(Capsules3D::descriptor_colors(), paint), each.clone()),
+        value(STRESS, |s| &s.bond_stress),
+        value(PLASTIC_STRAIN, |s| &s.plastic_strain),
+        value(UTILISATION, |s| &s.utilisation),
     ]
+}
+
+fn axis(snapshot: &Snapshot, wire: &WireInfo, piece: &Range<usize>) -> Vec3 {
+    let [a, b] = [piece.start, piece.end].map(|k| Vec3::from(snapshot.position[wire.first + k]));
+    b - a
+}
+
+fn radius(snapshot: &Snapshot, wire: &WireInfo, piece: &Range<usize>) -> f32 {
+    let radii = &snapshot.radius[wire.first + piece.start..=wire.first + piece.end];
+    radii.iter().sum::<f32>() / radii.len() as f32
 }
 
 /// Pieces from particle to particle, counted along the wire; none spans a broken bond.
 fn pieces(snapshot: &Snapshot, wire: &WireInfo) -> Vec<Range<usize>> {
+    let bonds = wire.len.saturating_sub(1);
+    let broken = |bond: usize| snapshot.bond_state[wire.first + bond] == BondState::Broken;
     let mut pieces = Vec::new();
     let mut start = 0;
-    for bond in 0..wire.len.saturating_sub(1) {
-        let broken = snapshot.bond_state[wire.first + bond] == BondState::Broken;
-        let last = bond + 2 == wire.len;
-        let end = if broken { bond } else { bond + 1 };
-        if end > start && (broken || last || end - start == SPAN) {
+    for bond in 0..bonds {
+        if broken(bond) {
+            start = bond + 1;
+            continue;
+        }
+        let end = bond + 1;
+        let last = end == bonds || broken(end);
+        let tip = (start > 0 && broken(start - 1) && end - start == 1) || (end + 1 < bonds && broken(end + 1));
+        if last || tip || end - start == SPAN {
             pieces.push(start..end);
             start = end;
-        }
-        if broken {
-            start = bond + 1;
         }
     }
     pieces
@@ -82,6 +109,10 @@ mod tests {
             let covered: Vec<usize> = pieces(&snapshot, &wire).into_iter().flatten().collect();
             let expected: Vec<usize> = (0..len - 1).filter(|b| !broken.contains(b)).collect();
             assert_eq!(covered, expected, "{broken:?}");
+            for piece in pieces(&snapshot, &wire) {
+                let tip = at_broken_bond(&snapshot, &wire, piece.start) || at_broken_bond(&snapshot, &wire, piece.end);
+                assert!(piece.len() == 1 || !tip && piece.len() <= SPAN, "{piece:?} of {broken:?}");
+            }
         }
     }
 }

@@ -1,0 +1,158 @@
+//! What the run found, in a few words that are read without a click: the first break, then the result.
+
+use super::stream::Stream;
+use super::{RERUN_VERSION, names};
+use crate::base::error::Result;
+use crate::engine::view::{Notice, RunInfo, Rupture};
+use crate::observe::summary::RunSummary;
+use crate::observe::units::{mm, mpa, percent};
+use crate::observe::wording::wire_number;
+use rerun::TextDocument;
+use std::fmt::Write;
+
+/// Wires that the order of break names at most: one line of text.
+const NAMED: usize = 24;
+
+/// What is known so far.
+pub(super) struct Headline {
+    ruptures: Vec<Rupture>,
+    notices: Vec<Notice>,
+    changed: bool,
+}
+
+impl Headline {
+    /// Nothing is known, which is to be said.
+    pub fn new() -> Self {
+        Self { ruptures: Vec::new(), notices: Vec::new(), changed: true }
+    }
+
+    /// Takes note of a rupture.
+    pub fn rupture(&mut self, rupture: &Rupture) {
+        self.changed |= rupture.first_of_wire;
+        self.ruptures.push(rupture.clone());
+    }
+
+    /// Takes note of a notice.
+    pub fn notice(&mut self, notice: &Notice) {
+        self.changed = true;
+        self.notices.push(notice.clone());
+    }
+
+    /// Sends the words when they have changed. They hold at all times, so that they can be read
+    /// wherever the cursor is.
+    ///
+    /// # Errors
+    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+    pub fn send(&mut self, stream: &Stream, info: &RunInfo) -> Result<()> {
+        if std::mem::take(&mut self.changed) {
+            return send(stream, &self.text(info, None));
+        }
+        Ok(())
+    }
+
+    /// Sends the final words, with the result.
+    ///
+    /// # Errors
+    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
+    pub fn send_end(&self, stream: &Stream, info: &RunInfo, summary: &RunSummary) -> Result<()> {
+        send(stream, &self.text(info, Some(summary)))
+    }
+
+    fn text(&self, info: &RunInfo, summary: Option<&RunSummary>) -> String {
+        let mut text = match self.ruptures.first() {
+            Some(first) => first_break(info, first),
+            None if summary.is_some() => "# No wire broke\n".to_owned(),
+            None => "# No wire has broken yet\n".to_owned(),
+        };
+        if let Some(summary) = summary {
+            text += &result(summary);
+        }
+        text += &self.order(info);
+        for warning in self.warnings(summary) {
+            // Writing to a String cannot fail.
+            let _ = write!(text, "\n> **WARNING** {warning}\n");
+        }
+        text
+    }
+
+    fn order(&self, info: &RunInfo) -> String {
+        let firsts: Vec<_> = self.ruptures.iter().filter(|r| r.first_of_wire).collect();
+        if firsts.len() < 2 {
+            return String::new();
+        }
+        let wires: Vec<_> = firsts.iter().take(NAMED).map(|r| wire_number(r.wire).to_string()).collect();
+        let more = if firsts.len() > NAMED { ", …" } else { "" };
+        format!("\nWires in order of break: {}{more} ({} of {})\n", wires.join(", "), firsts.len(), info.wires.len())
+    }
+
+    /// Notices in the order in which they came, then what the summary adds to them.
+    fn warnings(&self, summary: Option<&RunSummary>) -> Vec<String> {
+        let mut all: Vec<String> = self.notices.iter().map(|notice| notice.text.clone()).collect();
+        let more = summary.map_or(&[][..], |summary| &summary.warnings);
+        all.extend(more.iter().filter(|w| !self.notices.iter().any(|n| w.contains(&n.text))).cloned());
+        all
+    }
+}
+
+fn send(stream: &Stream, text: &str) -> Result<()> {
+    stream.fixed(names::HEADLINE, &TextDocument::from_markdown(text))
+}
+
+fn first_break(info: &RunInfo, first: &Rupture) -> String {
+    let of = if info.wires.len() > 1 { format!(", {}", names::layer_name(info, first.layer)) } else { String::new() };
+    let body = if info.wires.len() > 1 { "strand" } else { "wire" };
+    format!(
+        "# 1st break: wire {}{of}\n## z = {:.1} mm, strain {:.2} %, {:.1} MPa\n\
+         z is counted before loading ({:.1} mm when it broke). The {body} then carried {:.1} MPa of nominal stress; \
+         true axial stress where it broke: {:.0} MPa.\n",
+        wire_number(first.wire),
+        mm(first.rest_z),
+        percent(first.strain),
+        mpa(first.body_stress),
+        mm(first.position[2]),
+        mpa(first.body_stress),
+        mpa(first.stress),
+    )
+}
+
+fn result(summary: &RunSummary) -> String {
+    let mut parts = Vec::new();
+    if let (Some(strength), Some(elongation)) = (summary.tensile_strength_mpa, summary.fracture_elongation_percent) {
+        parts.push(format!("strength **{strength:.2} MPa** at {elongation:.2} %"));
+    }
+    if let (Some(stress), Some(strain)) = (summary.residual_stress_mpa, summary.final_strain_percent) {
+        parts.push(format!("at the end {stress:.1} MPa at {strain:.2} %"));
+    }
+    let mut text = String::new();
+    if !parts.is_empty() {
+        let _ = writeln!(text, "\nResult: {}", parts.join("; "));
+    }
+    let layers = summary.wires_broken_by_layer.iter();
+    let layers: Vec<String> = layers.map(|(name, n)| format!("{name} {} of {}", n.broken, n.of)).collect();
+    if !layers.is_empty() {
+        let _ = writeln!(text, "\nWires broken: {}", layers.join(", "));
+    }
+    text
+}
+
+/// What the run is.
+pub(super) fn about(info: &RunInfo) -> String {
+    let wires = info.layers.iter().enumerate().map(|(layer, name)| {
+        let count = super::map::wires_of(info, layer).count();
+        format!("- {name}: {count} wires\n")
+    });
+    let wires: String = wires.collect();
+    format!(
+        "# {}\n\n{}\n\n{wires}\n{} particles; positions in mm, stress in MPa. \
+         The timeline `{}` counts strain in µm/m: 10,000 is 1 %.\n\n\
+         Colours: from {:.0} to {:.0} MPa of true axial stress where stress colours; red at broken bonds.\n\n\
+         strandsnap {}, Rerun {RERUN_VERSION}\n",
+        info.name,
+        info.about,
+        info.particles,
+        super::STRAIN,
+        info.stress_range[0],
+        info.stress_range[1],
+        env!("CARGO_PKG_VERSION"),
+    )
+}

@@ -1,0 +1,229 @@
+//! One run on its way into a recording: what waits to be sent, and what is known so far.
+
+use super::chart::Chart;
+use super::first_break::{FirstBreak, Gaze};
+use super::headline::{Headline, about};
+use super::layout::Scenery;
+use super::map::Map;
+use super::marks::Marks;
+use super::paint::Palette;
+use super::sections::Sections;
+use super::states::States;
+use super::stream::{Instant, Stream};
+use super::{RERUN_VERSION, curve, grips, layout, names, paint, particles};
+use crate::base::error::Result;
+use crate::engine::view::{BondState, Notice, RunInfo, Rupture, Sample, Snapshot};
+use crate::observe::Observer;
+use crate::observe::summary::{Closing, Summariser};
+use crate::scene::spec::{ColourBy, Spec};
+use rerun::external::re_log_types::BlueprintActivationCommand;
+use rerun::{
+    AnnotationContext, DynamicArchetype, EntityPath, Points3D, RecordingInfo, TextDocument, ViewCoordinates, components,
+};
+use std::sync::Arc;
+
+/// A run that has started.
+pub(super) struct Run {
+    pub stream: Stream,
+    info: Arc<RunInfo>,
+    id: String,
+    palette: Palette,
+    map: Map,
+    chart: Option<Chart>,
+    states: States,
+    marks: Marks,
+    sections: Sections,
+    first: Option<FirstBreak>,
+    headline: Headline,
+    summariser: Summariser,
+    snapshots: Vec<Arc<Snapshot>>,
+    samples: Vec<Sample>,
+    /// Snapshots that go out together.
+    batch: usize,
+    /// Snapshots whose section the eye already follows, and places of the first break that are sent.
+    followed: [usize; 2],
+}
+
+impl Run {
+    /// Sends what holds at all times, layout first.
+    pub fn start(stream: Stream, info: &Arc<RunInfo>, id: &str, colour: ColourBy, batch: usize) -> Result<Self> {
+        let mut summariser = Summariser::new();
+        summariser.start(info)?;
+        let mut run = Self {
+            stream,
+            info: info.clone(),
+            id: id.to_owned(),
+            palette: Palette::new(colour, info),
+            map: Map::new(info),
+            chart: Chart::new(info),
+            states: States::new(info.wires.len()),
+            marks: Marks::default(),
+            sections: Sections::new(info),
+            first: None,
+            headline: Headline::new(),
+            summariser,
+            snapshots: Vec::new(),
+            samples: Vec::new(),
+            batch,
+            followed: [0; 2],
+        };
+        run.send_fixed()?;
+        Ok(run)
+    }
+
+    pub fn sample(&mut self, sample: &Sample) -> Result<()> {
+        self.summariser.sample(sample)?;
+        self.samples.push(sample.clone());
+        Ok(())
+    }
+
+    pub fn snapshot(&mut self, snapshot: &Arc<Snapshot>) -> Result<()> {
+        self.states.snapshot(&self.info, snapshot, curve::instant(&snapshot.sample));
+        self.sections.snapshot(snapshot);
+        if let Some(first) = &mut self.first {
+            first.snapshot(snapshot);
+        }
+        self.snapshots.push(snapshot.clone());
+        if self.snapshots.len() >= self.batch { self.send() } else { Ok(()) }
+    }
+
+    pub fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
+        self.summariser.rupture(rupture)?;
+        self.states.set(rupture.wire, BondState::Broken, Instant::from(rupture));
+        self.marks.add(&self.info, rupture);
+        self.headline.rupture(rupture);
+        if self.first.is_none() {
+            self.first = Some(FirstBreak::new(rupture));
+            self.palette.set_first(rupture.bond);
+        }
+        Ok(())
+    }
+
+    pub fn notice(&mut self, notice: &Notice) {
+        self.marks.add_notice(notice);
+        self.headline.notice(notice);
+    }
+
+    /// Sends the rest, and what only the end knows: the result, and a layout whose close view looks at the place of
+    /// the first break from the side where it is.
+    pub fn finish(&mut self, scene: &Spec, active: bool) -> Result<BlueprintActivationCommand> {
+        self.send()?;
+        // Bonds and cost are not shown.
+        let summary = self.summariser.summary(scene, 0, Closing::default());
+        self.headline.send_end(&self.stream, &self.info, &summary)?;
+        let mut gaze = Gaze::START;
+        if let Some(first) = &self.first {
+            let axis = self.sections.last(first.rest_z()).unwrap_or_default();
+            gaze = Gaze::towards(first.last(), axis);
+            first.send(&self.stream, &self.info, gaze, 0)?;
+            self.sections.send_focus(&self.stream, &self.info, first.rest_z(), 0)?;
+        }
+        layout::send(&self.stream, &format!("{}-layout-end", self.id), &self.scenery(gaze), active)
+    }
+
+    fn scenery(&self, gaze: Gaze) -> Scenery<'_> {
+        let rest_z = self.first.as_ref().map_or(self.sections.middle(), FirstBreak::rest_z);
+        Scenery {
+            info: &self.info,
+            map: &self.map,
+            chart: self.chart.as_ref(),
+            gaze,
+            target: self.sections.last(rest_z).unwrap_or([0.0, 0.0, rest_z]),
+            broken_layer: self.first.as_ref().map(|first| first.rupture.layer),
+        }
+    }
+
+    fn send_fixed(&mut self) -> Result<()> {
+        let (stream, info) = (&self.stream, &self.info);
+        layout::send(stream, &format!("{}-layout", self.id), &self.scenery(Gaze::START), true)?;
+        // Rerun hands on data before messages; without this the layout would come last, and a viewer that is still
+        // loading would invent one.
+        stream.checked(stream.rerun.flush_blocking())?;
+        self.send_properties()?;
+        stream.fixed("/", &ViewCoordinates::RIGHT_HAND_Z_UP())?;
+        stream.fixed("/", &annotation())?;
+        self.map.send(stream, info)?;
+        if let Some(scale) = self.palette.scale() {
+            self.map.send_colour_bar(stream, &scale)?;
+        }
+        curve::send_names(stream, info)?;
+        if let Some(chart) = &self.chart {
+            chart.send_fixed(stream, info)?;
+        }
+        grips::send_style(stream)?;
+        particles::send_styles(stream, info)?;
+        Sections::send_style(stream)?;
+        States::send_style(stream, info)?;
+        self.send_sphere_radii()?;
+        self.headline.send(&self.stream, &self.info)
+    }
+
+    fn send_properties(&self) -> Result<()> {
+        let info = &self.info;
+        self.stream.fixed(EntityPath::properties(), &RecordingInfo::new().with_name(info.name.as_str()))?;
+        let text = |value: String| [components::Text::from(value)];
+        let run = DynamicArchetype::new("strandsnap.Run")
+            .with_component::<components::Text>("scene", text(info.name.clone()))
+            .with_component::<components::Text>("about", text(info.about.clone()))
+            .with_component::<components::Text>("layers", text(info.layers.join(", ")))
+            .with_component::<components::Text>("wires", text(info.wires.len().to_string()))
+            .with_component::<components::Text>("particles", text(info.particles.to_string()))
+            .with_component::<components::Text>("strandsnap_version", text(env!("CARGO_PKG_VERSION").to_owned()))
+            .with_component::<components::Text>("rerun_version", text(RERUN_VERSION.to_owned()));
+        self.stream.fixed(EntityPath::properties().join(&EntityPath::from("run")), &run)?;
+        self.stream.fixed(names::ABOUT, &TextDocument::from_markdown(about(info)))
+    }
+
+    fn send_sphere_radii(&self) -> Result<()> {
+        let info = &self.info;
+        if info.particles == info.wire_particles {
+            return Ok(());
+        }
+        let radii = info.radius[info.wire_particles..].iter().copied();
+        self.stream.fixed(names::SPHERES, &Points3D::update_fields().with_radii(radii))
+    }
+
+    /// Sends everything that waits.
+    fn send(&mut self) -> Result<()> {
+        let instants: Vec<_> = self.snapshots.iter().map(|s| curve::instant(&s.sample)).collect();
+        if !instants.is_empty() {
+            let (info, palette, snapshots) = (&self.info, &self.palette, &self.snapshots);
+            particles::Batch { info, palette, instants: &instants, snapshots }.send(&self.stream)?;
+            grips::send(&self.stream, &self.info, &instants, &self.snapshots)?;
+        }
+        if !self.samples.is_empty() {
+            curve::send(&self.stream, &self.info, &self.samples)?;
+            if let Some(chart) = &mut self.chart {
+                chart.send(&self.stream, &self.info, &self.samples)?;
+            }
+        }
+        self.states.send(&self.stream, &self.info)?;
+        self.send_ruptures()?;
+        self.snapshots.clear();
+        self.samples.clear();
+        Ok(())
+    }
+
+    fn send_ruptures(&mut self) -> Result<()> {
+        let new = self.marks.send(&self.stream, &self.info, &self.map)?;
+        if let Some(chart) = self.chart.as_ref().filter(|_| !new.is_empty()) {
+            chart.send_ruptures(&self.stream, &self.info, &new)?;
+        }
+        self.headline.send(&self.stream, &self.info)?;
+        let [focused, placed] = self.followed;
+        if let Some(first) = &self.first {
+            first.send(&self.stream, &self.info, Gaze::START, placed)?;
+        }
+        let rest_z = self.first.as_ref().map_or(self.sections.middle(), FirstBreak::rest_z);
+        self.sections.send_focus(&self.stream, &self.info, rest_z, focused)?;
+        self.followed = [self.sections.len(), self.first.as_ref().map_or(0, FirstBreak::len)];
+        Ok(())
+    }
+}
+
+/// Names and colours of bond states, shown where a particle is clicked.
+fn annotation() -> AnnotationContext {
+    let colours = [0x3E6F8EFF, 0xD9A441FF, paint::BROKEN, paint::NEUTRAL];
+    let classes = particles::STATE_NAMES.iter().zip(colours).zip(0u16..);
+    AnnotationContext::new(classes.map(|((name, colour), i)| (i, *name, rerun::Rgba32::from(colour))))
+}
