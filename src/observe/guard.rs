@@ -143,9 +143,12 @@ impl Guard {
         }
     }
 
-    /// After the last row.
-    pub fn finish(&mut self) {
-        self.judge_loading();
+    /// After the last row. A run that was cut short never had the energy and the force that its rows are measured by, so
+    /// only a `whole` one is judged as such.
+    pub fn finish(&mut self, whole: bool) {
+        if whole {
+            self.judge_loading();
+        }
     }
 
     /// Notices since the last call.
@@ -314,7 +317,7 @@ mod tests {
 
     /// Texts of all notices at the end of the run.
     fn said(guard: &mut Guard) -> Vec<String> {
-        guard.finish();
+        guard.finish(true);
         guard.take_notices().into_iter().map(|notice| notice.text).collect()
     }
 
@@ -326,6 +329,14 @@ mod tests {
         assert_eq!(guard.quasi_static().kinetic_over_internal_max, Some(0.02));
         assert_eq!(guard.quasi_static().grip_force_mismatch_percent, Some(1.0));
         assert_eq!(said(&mut guard), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_pull_that_was_cut_short_is_not_judged_by_its_first_rows() {
+        let mut guard = Guard { strain_end: 0.2, ..new() };
+        guard.row(&Sample { strain: 0.01, ..row(10.0, 100.0, [90.0, 100.0]) }).unwrap();
+        guard.finish(false);
+        assert_eq!(guard.take_notices(), []);
     }
 
     #[test]
