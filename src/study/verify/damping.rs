@@ -101,7 +101,8 @@ fn decays(lab: &Lab, mode: &Mode) -> Result<Vec<Finding>> {
     let [coarse, .., fine] = found[..] else { unreachable!("there are several steps") };
     let part = safety[0] / safety[safety.len() - 1];
     let mut decrement =
-        Finding::new(format!("logarithmic decrement at 1/{part:.0} of it"), "-", fine, exact, spent).within(5e-3);
+        Finding::new(format!("logarithmic decrement at 1/{part:.0} of that step"), "-", fine, exact, spent)
+            .within(5e-3);
     decrement.convergence = Some(Convergence { axis: "dt/T", points });
     Ok(vec![
         Finding::new("logarithmic decrement at the default step", "-", coarse, exact, spent).within(5e-3),
