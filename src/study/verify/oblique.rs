@@ -90,9 +90,10 @@ fn law(lab: &Lab, law: &str, target: f64, note: &str) -> Result<Vec<Finding>> {
 }
 
 fn oblique(lab: &Lab) -> Result<Vec<Finding>> {
-    let partial = "Errors are in units of what friction can give, mu J_n (psi: 4 chi). The law remembers one turning \
-                   point each way. A normal force that falls shrinks what it remembers with the contact radius, where \
-                   the annuli of the theory keep their own traction until their own limit reaches it.";
+    let partial = "Errors are in units of what friction can give, mu J_n (psi: 4 chi). They fall to nothing from psi1 = \
+                   2.5 on. Below, the contact sticks while the normal force rises; the law remembers the pull alone, and \
+                   as the normal force falls again it drops more of it than the theory, whose annuli hold what they have \
+                   until their own limit reaches it.";
     let single = "Errors are in units of what friction can give, mu J_n (psi: 4 chi). A single spring sticks or slides \
                   as a whole, and drops its pull with the contact radius when the normal force falls; in the theory \
                   the outer annuli slip first and the inner ones give back what they store.";
