@@ -212,6 +212,7 @@ fn line(cells: &[String; 8], widths: &[usize; 8]) -> String {
 fn number(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
+        size if !size.is_finite() => value.to_string(),
         size if (1e-3..1e6).contains(&size) => {
             let decimals = (5.0 - size.log10().floor()).clamp(0.0, 8.0) as usize;
             let text = format!("{value:.decimals$}");
