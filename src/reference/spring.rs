@@ -130,12 +130,12 @@ impl Spring {
 fn solve(rows: &mut [Vec<f64>], load: &mut [f64]) {
     let n = load.len();
     for pivot in 0..n {
-        for row in pivot + 1..n {
-            let factor = rows[row][pivot] / rows[pivot][pivot];
-            for column in pivot..n {
-                rows[row][column] -= factor * rows[pivot][column];
-            }
-            load[row] -= factor * load[pivot];
+        let (above, below) = rows.split_at_mut(pivot + 1);
+        let above = &above[pivot];
+        for (k, row) in below.iter_mut().enumerate() {
+            let factor = row[pivot] / above[pivot];
+            row.iter_mut().zip(above).skip(pivot).for_each(|(value, above)| *value -= factor * above);
+            load[pivot + 1 + k] -= factor * load[pivot];
         }
     }
     for row in (0..n).rev() {

@@ -6,6 +6,7 @@
 //! | `mindlin` | ΔF = 8 G* a Δδ, capped at μ F_n | Mindlin 1949 |
 //! | `mindlin-deresiewicz` | ΔF = 8 G* a θ Δδ + (−1)^k μ (1 − θ) ΔF_n | Mindlin & Deresiewicz 1953 |
 
+mod curve;
 pub mod mindlin;
 pub mod mindlin_deresiewicz;
 pub mod none;

@@ -80,7 +80,7 @@ fn capstan(lab: &Lab) -> Result<Vec<Finding>> {
         found.push(
             Finding::new(format!("T2/T1 over {angle:.2} rad, mu = {friction}"), "-", s.ratio, exact, s.spent)
                 .within(2e-2)
-                .over("corner [rad]", points)
+                .over("angle of a corner", points)
                 .note(format!(
                     "A string without thickness has e^(mu phi) = {string:.3}; here friction acts r inside the wire's \
                      axis, which takes r/(R + r) = {:.1} % off the exponent.",
