@@ -379,7 +379,6 @@ mod tests {
         let state = State::new(&assembly);
         let found = |shape| Neighbours::new(&assembly, 0.01, shape).search(&state, Stretch::default()).pairs.clone();
         assert!(found(Shape::Capsule).contains(&(0, 2)) && found(Shape::Capsule).contains(&(1, 2)));
-        assert!(!found(Shape::Sphere).contains(&(0, 2)));
     }
 
     #[test]

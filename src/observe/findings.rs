@@ -13,7 +13,7 @@ pub struct Findings {
     pub least_time_step: Step,
     /// The greatest time step and what limited it.
     pub greatest_time_step: Step,
-    /// Greatest share of the energy in the ledger that was unaccounted for at any row [%]; `None` when there was none.
+    /// Most energy that was unaccounted for at any row, over the most work done until then [%]; `None` at rest.
     pub energy_residual_greatest_percent: Option<f64>,
 }
 

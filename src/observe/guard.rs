@@ -63,6 +63,8 @@ pub struct Guard {
     gripped: bool,
     strain_end: f64,
     ruptured: bool,
+    /// Most work done so far [J].
+    work: f64,
     /// Greatest unbalanced share of the ledger [-].
     residual: Option<f64>,
     now: Now,
@@ -89,6 +91,7 @@ impl Guard {
             gripped: false,
             strain_end: f64::INFINITY,
             ruptured: false,
+            work: 0.0,
             residual: None,
             now: Now::default(),
             notices: Vec::new(),
@@ -119,7 +122,7 @@ impl Guard {
     /// Takes in a row.
     ///
     /// # Errors
-    /// [`Error::Trouble`] when a fifth of the energy is unaccounted for.
+    /// [`Error::Trouble`] when energy worth a fifth of the work is unaccounted for, or motion turns round at every step.
     pub fn row(&mut self, sample: &Sample) -> Result<()> {
         self.now = Now { step: sample.step, time: sample.time, strain: sample.strain };
         let row = Row {
@@ -148,9 +151,12 @@ impl Guard {
         }
     }
 
-    /// After the last row.
-    pub fn finish(&mut self) {
-        self.judge_loading();
+    /// After the last row. A run that was cut short never had the energy and the force that its rows are measured by, so
+    /// only a `whole` one is judged as such.
+    pub fn finish(&mut self, whole: bool) {
+        if whole {
+            self.judge_loading();
+        }
     }
 
     /// Notices since the last call.
@@ -220,11 +226,22 @@ impl Guard {
     }
 
     fn judge_ledger(&mut self, sample: &Sample) -> Result<()> {
-        // The work of the two signs may cancel (a cyclic drive), so the scale is the greatest term seen.
-        let scale = sample.energy.work.abs().max(sample.energy.internal().abs());
+        // Work of the two signs may cancel (a cyclic drive), so the scale is the most that was done so far. Internal energy
+        // is none: in a run that blows up it grows without bound, and hides how little was put in.
+        self.work = self.work.max(sample.energy.work.abs());
+        let scale = self.work;
         let gap = sample.energy.residual();
         if scale.max(gap.abs()) <= self.negligible {
             return Ok(());
+        }
+        // Leapfrog's kinetic energy is the product of two velocities half a step apart: it is negative as a whole only when
+        // most of what moves turns round at every step.
+        if sample.energy.kinetic < -ENERGY_STOP * scale {
+            return Err(Error::Trouble {
+                step: sample.step,
+                what: "the motion turns round at every step: the time step is not stable".into(),
+                help: Some("lower time.safety, or time.step below the bound".into()),
+            });
         }
         let share = gap.abs() / scale;
         self.residual = Some(self.residual.map_or(share, |greatest| greatest.max(share)));
@@ -232,7 +249,7 @@ impl Guard {
             return Ok(());
         }
         let what = format!(
-            "the energy ledger does not close: {:.3e} J, {:.2} % of the energy in it, {}",
+            "the energy ledger does not close: {:.3e} J, {:.2} % of the work done, {}",
             gap.abs(),
             percent(share),
             if gap > 0.0 { "have vanished" } else { "came from nowhere" }
@@ -319,7 +336,7 @@ mod tests {
 
     /// Texts of all notices at the end of the run.
     fn said(guard: &mut Guard) -> Vec<String> {
-        guard.finish();
+        guard.finish(true);
         guard.take_notices().into_iter().map(|notice| notice.text).collect()
     }
 
@@ -331,6 +348,14 @@ mod tests {
         assert_eq!(guard.quasi_static().kinetic_over_internal_max, Some(0.02));
         assert_eq!(guard.quasi_static().grip_force_mismatch_percent, Some(1.0));
         assert_eq!(said(&mut guard), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_pull_that_was_cut_short_is_not_judged_by_its_first_rows() {
+        let mut guard = Guard { strain_end: 0.2, ..new() };
+        guard.row(&Sample { strain: 0.01, ..row(10.0, 100.0, [90.0, 100.0]) }).unwrap();
+        guard.finish(false);
+        assert_eq!(guard.take_notices(), []);
     }
 
     #[test]
@@ -371,11 +396,18 @@ mod tests {
         open.energy.work = 102.0;
         let warnings = said(&mut gripped(&[open.clone(), open.clone()]));
         assert_eq!(warnings.len(), 1, "{warnings:?}");
-        assert!(warnings[0].contains("1.96 % of the energy in it, have vanished"), "{warnings:?}");
+        assert!(warnings[0].contains("1.96 % of the work done, have vanished"), "{warnings:?}");
         open.energy.work = 70.0;
         let error = new().row(&open).unwrap_err();
-        assert!(error.to_string().contains("30.00 % of the energy in it, came from nowhere"), "{error}");
+        assert!(error.to_string().contains("42.86 % of the work done, came from nowhere"), "{error}");
         assert_eq!(error.exit_code(), 4);
+    }
+
+    #[test]
+    fn a_motion_that_turns_round_at_every_step_stops_the_run() {
+        let energy = Energy { work: 1.0, kinetic: -19.0, elastic_bonds: 20.0, ..Energy::default() };
+        let error = new().row(&Sample { energy, ..Sample::default() }).unwrap_err();
+        assert!(error.to_string().contains("not stable"), "{error}");
     }
 
     #[test]

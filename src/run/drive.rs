@@ -122,7 +122,7 @@ impl Driver<'_, '_> {
         self.guard.start(info);
         self.audience.start(info)?;
         let ended = self.run(stop);
-        self.guard.finish();
+        self.guard.finish(matches!(ended, Ok(reason) if reason != StopReason::Interrupted));
         self.notices()?;
         if let Err(error @ Error::Trouble { .. }) = &ended {
             let (step, time, strain) = (self.engine.steps(), self.engine.time(), self.engine.strain());
