@@ -152,7 +152,7 @@ pub fn write(figures: &[Figure], columns: usize, path: &Path) -> Result<()> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
     }
-    write_whole(path, content)
+    write_whole(path, &content)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use super::{Figure, Limit, Mark, Series};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Text: axes, ticks and legend; titles [px].
 const TEXT: f64 = 14.0;
@@ -127,7 +128,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
             None => self.area.draw(&PathElement::new(points, style)),
             Some([dash, gap]) => {
                 let (dash, gap) = (self.px(dash), self.px(gap));
-                self.area.draw(&DashedPathElement::new(points.into_iter(), dash, gap, style))
+                self.area.draw(&DashedPathElement::new(points, dash, gap, style))
             }
         }
     }
@@ -245,8 +246,8 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
             if has_markers(entry.mark) {
                 self.marker(entry.index, (left + gap + sample / 2, middle), entry.colour)?;
             }
-            let place = (left + 2 * gap + sample, middle - self.px(0.55 * TEXT));
-            self.area.draw(&Text::new(entry.name, place, self.text(TEXT, &INK)))?;
+            let style = self.text(TEXT, &INK).pos(Pos::new(HPos::Left, VPos::Center));
+            self.area.draw(&Text::new(entry.name, (left + 2 * gap + sample, middle), style))?;
         }
         Ok(())
     }

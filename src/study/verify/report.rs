@@ -120,7 +120,7 @@ impl<'a> Row<'a> {
 /// # Errors
 /// When the file cannot be written.
 pub fn write_json(reports: &[Report], path: &Path) -> Result<()> {
-    write_whole(path, json(reports))
+    write_whole(path, &json(reports))
 }
 
 fn json(reports: &[Report]) -> String {
@@ -200,19 +200,19 @@ fn cells(f: &Finding) -> [String; 8] {
 
 /// Text to the left, numbers to the right.
 fn line(cells: &[String; 8], widths: &[usize; 8]) -> String {
-    let pad = |k: usize| " ".repeat(widths[k] - cells[k].chars().count());
-    let mut text = format!("  {}{}", cells[0], pad(0));
-    for k in 1..7 {
-        let _ = write!(text, "  {}{}", pad(k), cells[k]);
+    let mut text = String::new();
+    for (k, (cell, width)) in cells.iter().zip(widths).enumerate() {
+        let pad = " ".repeat(width - cell.chars().count());
+        text += &if k == 0 || k == 7 { format!("  {cell}{pad}") } else { format!("  {pad}{cell}") };
     }
-    let _ = writeln!(text, "  {}", cells[7]);
-    text
+    text.trim_end().to_owned() + "\n"
 }
 
 /// Six figures.
 fn number(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
+        size if !size.is_finite() => value.to_string(),
         size if (1e-3..1e6).contains(&size) => {
             let decimals = (5.0 - size.log10().floor()).clamp(0.0, 8.0) as usize;
             let text = format!("{value:.decimals$}");

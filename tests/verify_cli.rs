@@ -1,0 +1,57 @@
+//! `strandsnap verify` as a user runs it: exit codes, files, messages.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn verify(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
+    command.arg("verify").args(args).current_dir(folder).output().expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn verify_writes_table_json_and_plots() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = verify(folder.path(), &["hertz", "bond-bent", "--quick", "--json", "results/found.json"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let table = text(&output.stdout);
+    for part in ["contact time [s]", "2.01 (2.00)", "plastic moment [N m]", "2 of 2 cases agree"] {
+        assert!(table.contains(part), "{part} is not in\n{table}");
+    }
+    let json = std::fs::read_to_string(folder.path().join("results/found.json")).unwrap();
+    let rows: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(rows.as_array().unwrap().iter().all(|row| row["outcome"] == "pass"), "{json}");
+    for file in ["hertz.svg", "hertz.png"] {
+        assert!(folder.path().join("out/verify").join(file).metadata().unwrap().len() > 1000, "{file}");
+    }
+}
+
+#[test]
+fn verify_refuses_what_it_does_not_know_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = verify(folder.path(), &["hertzz"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("did you mean `hertz`?"), "{}", text(&output.stderr));
+    let output = verify(folder.path(), &["hertz", "--quick", "--no-plots", "--json", "."]);
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn verify_lists_cases_with_their_sources() {
+    let output = verify(Path::new("."), &["--list"]);
+    let list = text(&output.stdout);
+    assert!(output.status.success() && list.contains("hertz ") && list.contains("Johnson"), "{list}");
+}
+
+/// Their scenes come with the program, and run like any other.
+#[test]
+fn verification_scenes_are_found_from_anywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
+    let output = command.args(["scene", "check", "verify/hertz"]).current_dir(folder.path()).output().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
