@@ -127,7 +127,7 @@ pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
     }
     watched.engine.inspect()?;
     watched.row()?;
-    watched.guard.finish();
+    watched.guard.finish(true);
     watched.notices();
     watched.seen.finish(&watched.engine);
     Ok(watched.seen)

@@ -6,6 +6,9 @@ use super::super::measure::{
 };
 use super::{COLUMN, REST, SEVEN, WIRE};
 
+/// What must be said of crushed contacts.
+const DEEP: &[&str] = &["of the radius deep"];
+
 /// All of them.
 pub fn cases() -> Vec<Case> {
     [speeds(), compression(), torsion(), cycles(), breaking(), grips(), rest()].concat()
@@ -127,7 +130,8 @@ fn torsion() -> Vec<Case> {
             .told(&["passed through", "capsule"]),
         Case::new("torsion-smooth", "two turns of seven smooth wires", SEVEN)
             .set(ten)
-            .set(["contact.shape=capsule", "stop.time=2.513 ms"]),
+            .set(["contact.shape=capsule", "stop.time=2.513 ms"])
+            .warns(DEEP),
     ]
 }
 
@@ -193,7 +197,7 @@ fn grips() -> Vec<Case> {
         ])
     };
     vec![
-        jaw("jaw-100MPa", "KA4 in a jaw of 100 MPa", "100 MPa"),
+        jaw("jaw-100MPa", "KA4 in a jaw of 100 MPa", "100 MPa").warns(DEEP),
         jaw("jaw-3GPa", "KA4 in a jaw of 3 GPa, which crushes it", "3 GPa").told(&["passed through", "clamp_pressure"]),
         Case::new("jaw-slips", "seven wires whose core is held by friction alone, without friction", SEVEN).set([
             "grip.kind=jaw",

@@ -25,8 +25,13 @@ fn hardening() -> Vec<Case> {
     let perfect = ["bond.hardening.saturation=0 MPa", "bond.hardening.linear=0 MPa"];
     let falling = r#"bond.hardening={ form = "table", points = [[0, "100 MPa"], [0.2, "60 MPa"]] }"#;
     vec![
-        Case::new("hardening-0-wire", "a perfectly plastic wire", WIRE).set(perfect).gives(peak_is_yield),
-        Case::new("hardening-0-strand", "seven perfectly plastic wires", SEVEN).set(perfect),
+        Case::new("hardening-0-wire", "a perfectly plastic wire", WIRE)
+            .set(perfect)
+            .warns(&["strain localises"])
+            .gives(peak_is_yield),
+        Case::new("hardening-0-strand", "seven perfectly plastic wires", SEVEN)
+            .set(perfect)
+            .warns(&["strain localises"]),
         Case::new("hardening-1000x", "a wire that hardens a thousand times more", WIRE)
             .set(["bond.hardening.linear=543600 MPa", "bond.hardening.saturation=0 MPa"])
             .gives(pulled_wire),
