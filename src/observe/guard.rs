@@ -131,7 +131,12 @@ impl Guard {
             force: sample.grip_force,
             before_rupture: !self.ruptured && sample.bonds_broken == 0,
         };
-        if self.gripped && row.before_rupture && sample.strain.abs() >= TELLING_STRAIN * self.strain_end.abs() {
+        let telling = row.internal > self.negligible;
+        if self.gripped
+            && telling
+            && row.before_rupture
+            && sample.strain.abs() >= TELLING_STRAIN * self.strain_end.abs()
+        {
             self.judge_kinetic(row.kinetic / row.internal);
         }
         self.rows.push(row);
@@ -259,7 +264,7 @@ impl Guard {
 
     fn kinetic_ratio<'a>(&'a self, rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
         let most = self.rows.iter().map(|r| r.internal).fold(0.0, f64::max);
-        let telling = rows.filter(|r| r.internal > 0.0 && r.internal >= LEAST_INTERNAL_SHARE * most);
+        let telling = rows.filter(|r| r.internal > self.negligible && r.internal >= LEAST_INTERNAL_SHARE * most);
         telling.map(|r| r.kinetic / r.internal).reduce(f64::max)
     }
 

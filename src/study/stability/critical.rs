@@ -70,7 +70,7 @@ pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> R
         if holds(middle)? { low = middle } else { high = middle }
     }
     let answer = Answer {
-        what: "bound against critical step",
+        what: "bound on the step, and critical step:",
         unit: "ns",
         computed: bound * 1e9,
         exact: low * 1e9,

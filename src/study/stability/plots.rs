@@ -31,7 +31,7 @@ fn steps(reports: &[Report]) -> Option<Figure> {
     let ends = [critical().reduce(f64::min)?, critical().reduce(f64::max)?];
     let mut figure = Figure::new(
         "Time step: the bound lies below what a run bears",
-        Axis::log("empirical critical step [ns]"),
+        Axis::log("empirical critical step [ns]").from_to(0.05 * ends[0], 2.0 * ends[1]),
         Axis::log("predicted bound [ns]"),
     );
     figure.series.push(Series::new("bound = critical step", Mark::Dashed, ends.map(|x| [x, x]).to_vec()));
@@ -54,13 +54,13 @@ fn residuals(reports: &[Report]) -> Option<Figure> {
     }
     let mut figure = Figure::new(
         "Energy residual of every run",
-        Axis::linear("runs, from the least residual to the greatest"),
-        Axis::log("residual over work done [%]"),
+        Axis::linear("runs, from the least residual to the greatest").from_to(0.0, 1.3 * stable.len() as f64),
+        Axis::log("residual over work done [%]").from_to(1e-8, 10.0),
     );
     figure.series.push(Series::new("stable", Mark::Points, stable));
     if !failed.is_empty() {
         figure.series.push(Series::new("FAILED", Mark::Points, failed));
     }
-    figure.limits.push(Limit::Y(1.0, "limit".into()));
+    figure.limits.push(Limit::Y(1.0, "most that is accepted".into()));
     Some(figure)
 }

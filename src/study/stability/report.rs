@@ -36,7 +36,8 @@ fn measured(answer: &Answer) -> String {
     let Answer { what, unit, computed, exact, .. } = answer;
     match answer.error_percent() {
         Some(error) => {
-            format!("{what} {} {unit}, must be {} ({error:+.2} %)", figures(*computed), figures(*exact))
+            let relation = answer.relation();
+            format!("{what} {} {unit}, {relation} {} ({error:+.2} %)", figures(*computed), figures(*exact))
         }
         None => format!("{what} {computed:.1e} {unit}"),
     }

@@ -130,7 +130,7 @@ pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
     }
     watched.engine.inspect()?;
     watched.row()?;
-    watched.guard.finish();
+    watched.guard.finish(true);
     watched.notices();
     watched.seen.finish(&watched.engine);
     Ok(watched.seen)
@@ -191,16 +191,19 @@ fn residual(seen: &Seen) -> f64 {
     seen.rows.iter().map(|row| row.energy.residual().abs()).fold(0.0, larger) / scale(seen)
 }
 
+/// One term of the ledger [J].
+type Term = fn(&Energy) -> f64;
+
 /// Terms of the ledger that no closed balance would betray: dissipation that falls, energy stored that is negative.
 fn ledger_faults(seen: &Seen) -> Vec<String> {
     let (rows, slack) = (&seen.rows, 1e-3 * scale(seen));
-    let dissipated: [(&str, fn(&Energy) -> f64); 4] = [
+    let dissipated: [(&str, Term); 4] = [
         ("plastic work of bonds", |e| e.plastic_bonds),
         ("plastic work of contacts", |e| e.plastic_contacts),
         ("friction", |e| e.friction),
         ("damping", |e| e.damping),
     ];
-    let stored: [(&str, fn(&Energy) -> f64); 3] = [
+    let stored: [(&str, Term); 3] = [
         ("kinetic energy", |e| e.kinetic),
         ("elastic energy of bonds", |e| e.elastic_bonds),
         ("elastic energy of contacts", |e| e.elastic_contacts),

@@ -6,6 +6,9 @@ use super::super::measure::{
 };
 use super::{COLUMN, REST, SEVEN, WIRE};
 
+/// What must be said of crushed contacts.
+const DEEP: &[&str] = &["of the radius deep"];
+
 /// All of them.
 pub fn cases() -> Vec<Case> {
     [speeds(), compression(), torsion(), cycles(), breaking(), grips(), rest()].concat()
@@ -37,7 +40,7 @@ fn cycles() -> Vec<Case> {
             .set(cyclic)
             .set(["strand.length=6 mm", "grip.length=1 mm", "grip.displacement_amplitude=3.2 um"])
             .set(["grip.frequency=8 kHz", "stop.time=125 ms", "output.samples=40000"])
-            .quick(["stop.time=2.5 ms", "output.samples=800"])
+            .quick(["stop.time=4 ms", "output.samples=1280"])
             .long()
             .gives(cycled_alike),
         Case::new("cycles-plastic", "1,000 cycles of a perfectly plastic wire, ± 0.15 %", WIRE)
@@ -69,7 +72,7 @@ fn speeds() -> Vec<Case> {
     ];
     let fast = &["quasi-static"];
     vec![
-        pulled(0.1, "").gives(pulled_strand),
+        pulled(0.1, "").quick(["stop.strain=1 %"]).gives(pulled_strand),
         pulled(1.0, "").gives(pulled_strand),
         pulled(10.0, "").gives(pulled_strand),
         pulled(100.0, ", near the speed of plastic waves").warns(fast),
@@ -114,10 +117,21 @@ fn torsion() -> Vec<Case> {
             .set(["bond.hardening.saturation=0 MPa", "bond.hardening.linear=0 MPa"])
             .gives(turned),
         Case::new("torsion-hardening", "ten turns of a hardening wire", WIRE).set(ten).set(four).gives(turned),
-        Case::new("torsion-strand", "ten turns of seven wires: they are wrung like a cloth", SEVEN).set(ten),
-        Case::new("torsion-unlay", "ten turns of seven wires against their lay", SEVEN)
+        Case::new(
+            "torsion-strand",
+            "ten turns of seven wires, chains of spheres: wrung until wires slip through",
+            SEVEN,
+        )
+        .set(ten)
+        .told(&["passed through", "capsule"]),
+        Case::new("torsion-unlay", "ten turns of seven wires against their lay, chains of spheres", SEVEN)
             .set(ten)
-            .set(["grip.rotation_rate=-5000 rad/s"]),
+            .set(["grip.rotation_rate=-5000 rad/s"])
+            .told(&["passed through", "capsule"]),
+        Case::new("torsion-smooth", "two turns of seven smooth wires", SEVEN)
+            .set(ten)
+            .set(["contact.shape=capsule", "stop.time=2.513 ms"])
+            .warns(DEEP),
     ]
 }
 
@@ -140,7 +154,8 @@ fn breaking() -> Vec<Case> {
                 r#"bond.rupture={ criterion = "plastic-strain", strain = "4 %", weibull_modulus = 20 }"#.to_string(),
                 "stop.strain=100 %".into(),
                 format!("contact.shape={shape}"),
-            ]),
+            ])
+            .quick(["stop.strain=20 %"]),
         );
         cases.push(
             Case::new(
@@ -154,6 +169,7 @@ fn breaking() -> Vec<Case> {
                 "grip.speed=5 m/s".into(),
                 format!("contact.shape={shape}"),
             ])
+            .quick(["stop.strain=40 %"])
             .gives(pulled_strand),
         );
         cases.push(
@@ -162,12 +178,8 @@ fn breaking() -> Vec<Case> {
                 format!("particles a quarter diameter apart, pulled until all wires break, contact shape {shape}"),
                 SEVEN,
             )
-            .set([
-                at("3 %"),
-                "spacing=0.25".into(),
-                "stop.strain=8 %".into(),
-                format!("contact.shape={shape}"),
-            ]),
+            .set([at("3 %"), "spacing=0.25".into(), "stop.strain=8 %".into(), format!("contact.shape={shape}")])
+            .quick([at("0.5 %"), "stop.strain=1 %".into()]),
         );
     }
     cases
@@ -185,8 +197,8 @@ fn grips() -> Vec<Case> {
         ])
     };
     vec![
-        jaw("jaw-100MPa", "KA4 in a jaw of 100 MPa", "100 MPa"),
-        jaw("jaw-3GPa", "KA4 in a jaw of 3 GPa, which crushes it", "3 GPa"),
+        jaw("jaw-100MPa", "KA4 in a jaw of 100 MPa", "100 MPa").warns(DEEP),
+        jaw("jaw-3GPa", "KA4 in a jaw of 3 GPa, which crushes it", "3 GPa").told(&["passed through", "clamp_pressure"]),
         Case::new("jaw-slips", "seven wires whose core is held by friction alone, without friction", SEVEN).set([
             "grip.kind=jaw",
             "grip.clamp_pressure=100 MPa",

@@ -15,7 +15,7 @@ fn stiffness() -> Vec<Case> {
     };
     vec![
         case("base", "seven copper wires pulled by 5 %, the base of what follows", "115 GPa"),
-        case("stiff-1000x", "Young's modulus a thousand times copper's", "115000 GPa"),
+        case("stiff-1000x", "Young's modulus a thousand times copper's", "115000 GPa").quick(["stop.strain=0.5 %"]),
         // Without a stiffer matter, waves are slow; the pull stays as slow against them.
         case("soft-1000x", "Young's modulus a thousandth of copper's", "0.115 GPa").set(["grip.speed=0.1 m/s"]),
     ]
@@ -25,8 +25,13 @@ fn hardening() -> Vec<Case> {
     let perfect = ["bond.hardening.saturation=0 MPa", "bond.hardening.linear=0 MPa"];
     let falling = r#"bond.hardening={ form = "table", points = [[0, "100 MPa"], [0.2, "60 MPa"]] }"#;
     vec![
-        Case::new("hardening-0-wire", "a perfectly plastic wire", WIRE).set(perfect).gives(peak_is_yield),
-        Case::new("hardening-0-strand", "seven perfectly plastic wires", SEVEN).set(perfect),
+        Case::new("hardening-0-wire", "a perfectly plastic wire", WIRE)
+            .set(perfect)
+            .warns(&["strain localises"])
+            .gives(peak_is_yield),
+        Case::new("hardening-0-strand", "seven perfectly plastic wires", SEVEN)
+            .set(perfect)
+            .warns(&["strain localises"]),
         Case::new("hardening-1000x", "a wire that hardens a thousand times more", WIRE)
             .set(["bond.hardening.linear=543600 MPa", "bond.hardening.saturation=0 MPa"])
             .gives(pulled_wire),
@@ -51,7 +56,9 @@ fn yields() -> Vec<Case> {
     };
     vec![
         // The wires' inertia counts against so little stress: pulled a hundred times more slowly, it does not.
-        scaled("yield-0.1%", "a thousandth of copper's yield stress and hardening", 1e-3).set(["grip.speed=0.05 m/s"]),
+        scaled("yield-0.1%", "a thousandth of copper's yield stress and hardening", 1e-3)
+            .set(["grip.speed=0.05 m/s"])
+            .quick(["stop.strain=1 %"]),
         scaled("yield-1000%", "ten times copper's yield stress and hardening", 10.0),
     ]
 }
@@ -84,6 +91,7 @@ fn damping() -> Vec<Case> {
                 SEVEN,
             )
             .set([format!("bond.damping={value}"), format!("contact.damping={value}")])
+            .quick(["stop.strain=2 %"])
             .gives(pulled_strand)
         })
         .to_vec()

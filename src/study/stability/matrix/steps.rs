@@ -42,7 +42,7 @@ pub fn cases() -> Vec<Case> {
             .critical(Critical::DISSIPATIVE),
         Case::new(
             "step-mass-ratio",
-            "critical step with a sphere between two of a million times its mass",
+            "critical step with a sphere between two of a million times its mass; the bound resolves its bounces",
             LIGHT_ON_HEAVY,
         )
         .critical(Critical::ELASTIC),
