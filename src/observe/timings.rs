@@ -90,7 +90,7 @@ impl From<Timings> for Report {
             png_ms,
             simulation_waited_s: timings.waited.as_secs_f64(),
             drawn_after_the_simulation_s: timings.drained.as_secs_f64(),
-            animation_s: animated.then(|| timings.animation.as_secs_f64()),
+            animation_s: animated.then_some(timings.animation.as_secs_f64()),
             animation_bytes: animated.then_some(timings.animation_bytes),
         }
     }

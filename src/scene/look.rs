@@ -55,6 +55,8 @@ words! {
     }
 }
 
+// The table above has no room for a derive.
+#[allow(clippy::derivable_impls)]
 impl Default for Theme {
     fn default() -> Self {
         Self::Dark
