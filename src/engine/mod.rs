@@ -47,6 +47,9 @@ const BOUND_INTERVAL: u64 = 64;
 const GROWTH: f64 = 2.0;
 /// First step of bodies that overlap, over the usual one [-]; it grows from one evaluation to the next.
 const START: f64 = 0.25;
+/// Energy of contacts at the start, over a negligible one, from which bodies count as overlapping [-]: that of an elastic
+/// strain of 1e-4 everywhere.
+const THROWN: f64 = 1e10;
 /// Steps of free flight until the end of the run [-].
 const FLIGHT_STEPS: f64 = 10_000.0;
 /// Least number of steps of an impact [-]; leapfrog is then good for (π/100)²/24 of its time, 4e-5.
@@ -316,7 +319,8 @@ impl Engine {
     /// Share of the step that the first steps take [-]: bodies that overlap from the start are thrown apart in a few
     /// steps, and with full ones the energy of that is off by per cents.
     fn start(&self) -> f64 {
-        let pressed = self.contacts.as_ref().is_some_and(|c| c.stage.elastic_energy() > 0.0);
+        let much = THROWN * self.negligible_energy();
+        let pressed = self.contacts.as_ref().is_some_and(|c| c.stage.elastic_energy() > much);
         if pressed { START } else { 1.0 }
     }
 
