@@ -440,6 +440,12 @@ fn the_recording_passes_the_check_of_reruns_own_tool() {
     assert!(check.status.success(), "{}{}", stdout(&check), stderr(&check));
 }
 
+/// Whether `whole` is `number` rounded; a table's last digit may have moved a number over the middle.
+#[cfg(feature = "record")]
+fn is_nearest(whole: i64, number: f64) -> bool {
+    (whole as f64 - number).abs() <= 0.51
+}
+
 /// A single wire that is pulled until it breaks: the recording holds what the tables say.
 #[cfg(feature = "record")]
 #[test]
@@ -453,13 +459,13 @@ fn the_recording_agrees_with_the_tables() {
     let curve = rows(&out.join("curve.csv"));
     assert_eq!(read.nominal_stress.len(), curve.len());
     for ((microstrain, stress), row) in read.nominal_stress.iter().zip(&curve) {
-        assert_eq!(*microstrain, (value(row, "strain_percent") * 1e4).round() as i64);
+        assert!(is_nearest(*microstrain, value(row, "strain_percent") * 1e4), "{microstrain} is not {row:?}");
         assert!((stress - value(row, "stress_mpa")).abs() <= 1e-7 * stress.abs().max(1.0), "{stress} is not {row:?}");
     }
     let ruptures = rows(&out.join("ruptures.csv"));
     assert!(!ruptures.is_empty() && read.log.len() == ruptures.len());
     for ((microstrain, line), row) in read.log.iter().zip(&ruptures) {
-        assert_eq!(*microstrain, (value(row, "strain_percent") * 1e4).round() as i64);
+        assert!(is_nearest(*microstrain, value(row, "strain_percent") * 1e4), "{microstrain} is not {row:?}");
         let words = [format!("{}. wire {}", row["order"], row["wire"]), format!("z = {:.1} mm", value(row, "z_mm"))];
         assert!(words.iter().all(|words| line.contains(words)), "{line} is not {row:?}");
     }

@@ -113,6 +113,9 @@ impl<R: Real> Trial<R> {
     /// The start is the root for tension alone, good to the square of the step; one round always follows, so that the
     /// answer depends smoothly on the trial, and more where that was not enough. A bond that has its answer keeps it
     /// while others go on. Only the answers within `wanted` mean something.
+    ///
+    /// The root lies below z = 1/h, where σ_y would be infinite: a step of Newton's that would pass it goes half way.
+    /// A law as steep as Ludwik's at first yield needs that.
     #[inline(always)]
     fn solve(&self, wanted: R::Mask) -> Return<R> {
         let one = self.axial.like(1.0);
@@ -127,7 +130,9 @@ impl<R: Real> Trial<R> {
             square(self.shear, self.shear_rate),
         );
         let size2 = n[0] + t[0] + v[0];
-        let mut z = ((size2.sqrt() - 1.0) * size2 / (n[1] + t[1] + v[1])).greater(zero);
+        let end_of_range = R::choose(h.above(zero), h.inverse(), zero.like(f64::INFINITY));
+        let start = ((size2.sqrt() - 1.0) * size2 / (n[1] + t[1] + v[1])).greater(zero);
+        let mut z = start.lesser(end_of_range * 0.5);
         let mut end = Return { axial: one, bend: one, twist: one, shear: one, equivalent: zero };
         let mut open = wanted;
         for round in 0..=60 {
@@ -153,7 +158,7 @@ impl<R: Real> Trial<R> {
             let slope =
                 fall(n, self.axial_rate, axial) + fall(t, self.twist_rate, twist) + fall(v, self.shear_rate, shear);
             let slope = slope * -2.0 - R::choose(bent, self.bend * h + self.bend_rate, zero);
-            z = (z - f / slope).greater(zero);
+            z = (z - f / slope).greater(zero).lesser((z + end_of_range) * 0.5);
         }
         end
     }
@@ -476,6 +481,28 @@ mod tests {
         assert!((state.axial - state.equivalent).abs() < 1e-6);
         let held = law.elastic_energy(&SHAPE, &force, &state);
         assert!(((work + held) / done - 1.0).abs() < 1e-4, "{work} {held} {done}");
+    }
+
+    /// Strain per step some tens of the elastic one, and a slope that is infinite at first yield.
+    #[test]
+    fn large_steps_on_a_steep_law_harden_and_stay_on_it() {
+        let hardening = Hardening::Ludwik { yield_stress: 90e6, strength: 400e6, exponent: 0.5 };
+        let law = ElastoPlastic { moduli: Moduli::new(115e9, 0.34), hardening };
+        let (mut force, mut state) = (BondForce::default(), law.initial());
+        for k in 1..=40 {
+            let log_strain = 0.009 * k as f64;
+            let length = SHAPE.rest_length * f64::exp(log_strain);
+            let before = state.equivalent;
+            let step = BondIncrement { log_strain, length, bend: [1e-4, 0.0], ..Default::default() };
+            let work = law.response(&SHAPE, &mut force, &mut state, &step, true);
+            assert!(state.equivalent > before && work > 0.0, "step {k}: p {} after {before}", state.equivalent);
+            if k > 10 {
+                let stress = force.axial / law.section(&SHAPE, &state).area;
+                let exact = law.hardening.stress(state.equivalent);
+                assert!((stress / exact - 1.0).abs() < 0.02, "step {k}: {stress} instead of {exact}");
+            }
+        }
+        assert!((state.equivalent / state.axial - 1.0).abs() < 0.05, "{state:?}");
     }
 
     #[test]
