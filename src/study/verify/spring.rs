@@ -27,13 +27,12 @@ fn helix(trial: &Trial) -> Spring {
 fn stiffness(trial: &mut Trial) -> Result<f64> {
     let end = trial.spec.stop.time.expect("the scene says when it ends");
     let last = trial.bonds() - 1;
-    let gauge =
-        trial.spec.strand.as_ref().map_or(0.0, |s| s.length) - 2.0 * trial.spec.grip.as_ref().map_or(0.0, |g| g.length);
     let mut moved = (0.0, 0.0);
     let force = trial.settled(0.0, end, |engine| {
         let s = engine.state();
         let weight = (std::f64::consts::PI * engine.time() / end).sin().powi(2) * engine.time_step();
-        moved = (moved.0 + weight * engine.strain() * gauge, moved.1 + weight);
+        let pulled = s.x.z[last + 1] - engine.assembly().position.z[last + 1];
+        moved = (moved.0 + weight * pulled, moved.1 + weight);
         0.5 * (s.bond.pull(0).z + s.bond.pull(last).z)
     })?;
     Ok(force * moved.1 / moved.0)
