@@ -12,7 +12,7 @@ use super::view::{DeepestContact, Findings, Notice, StepAt};
 use crate::base::error::{Error, Result};
 use crate::scene::caution;
 use crate::scene::plan::ContactPlan;
-use crate::scene::spec::BondLawSpec;
+use crate::scene::spec::{BondLawSpec, GripKind};
 use crate::strand::assembly::Assembly;
 
 /// Overlap over the smaller radius beyond which a contact is said to be deep [-]: Hertz's parabola a² = Rδ, from which
@@ -153,8 +153,7 @@ impl Engine {
                 format!(
                     "a contact is {:.1} % of the radius deep, between {} and {} at z = {:.1} mm, {}: {:.3} N, mean \
                      pressure {:.0} MPa; contact laws are made for overlaps below 10 %, so pressures and friction there \
-                     are rough: press less (grip.clamp_pressure, speed), or raise contact.hardness_factor or \
-                     contact.limiting_pressure",
+                     are rough: {}, or raise contact.hardness_factor or contact.limiting_pressure",
                     100.0 * now.ratio,
                     engine.body(now.pair[0] as usize),
                     engine.body(now.pair[1] as usize),
@@ -162,6 +161,7 @@ impl Engine {
                     engine.when(),
                     now.force,
                     pressure * 1e-6,
+                    engine.press_less(),
                 )
             });
         }
@@ -336,9 +336,20 @@ impl Engine {
         let [a, b] = found.bonds.map(|slot| format!("bond {} of {}", slot - self.first_of(slot) + 1, self.body(slot)));
         Err(self.trouble(
             format!("{a} has passed through {b} at z = {:.1} mm, {}", found.position.z * 1e3, self.when()),
-            "contacts were too soft or too sparse for what pressed on them: lower the speed or grip.clamp_pressure, raise \
-             contact.hardness_factor, lower spacing to 1 or less, or use contact.shape = \"capsule\"",
+            &format!(
+                "contacts were too soft or too sparse for what pressed on them: {}, raise contact.hardness_factor, lower \
+                 spacing to 1 or less, or use contact.shape = \"capsule\"",
+                self.press_less()
+            ),
         ))
+    }
+
+    /// What takes load off contacts in this scene.
+    fn press_less(&self) -> &'static str {
+        match self.spec.grip.as_ref().map(|grip| grip.kind) {
+            Some(GripKind::Jaw { .. }) => "lower grip.clamp_pressure or the speed",
+            _ => "lower the speed",
+        }
     }
 
     /// Bonds stretched beyond what a neighbour search covers.

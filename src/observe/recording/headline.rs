@@ -64,11 +64,12 @@ impl Headline {
             None if summary.is_some() => "# No wire broke\n".to_owned(),
             None => "# No wire has broken yet\n".to_owned(),
         };
+        let warnings = self.warnings(summary);
         if let Some(summary) = summary {
-            text += &result(summary);
+            text += &result(summary, warnings.len());
         }
         text += &self.order(info);
-        for warning in self.warnings(summary) {
+        for warning in warnings {
             // Writing to a String cannot fail.
             let _ = write!(text, "\n> **WARNING** {warning}\n");
         }
@@ -115,13 +116,19 @@ fn first_break(info: &RunInfo, first: &Rupture) -> String {
     )
 }
 
-fn result(summary: &RunSummary) -> String {
+/// The result; `warnings` are announced in its first line, for they may stand below the edge of the panel.
+fn result(summary: &RunSummary, warnings: usize) -> String {
     let mut parts = Vec::new();
     if let (Some(strength), Some(elongation)) = (summary.tensile_strength_mpa, summary.fracture_elongation_percent) {
         parts.push(format!("strength **{strength:.2} MPa** at {elongation:.2} %"));
     }
     if let (Some(stress), Some(strain)) = (summary.residual_stress_mpa, summary.final_strain_percent) {
         parts.push(format!("at the end {stress:.1} MPa at {strain:.2} %"));
+    }
+    match warnings {
+        0 => {}
+        1 => parts.push("**1 warning, below**".into()),
+        n => parts.push(format!("**{n} warnings, below**")),
     }
     let mut text = String::new();
     if !parts.is_empty() {
