@@ -2,6 +2,7 @@
 
 mod animation;
 mod calibrate;
+mod cases;
 mod export;
 mod interrupt;
 mod look;
@@ -52,9 +53,10 @@ enum Command {
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
     /// Compare the engine with closed forms
-    Verify(verify::Args),
-    /// Run stiff and extreme cases: each must be stable, or be refused or stopped with its reason
-    Stability(stability::Args),
+    Verify(cases::CaseArgs),
+    /// Run stiff and extreme cases ("friction-*" takes all that begin so): each must be stable, or be refused or
+    /// stopped with its reason
+    Stability(cases::CaseArgs),
 }
 
 /// How a command ended when nothing went wrong.
