@@ -46,6 +46,8 @@ pub fn render(args: Args) -> Result<Ended> {
     let run = Replay::open(&args.run, &args.select.into())?;
     let mut output = look_of(&args.run);
     args.look.apply(&mut output);
+    // The run is over: close-ups can look at the place of the first break from the start, and need not jump to it.
+    output.camera.focus_z = output.camera.focus_z.or(run.first_break());
     let out = args.out.unwrap_or_else(|| args.run.join("render"));
     let animation = args.animation.resolve(&out.join(folder::ANIMATION));
     let folder = folder::OutFolder::check(&out, args.overwrite)?;

@@ -64,6 +64,8 @@ pub struct Replay {
     records: usize,
     /// Why the trajectory ends before its run did.
     cut_off: Option<Error>,
+    /// Where the first bond broke, as z before loading [m].
+    first_break: Option<f64>,
 }
 
 impl Replay {
@@ -75,9 +77,13 @@ impl Replay {
     pub fn open(run: &Path, selection: &Selection) -> Result<Self> {
         let file = trajectory_of(run)?;
         let (mut moments, mut records, mut cut_off, mut broke) = (Vec::new(), 0, None, false);
+        let mut first_break = None;
         for record in Trajectory::open(&file)? {
             match record {
-                Ok(Record::Rupture(_)) => broke = true,
+                Ok(Record::Rupture(rupture)) => {
+                    broke = true;
+                    first_break.get_or_insert(rupture.rest_z);
+                }
                 Ok(Record::Snapshot(snapshot)) => {
                     moments.push(Moment { strain: snapshot.sample.strain, broke: std::mem::take(&mut broke) });
                 }
@@ -97,12 +103,17 @@ impl Replay {
                 ),
             });
         }
-        Ok(Self { file, shown, records, cut_off })
+        Ok(Self { file, shown, records, cut_off, first_break })
     }
 
     /// How many snapshots are selected.
     pub fn count(&self) -> usize {
         self.shown.iter().filter(|shown| **shown).count()
+    }
+
+    /// Where the first bond of the run broke, as z before loading [m]; `None` when none did.
+    pub fn first_break(&self) -> Option<f64> {
+        self.first_break
     }
 
     /// Why the trajectory ends before its run did, if so.
