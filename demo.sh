@@ -22,7 +22,7 @@ cat <<TEXT
 
 How to open it:
     out/ka4/frames           any picture viewer, from the first to the last
-    out/ka4/recording.rrd    pip install rerun-sdk==$version && rerun out/ka4/recording.rrd
+    out/ka4/recording.rrd    pip install rerun-sdk==$version && target/release/strandsnap view out/ka4
     out/ka4/curve.csv        any spreadsheet; wires.csv and ruptures.csv too
     out/ka4/summary.json     strength, elongation, which wires broke and where
 One page with all of it, for any browser:
