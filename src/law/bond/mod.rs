@@ -10,6 +10,7 @@
 pub mod elastic;
 pub mod elasto_plastic;
 pub mod hardening;
+mod return_mapping;
 pub mod rupture;
 
 use crate::base::lanes::Real;
