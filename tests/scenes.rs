@@ -215,7 +215,7 @@ fn options_change_every_kind_of_key() {
 #[test]
 fn where_bonds_can_break_most_snapshots_are_left_to_ruptures() {
     let snapshots = |options: &[&str]| load("single-wire", options).unwrap().spec.output.snapshots;
-    assert_eq!((snapshots(&[]), snapshots(&["bond.rupture="])), (60, 160));
+    assert_eq!((snapshots(&[]), snapshots(&["bond.rupture=", "stop.stress_fraction="])), (60, 160));
 }
 
 #[test]
