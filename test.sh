@@ -30,4 +30,12 @@ RUSTDOCFLAGS=-Dwarnings cargo doc --release --locked --no-deps
 
 say "Tests"
 # One profile for demo and tests, so that the heavy libraries are built once.
-cargo test --release --locked
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+cargo test --release --locked 2>&1 | tee "$log"
+
+# The harness counts a test that could not run as passed; it is taken off again here.
+passed=$(awk '/^test result:/ { sum += $4 } END { print sum + 0 }' "$log")
+skipped=$(grep -c 'SKIPPED (' "$log" || true)
+say "$((passed - skipped)) tests passed, $skipped were SKIPPED"
+grep -o 'SKIPPED (.*' "$log" || true

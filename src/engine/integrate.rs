@@ -8,11 +8,22 @@ use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+/// What there is to add up.
+#[derive(Debug, Clone, Copy)]
+pub struct Parts {
+    /// Torques, because particles turn.
+    pub turn: bool,
+    /// Forces of contacts.
+    pub contacts: bool,
+    /// Radii, because plastic wires thin as they stretch.
+    pub thin: bool,
+}
+
 /// Adds up what bonds and contacts do to each particle: F_n and torques. Also lets wires thin: the radius of a particle
 /// is the mean over its bonds.
-pub fn gather(state: &mut State, turn: bool, contacts: bool, arch: Arch) {
+pub fn gather(state: &mut State, parts: Parts, arch: Arch) {
     let (bond, radius0) = (&state.bond, &state.radius0);
-    let others = contacts.then_some([&state.contact_force, &state.contact_torque]);
+    let others = parts.contacts.then_some([&state.contact_force, &state.contact_torque]);
     let (f, t) = (&mut state.force, &mut state.torque);
     (
         f.x.par_chunks_mut(CHUNK),
@@ -29,7 +40,7 @@ pub fn gather(state: &mut State, turn: bool, contacts: bool, arch: Arch) {
         .for_each(|(chunk, (fx, fy, fz, tx, ty, tz, radius))| {
             let first = chunk * CHUNK;
             let (force, torque) = ([fx, fy, fz], [tx, ty, tz]);
-            arch.dispatch(Gather { bond, first, others, turn, force, torque, radius, radius0 });
+            arch.dispatch(Gather { bond, first, others, parts, force, torque, radius, radius0 });
         });
 }
 
@@ -40,7 +51,7 @@ struct Gather<'a> {
     first: usize,
     /// Forces and torques from contacts.
     others: Option<[&'a Vectors; 2]>,
-    turn: bool,
+    parts: Parts,
     force: [&'a mut [f64]; 3],
     torque: [&'a mut [f64]; 3],
     radius: &'a mut [f64],
@@ -52,18 +63,20 @@ impl WithSimd for Gather<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Gather { bond, first, others, turn, force, torque, radius, radius0 } = self;
+        let Gather { bond, first, others, parts, force, torque, radius, radius0 } = self;
         let rows = Rows { bond, first, actions: &bond.data[first * bond.fields()..(first + CHUNK) * bond.fields()] };
         let [push, twist] = others.map_or([None, None], |o| o.map(|v| Some([&v.x[..], &v.y[..], &v.z[..]])));
         for (axis, out) in force.into_iter().enumerate() {
             rows.add(simd, out, BondActions::PULL + axis, BondActions::PULL + axis, -1.0, push.map(|p| p[axis]));
         }
-        if turn {
+        if parts.turn {
             for (axis, out) in torque.into_iter().enumerate() {
                 rows.add(simd, out, BondActions::NEAR + axis, BondActions::FAR + axis, 1.0, twist.map(|t| t[axis]));
             }
         }
-        rows.thin(simd, radius, &radius0[first..]);
+        if parts.thin {
+            rows.thin(simd, radius, &radius0[first..]);
+        }
     }
 }
 

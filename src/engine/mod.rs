@@ -231,7 +231,12 @@ impl Engine {
             }
         }
         let before_gather = Instant::now();
-        integrate::gather(&mut self.state, self.plan.rotations, self.contacts.is_some(), self.arch);
+        let parts = integrate::Parts {
+            turn: self.plan.rotations,
+            contacts: self.contacts.is_some(),
+            thin: matches!(self.spec.bond.law, BondLawSpec::ElastoPlastic(_)),
+        };
+        integrate::gather(&mut self.state, parts, self.arch);
         self.timings.integrate += before_gather.elapsed();
         Ok(())
     }
