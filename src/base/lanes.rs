@@ -1,19 +1,22 @@
 //! Numbers that come one at a time or several at once, so that a formula is written once for both.
 //!
 //! [`Real`] is implemented by `f64` and by [`Lanes`], a register of the widest instruction set that the machine has
-//! (found at run time by `pulp`). Every operation rounds as IEEE 754 says, without fused multiply-add, and the
-//! functions below are built from such operations alone: a lane has the same bits as an `f64`, on every machine.
+//! (found at run time by `pulp`). Every operation rounds as IEEE 754 says, and what is fused into one rounding is
+//! written so, never left to the compiler; the functions below are built from such operations alone: a lane has the same
+//! bits as an `f64`, on every machine.
 
 use pulp::Simd;
 use std::fmt::Debug;
-use std::ops::{Add, AddAssign, BitAnd, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
-/// Lanes of one block: the widest register has as many, narrower ones take a block in several goes.
-pub const BLOCK: usize = 8;
+/// Lanes of one block: two of the widest registers have as many, narrower ones take a block in several goes.
+pub const BLOCK: usize = 16;
 
 /// A number, or several.
 pub trait Real:
     Copy
+    + Send
+    + Sync
     + Debug
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -32,6 +35,9 @@ pub trait Real:
 
     /// `value`, as many times as there are numbers in `self`.
     fn like(self, value: f64) -> Self;
+    /// `self` × `factor` + `addend`, rounded once. Where the instruction set at hand has no such instruction, a library
+    /// function gives the same bits, slowly.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Absolute value.
@@ -50,11 +56,35 @@ pub trait Real:
     fn split(self) -> (Self, Self);
     /// A function of each number by itself.
     fn each(self, f: impl Fn(f64) -> f64) -> Self;
+    /// 1/√`self` to 4 %, for [`Real::inverse_sqrt`] to begin with.
+    fn inverse_sqrt_guess(self) -> Self;
+    /// How many numbers there are.
+    const COUNT: usize;
+    /// Number `k`.
+    fn at(self, k: usize) -> f64;
+    /// Puts `value` in the place of number `k`.
+    fn put(&mut self, k: usize, value: f64);
 
     /// 1/`self`.
     #[inline(always)]
     fn inverse(self) -> Self {
         self.like(1.0) / self
+    }
+
+    /// 1/√`self` to 4e-16 relative, for positive normal numbers; large and finite at 0.
+    ///
+    /// Two rounds of Newton's and one of third order (Halley) take a third of the time of a root and a division: those
+    /// keep one unit of the processor busy for longer than all else in a contact.
+    #[inline(always)]
+    fn inverse_sqrt(self) -> Self {
+        let (half, three_halves) = (self * -0.5, self.like(1.5));
+        let mut y = self.inverse_sqrt_guess();
+        for _ in 0..2 {
+            y = y * (half * y).mul_add(y, three_halves);
+        }
+        // In this order nothing overflows at 0.
+        let rest = (-self * y).mul_add(y, self.like(1.0));
+        (y * rest).mul_add(rest.mul_add(self.like(0.375), self.like(0.5)), y)
     }
 
     /// e^`self`, to 1e-15 relative, from −700 to 700; the ends' values beyond.
@@ -85,7 +115,7 @@ pub trait Real:
             1.0,
             1.0,
         ] {
-            sum = sum * r + inverse;
+            sum = sum.mul_add(r, r.like(inverse));
         }
         sum * k.power_of_two()
     }
@@ -105,7 +135,7 @@ pub trait Real:
         let s2 = s * s;
         let mut sum = self.like(2.0 / 21.0);
         for odd in [2.0 / 19.0, 2.0 / 17.0, 2.0 / 15.0, 2.0 / 13.0, 2.0 / 11.0, 2.0 / 9.0, 2.0 / 7.0, 0.4, 2.0 / 3.0] {
-            sum = sum * s2 + odd;
+            sum = sum.mul_add(s2, s2.like(odd));
         }
         k * HIGH + (k * LOW + (s * 2.0 + s * s2 * sum))
     }
@@ -118,7 +148,7 @@ pub trait Real:
 }
 
 /// Yes or no for each number.
-pub trait Mask: Copy + BitAnd<Output = Self> + Not<Output = Self> {
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Whether any answer is yes.
     fn any(self) -> bool;
 }
@@ -136,6 +166,10 @@ impl Real for f64 {
     #[inline(always)]
     fn like(self, value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        f64::mul_add(self, factor, addend)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -174,6 +208,19 @@ impl Real for f64 {
     fn each(self, f: impl Fn(f64) -> f64) -> Self {
         f(self)
     }
+    #[inline(always)]
+    fn inverse_sqrt_guess(self) -> Self {
+        f64::from_bits(inverse_sqrt_bits(self.to_bits()))
+    }
+    const COUNT: usize = 1;
+    #[inline(always)]
+    fn at(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn put(&mut self, _: usize, value: f64) {
+        *self = value;
+    }
 }
 
 /// 1.5 · 2⁵² + 1023: the last bits of a whole number added to it are the biased exponent.
@@ -199,37 +246,48 @@ fn exponent(bits: u64) -> u64 {
     bits >> 52 | 0x4330_0000_0000_0000
 }
 
-/// A register of numbers.
+/// Bits of a number near 1/√x from those of x: half the exponent, turned round, with a mantissa that errs least.
+#[inline(always)]
+fn inverse_sqrt_bits(bits: u64) -> u64 {
+    0x5FE6_EB50_C7B5_37A9_u64.wrapping_sub(bits >> 1)
+}
+
+/// Two registers of numbers: what one of them waits for, the other fills. A contact or a bond is a long chain of
+/// operations, each of which takes several times as long as it keeps its unit busy.
 #[derive(Debug, Clone, Copy)]
 pub struct Lanes<S: Simd> {
     simd: S,
-    value: S::f64s,
+    low: S::f64s,
+    high: S::f64s,
 }
 
-/// A register of answers.
+/// Two registers of answers.
 #[derive(Debug, Clone, Copy)]
 pub struct LaneMask<S: Simd> {
     simd: S,
-    value: S::m64s,
+    low: S::m64s,
+    high: S::m64s,
 }
 
 impl<S: Simd> Lanes<S> {
     /// How many numbers there are.
-    pub const LEN: usize = S::F64_LANES;
+    pub const LEN: usize = 2 * S::F64_LANES;
 
     /// `value` in every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
-        Self { simd, value: simd.splat_f64s(value) }
+        let low = simd.splat_f64s(value);
+        Self { simd, low, high: low }
     }
 
     /// The numbers from `slice[at]` on.
     ///
     /// # Panics
-    /// When the slice ends before the register does.
+    /// When the slice ends before the registers do.
     #[inline(always)]
     pub fn load(simd: S, slice: &[f64], at: usize) -> Self {
-        Self { simd, value: S::as_simd_f64s(&slice[at..at + Self::LEN]).0[0] }
+        let both = S::as_simd_f64s(&slice[at..at + Self::LEN]).0;
+        Self { simd, low: both[0], high: both[1] }
     }
 
     /// The numbers from `slice[at]` on, and zeros from its end.
@@ -238,17 +296,20 @@ impl<S: Simd> Lanes<S> {
         if at + Self::LEN <= slice.len() {
             Self::load(simd, slice, at)
         } else {
-            Self { simd, value: simd.partial_load_f64s(&slice[at.min(slice.len())..]) }
+            let part = |at: usize| simd.partial_load_f64s(&slice[at.min(slice.len())..]);
+            Self { simd, low: part(at), high: part(at + S::F64_LANES) }
         }
     }
 
     /// Writes the numbers from `slice[at]` on.
     ///
     /// # Panics
-    /// When the slice ends before the register does.
+    /// When the slice ends before the registers do.
     #[inline(always)]
     pub fn store(self, slice: &mut [f64], at: usize) {
-        S::as_mut_simd_f64s(&mut slice[at..at + Self::LEN]).0[0] = self.value;
+        let both = S::as_mut_simd_f64s(&mut slice[at..at + Self::LEN]).0;
+        both[0] = self.low;
+        both[1] = self.high;
     }
 
     /// Writes the numbers from `slice[at]` on, as far as the slice goes.
@@ -257,7 +318,9 @@ impl<S: Simd> Lanes<S> {
         if at + Self::LEN <= slice.len() {
             self.store(slice, at);
         } else {
-            self.simd.partial_store_f64s(&mut slice[at..], self.value);
+            let (end, half) = (slice.len(), at + S::F64_LANES);
+            self.simd.partial_store_f64s(&mut slice[at.min(end)..], self.low);
+            self.simd.partial_store_f64s(&mut slice[half.min(end)..], self.high);
         }
     }
 
@@ -267,6 +330,11 @@ impl<S: Simd> Lanes<S> {
     fn bits(self, f: impl Fn(u64) -> u64) -> Self {
         self.each(|number| f64::from_bits(f(number.to_bits())))
     }
+
+    #[inline(always)]
+    fn both(self, f: impl Fn(S::f64s) -> S::f64s) -> Self {
+        Self { low: f(self.low), high: f(self.high), ..self }
+    }
 }
 
 macro_rules! operator {
@@ -275,20 +343,23 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self { value: self.simd.$call(self.value, other.value), ..self }
+                let simd = self.simd;
+                Self { simd, low: simd.$call(self.low, other.low), high: simd.$call(self.high, other.high) }
             }
         }
         impl<S: Simd> $trait<f64> for Lanes<S> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: f64) -> Self {
-                Self { value: self.simd.$call(self.value, self.simd.splat_f64s(other)), ..self }
+                let (simd, other) = (self.simd, self.simd.splat_f64s(other));
+                Self { simd, low: simd.$call(self.low, other), high: simd.$call(self.high, other) }
             }
         }
         impl<S: Simd> $assign for Lanes<S> {
             #[inline(always)]
             fn $assign_method(&mut self, other: Self) {
-                self.value = self.simd.$call(self.value, other.value);
+                self.low = self.simd.$call(self.low, other.low);
+                self.high = self.simd.$call(self.high, other.high);
             }
         }
     )*};
@@ -304,7 +375,8 @@ impl<S: Simd> Div for Lanes<S> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        Self { value: self.simd.div_f64s(self.value, other.value), ..self }
+        let simd = self.simd;
+        Self { simd, low: simd.div_f64s(self.low, other.low), high: simd.div_f64s(self.high, other.high) }
     }
 }
 
@@ -312,7 +384,8 @@ impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: self.simd.xor_f64s(self.value, self.simd.splat_f64s(-0.0)), ..self }
+        let (simd, sign) = (self.simd, self.simd.splat_f64s(-0.0));
+        self.both(|value| simd.xor_f64s(value, sign))
     }
 }
 
@@ -324,28 +397,40 @@ impl<S: Simd> Real for Lanes<S> {
         Self::splat(self.simd, value)
     }
     #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        let simd = self.simd;
+        let low = simd.mul_add_f64s(self.low, factor.low, addend.low);
+        Self { simd, low, high: simd.mul_add_f64s(self.high, factor.high, addend.high) }
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
-        Self { value: self.simd.sqrt_f64s(self.value), ..self }
+        self.both(|value| self.simd.sqrt_f64s(value))
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Self { value: self.simd.abs_f64s(self.value), ..self }
+        self.both(|value| self.simd.abs_f64s(value))
     }
     #[inline(always)]
     fn lesser(self, other: Self) -> Self {
-        Self { value: self.simd.min_f64s(self.value, other.value), ..self }
+        let simd = self.simd;
+        Self { simd, low: simd.min_f64s(self.low, other.low), high: simd.min_f64s(self.high, other.high) }
     }
     #[inline(always)]
     fn greater(self, other: Self) -> Self {
-        Self { value: self.simd.max_f64s(self.value, other.value), ..self }
+        let simd = self.simd;
+        Self { simd, low: simd.max_f64s(self.low, other.low), high: simd.max_f64s(self.high, other.high) }
     }
     #[inline(always)]
     fn above(self, other: Self) -> LaneMask<S> {
-        LaneMask { simd: self.simd, value: self.simd.greater_than_f64s(self.value, other.value) }
+        let simd = self.simd;
+        let low = simd.greater_than_f64s(self.low, other.low);
+        LaneMask { simd, low, high: simd.greater_than_f64s(self.high, other.high) }
     }
     #[inline(always)]
     fn choose(mask: LaneMask<S>, yes: Self, no: Self) -> Self {
-        Self { value: mask.simd.select_f64s(mask.value, yes.value, no.value), ..yes }
+        let simd = mask.simd;
+        let low = simd.select_f64s(mask.low, yes.low, no.low);
+        Self { simd, low, high: simd.select_f64s(mask.high, yes.high, no.high) }
     }
     #[inline(always)]
     fn power_of_two(self) -> Self {
@@ -357,11 +442,27 @@ impl<S: Simd> Real for Lanes<S> {
     }
     #[inline(always)]
     fn each(self, f: impl Fn(f64) -> f64) -> Self {
-        let mut value = self.value;
-        for number in bytemuck::cast_slice_mut::<S::f64s, f64>(std::slice::from_mut(&mut value)) {
-            *number = f(*number);
-        }
-        Self { value, ..self }
+        self.both(|mut value| {
+            for number in bytemuck::cast_slice_mut::<S::f64s, f64>(std::slice::from_mut(&mut value)) {
+                *number = f(*number);
+            }
+            value
+        })
+    }
+    #[inline(always)]
+    fn inverse_sqrt_guess(self) -> Self {
+        self.bits(inverse_sqrt_bits)
+    }
+    const COUNT: usize = Self::LEN;
+    #[inline(always)]
+    fn at(self, k: usize) -> f64 {
+        let half = if k < S::F64_LANES { &self.low } else { &self.high };
+        bytemuck::cast_slice::<S::f64s, f64>(std::slice::from_ref(half))[k % S::F64_LANES]
+    }
+    #[inline(always)]
+    fn put(&mut self, k: usize, value: f64) {
+        let half = if k < S::F64_LANES { &mut self.low } else { &mut self.high };
+        bytemuck::cast_slice_mut::<S::f64s, f64>(std::slice::from_mut(half))[k % S::F64_LANES] = value;
     }
 }
 
@@ -369,7 +470,17 @@ impl<S: Simd> BitAnd for LaneMask<S> {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Self { value: self.simd.and_m64s(self.value, other.value), ..self }
+        let simd = self.simd;
+        Self { simd, low: simd.and_m64s(self.low, other.low), high: simd.and_m64s(self.high, other.high) }
+    }
+}
+
+impl<S: Simd> BitOr for LaneMask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        let simd = self.simd;
+        Self { simd, low: simd.or_m64s(self.low, other.low), high: simd.or_m64s(self.high, other.high) }
     }
 }
 
@@ -377,75 +488,15 @@ impl<S: Simd> Not for LaneMask<S> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self { value: self.simd.not_m64s(self.value), ..self }
+        let simd = self.simd;
+        Self { simd, low: simd.not_m64s(self.low), high: simd.not_m64s(self.high) }
     }
 }
 
 impl<S: Simd> Mask for LaneMask<S> {
     #[inline(always)]
     fn any(self) -> bool {
-        self.simd.first_true_m64s(self.value) < S::F64_LANES
-    }
-}
-
-/// Three numbers, or three registers of them.
-#[derive(Debug, Clone, Copy)]
-pub struct Triple<R> {
-    /// First axis.
-    pub x: R,
-    /// Second axis.
-    pub y: R,
-    /// Third axis.
-    pub z: R,
-}
-
-impl<R: Real> Triple<R> {
-    /// Scalar product.
-    #[inline(always)]
-    pub fn dot(self, o: Self) -> R {
-        self.x * o.x + self.y * o.y + self.z * o.z
-    }
-
-    /// Vector product.
-    #[inline(always)]
-    pub fn cross(self, o: Self) -> Self {
-        Self { x: self.y * o.z - o.y * self.z, y: self.z * o.x - o.z * self.x, z: self.x * o.y - o.x * self.y }
-    }
-
-    /// Square of the length.
-    #[inline(always)]
-    pub fn length_squared(self) -> R {
-        self.dot(self)
-    }
-
-    /// All three through `f`.
-    #[inline(always)]
-    pub fn map(self, f: impl Fn(R) -> R) -> Self {
-        Self { x: f(self.x), y: f(self.y), z: f(self.z) }
-    }
-}
-
-impl<R: Real> Add for Triple<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: Self) -> Self {
-        Self { x: self.x + o.x, y: self.y + o.y, z: self.z + o.z }
-    }
-}
-
-impl<R: Real> Sub for Triple<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, o: Self) -> Self {
-        Self { x: self.x - o.x, y: self.y - o.y, z: self.z - o.z }
-    }
-}
-
-impl<R: Real> Mul<R> for Triple<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, by: R) -> Self {
-        Self { x: self.x * by, y: self.y * by, z: self.z * by }
+        self.simd.first_true_m64s(self.simd.or_m64s(self.low, self.high)) < S::F64_LANES
     }
 }
 
@@ -475,20 +526,30 @@ mod tests {
         assert!((Real::powf(2.5, 0.31) / 2.5f64.powf(0.31) - 1.0).abs() < 1e-15);
     }
 
+    #[test]
+    fn the_inverse_root_is_that_of_the_library() {
+        for x in numbers().into_iter().chain([1e-12, 4e-9, 1.0 - 1e-16]) {
+            let error = x.inverse_sqrt() * x.sqrt() - 1.0;
+            assert!(error.abs() <= 4e-16, "{x}: {error:e}");
+        }
+        assert!(0.0.inverse_sqrt().is_finite() && 0.0 * 0.0.inverse_sqrt() == 0.0);
+    }
+
     /// Every function of the numbers, as the widest register gives it.
     struct Wide<'a>(&'a [f64]);
 
     impl WithSimd for Wide<'_> {
-        type Output = Vec<[f64; 4]>;
+        type Output = Vec<[f64; 5]>;
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-            let mut out = vec![[0.0; 4]; self.0.len()];
+            let mut out = vec![[0.0; 5]; self.0.len()];
             for at in (0..self.0.len()).step_by(Lanes::<S>::LEN) {
                 let x = Lanes::load_up_to_end(simd, self.0, at);
                 let half = x.like(0.5);
                 let picked = Lanes::choose(x.above(half), x.inverse(), half - x);
                 assert!(!(x.above(half) & half.above(x)).any() && (!x.above(x)).any());
-                let all = [x.ln(), (x * 1e-3).exp(), picked, x.each(f64::sqrt) - x.sqrt()];
+                let roots = x.each(f64::sqrt) - x.sqrt();
+                let all = [x.ln(), (x * 1e-3).exp(), picked, roots, x.inverse_sqrt()];
                 for (k, y) in all.into_iter().enumerate() {
                     let mut lanes = vec![0.0; Lanes::<S>::LEN];
                     y.store(&mut lanes, 0);
@@ -507,7 +568,7 @@ mod tests {
         let (widest, narrowest) = (Arch::new().dispatch(Wide(&numbers)), Wide(&numbers).with_simd(pulp::Scalar));
         for ((x, wide), narrow) in numbers.iter().zip(widest).zip(narrowest) {
             let picked = if *x > 0.5 { 1.0 / x } else { 0.5 - x };
-            let own = [Real::ln(*x), Real::exp(x * 1e-3), picked, 0.0];
+            let own = [Real::ln(*x), Real::exp(x * 1e-3), picked, 0.0, x.inverse_sqrt()];
             for lanes in [wide, narrow] {
                 assert_eq!(own.map(f64::to_bits), lanes.map(f64::to_bits), "{x}");
             }

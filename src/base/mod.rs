@@ -4,5 +4,6 @@ pub mod error;
 pub mod lanes;
 pub mod random;
 pub mod ticks;
+pub mod triple;
 pub mod units;
 pub mod vectors;

@@ -19,6 +19,11 @@ impl Vectors {
         Self { x: vec![0.0; n], y: vec![0.0; n], z: vec![0.0; n] }
     }
 
+    /// The three streams.
+    pub fn rows(&self) -> [&[f64]; 3] {
+        [&self.x, &self.y, &self.z]
+    }
+
     /// Number of vectors.
     pub fn len(&self) -> usize {
         self.x.len()

@@ -11,7 +11,8 @@
 use super::rupture::{Criterion, RuptureCheck};
 use super::state::{BondActions, CHUNK, Partial, State};
 use super::time_step::Stiffness;
-use crate::base::lanes::{BLOCK, Lanes, Mask, Real, Triple};
+use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
+use crate::base::triple::Triple;
 use crate::base::vectors::Vectors;
 use crate::law::bond::{BondForce, BondIncrement, BondLaw, BondShape, Section};
 use crate::law::damping::viscous_coefficient;
@@ -338,7 +339,8 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         let mut dashpot = load(record, BondStage::<L, TURN>::DASHPOT);
         let viscosity = (!self.viscosity.is_empty() && self.dt > 0.0).then(|| {
             let all = &self.viscosity[place(MODES, slot, 0)..][..(MODES - 1) * BLOCK + Lanes::<S>::LEN];
-            [0, 1, 2, 3].map(|mode| Lanes::load(simd, all, mode * BLOCK))
+            let mode = |k: usize| Lanes::load(simd, all, k * BLOCK);
+            [mode(0), mode(1), mode(2), mode(3)]
         });
 
         let mut step = Step { law: self.law, dt: self.dt, live, plastic: zero, damping: zero };
@@ -346,13 +348,16 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
             let frame = |k| load(record, BondStage::<L, TURN>::FRAME + k);
             let mut e1 = Triple { x: frame(0), y: frame(1), z: frame(2) };
             let acts = step.turning(&ends, &shape, &mut e1, &mut force, &mut state, &mut dashpot, viscosity);
-            for (k, e) in [e1.x, e1.y, e1.z].into_iter().enumerate() {
-                e.store(record, (BondStage::<L, TURN>::FRAME + k) * BLOCK + lane);
-            }
-            let all = [force.shear[0], force.shear[1], force.bend[0], force.bend[1], force.twist];
-            for (k, f) in all.into_iter().enumerate() {
-                f.store(record, (BondStage::<L, TURN>::ACROSS + k) * BLOCK + lane);
-            }
+            let frame = BondStage::<L, TURN>::FRAME * BLOCK + lane;
+            e1.x.store(record, frame);
+            e1.y.store(record, frame + BLOCK);
+            e1.z.store(record, frame + 2 * BLOCK);
+            let across = BondStage::<L, TURN>::ACROSS * BLOCK + lane;
+            force.shear[0].store(record, across);
+            force.shear[1].store(record, across + BLOCK);
+            force.bend[0].store(record, across + 2 * BLOCK);
+            force.bend[1].store(record, across + 3 * BLOCK);
+            force.twist.store(record, across + 4 * BLOCK);
             acts
         } else {
             step.stretching(&ends, &shape, &mut force, &mut state, &mut dashpot, viscosity)
@@ -400,13 +405,16 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         };
         put(BondActions::LIVE, thinning.like(1.0));
         put(BondActions::THINNING, thinning);
-        let mut put_all = |field: usize, vector: &Triple<Lanes<S>>| {
-            [vector.x, vector.y, vector.z].into_iter().enumerate().for_each(|(k, number)| put(field + k, number));
-        };
-        put_all(BondActions::PULL, &acts.pull);
+        put(BondActions::PULL, acts.pull.x);
+        put(BondActions::PULL + 1, acts.pull.y);
+        put(BondActions::PULL + 2, acts.pull.z);
         if TURN {
-            put_all(BondActions::NEAR, &acts.near);
-            put_all(BondActions::FAR, &acts.far);
+            put(BondActions::NEAR, acts.near.x);
+            put(BondActions::NEAR + 1, acts.near.y);
+            put(BondActions::NEAR + 2, acts.near.z);
+            put(BondActions::FAR, acts.far.x);
+            put(BondActions::FAR + 1, acts.far.y);
+            put(BondActions::FAR + 2, acts.far.z);
         }
     }
 }
@@ -430,6 +438,14 @@ struct Step<'a, L: BondLaw, R: Real> {
     damping: R,
 }
 
+/// Length of a bond [m] and its direction.
+#[inline(always)]
+fn axis<R: Real>(d: Triple<R>) -> (R, Triple<R>) {
+    let square = d.length_squared();
+    let inverse = square.inverse_sqrt();
+    (square * inverse, d * inverse)
+}
+
 /// ln(l/l₀), from the square of the length, which is there before its root [-].
 #[inline(always)]
 fn log_strain<R: Real>(d: Triple<R>, shape: &BondShape<R>) -> R {
@@ -449,8 +465,7 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         viscosity: Option<[R; MODES]>,
     ) -> Acts<R> {
         let d = b.x - a.x;
-        let length = d.length_squared().sqrt();
-        let n = d * length.inverse();
+        let (length, n) = axis(d);
         let zero = length.like(0.0);
         let log_strain = log_strain(d, shape);
         let step = BondIncrement { log_strain, length, shear: [zero; 2], bend: [zero; 2], twist: zero };
@@ -476,6 +491,14 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         force
     }
 
+    /// Adds the force of a dashpot across to `f`; `per` is the inverse of the step [1/s].
+    #[inline(always)]
+    fn dashpot(&mut self, f: &mut R, coefficient: R, increment: R, per: f64) {
+        let push = coefficient * increment * per;
+        *f += push;
+        self.damping += push * increment;
+    }
+
     /// Bonds in all modes.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
@@ -491,12 +514,11 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
     ) -> Acts<R> {
         let dt = self.dt;
         let (d, dv) = (b.x - a.x, b.v - a.v);
-        let length = d.length_squared().sqrt();
-        let n = d * length.inverse();
+        let (length, n) = axis(d);
 
         // Mid-step geometry.
         let middle = d - dv * length.like(0.5 * dt);
-        let inv_middle = middle.length_squared().sqrt().inverse();
+        let inv_middle = middle.length_squared().inverse_sqrt();
         let n_mid = middle * inv_middle;
         let spin = (a.w + b.w).map(|w| w * 0.5);
         // The frame turns with the bond's direction and with the mean spin about it.
@@ -523,15 +545,10 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         if let Some(c) = viscosity {
             f.axial += self.axial_dashpot(c[0], dv.dot(n), dashpot);
             let per = 1.0 / dt;
-            let mut viscous = |f: &mut R, c: R, increment: R| {
-                let push = c * increment * per;
-                *f += push;
-                self.damping += push * increment;
-            };
-            viscous(&mut f.twist, c[3], step.twist);
+            self.dashpot(&mut f.twist, c[3], step.twist, per);
             for axis in 0..2 {
-                viscous(&mut f.shear[axis], c[1], step.shear[axis]);
-                viscous(&mut f.bend[axis], c[2], step.bend[axis]);
+                self.dashpot(&mut f.shear[axis], c[1], step.shear[axis], per);
+                self.dashpot(&mut f.bend[axis], c[2], step.bend[axis], per);
             }
         }
         let e2 = n.cross(*e1);
@@ -549,7 +566,7 @@ mod tests {
     #[test]
     fn a_field_of_a_block_is_contiguous() {
         assert_eq!(place(5, 0, 0), 0);
-        assert_eq!(place(5, 7, 2), 23);
-        assert_eq!(place(5, 8, 0), 40);
+        assert_eq!(place(5, 7, 2), 2 * BLOCK + 7);
+        assert_eq!(place(5, BLOCK, 0), 5 * BLOCK);
     }
 }

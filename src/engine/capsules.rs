@@ -7,11 +7,12 @@
 
 use super::contacts::Contacts;
 use super::neighbours::{PairList, apart};
-use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, normal_energy, part, touch};
+use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, leave, meet, normal_energy};
 use super::state::{CHUNK, Deepest, Partial, State};
 use super::time_step::Stiffness;
+use crate::base::triple::Triple;
 use crate::law::contact::NormalLaw;
-use crate::law::contact::constants::reduced_radius;
+use crate::law::contact::constants::{reduced_mass, reduced_radius};
 use crate::law::contact::geometry::{ClosestOnSegment, closest_on_segment};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
@@ -20,8 +21,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// A particle against another body near particle `j` of it.
-#[derive(Debug, Clone, Copy)]
-struct Contact<N, T> {
+#[derive(Clone, Copy)]
+struct Contact<N: NormalLaw, T: TangentialLaw> {
     i: u32,
     /// First particle of the segment touched (j, j + 1), or a free particle.
     j: u32,
@@ -32,9 +33,11 @@ struct Contact<N, T> {
     /// Share of the contact that this one carries: ½ between wires, 1 with free spheres [-].
     share: f64,
     history: History<N, T>,
+    /// Overlap at the last step [m].
+    overlap: f64,
     action: PairForce,
     /// n × friction [N].
-    twist: DVec3,
+    twist: Triple,
     /// Lever arms of the particle and of the segment [m].
     arm: [f64; 2],
 }
@@ -71,8 +74,8 @@ impl Chains {
 pub struct CapsuleContacts<N: NormalLaw, T: TangentialLaw> {
     laws: Laws<N, T>,
     chains: Chains,
-    contacts: Vec<Contact<N::State, T::State>>,
-    old: Vec<Contact<N::State, T::State>>,
+    contacts: Vec<Contact<N, T>>,
+    old: Vec<Contact<N, T>>,
     partial: Vec<Partial>,
     /// The deepest contact so far.
     deepest: Deepest,
@@ -111,7 +114,7 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
         self.directed.sort_unstable();
     }
 
-    fn fresh(&self, i: u32, j: u32, state: &State) -> Contact<N::State, T::State> {
+    fn fresh(&self, i: u32, j: u32, state: &State) -> Contact<N, T> {
         let (a, b) = (state.radius0[i as usize], state.radius0[j as usize]);
         let (free_i, free_j) = (self.free(i), self.free(j));
         let mut radius = reduced_radius(a, b);
@@ -126,8 +129,9 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             segment: false,
             share: if free_i || free_j { 1.0 } else { 0.5 },
             history: History::new(radius),
+            overlap: 0.0,
             action: PairForce::default(),
-            twist: DVec3::ZERO,
+            twist: Triple::default(),
             arm: [0.0; 2],
         };
         // During a run a new pair was beyond reach until now, or a bond has just broken.
@@ -172,10 +176,10 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             v.y.fill(0.0);
             v.z.fill(0.0);
         }
-        for c in self.contacts.iter().filter(|c| c.history.touching) {
+        for c in self.contacts.iter().filter(|c| c.history.touching()) {
             let (i, j) = (c.i as usize, c.j as usize);
-            let force = c.action.force * c.share;
-            let twist = c.twist * c.share;
+            let force = DVec3::from(c.action.force) * c.share;
+            let twist = DVec3::from(c.twist) * c.share;
             state.contact_force.add(i, force);
             state.contact_torque.add(i, twist * c.arm[0]);
             state.contact_force.add(j, -force * (1.0 - c.t));
@@ -200,7 +204,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
                 from += 1;
             }
             // Where the segment under a contact broke, the contact is gone, and the two ends touch afresh.
-            let same = |c: &Contact<N::State, T::State>| {
+            let same = |c: &Contact<N, T>| {
                 let severed = c.segment && !state.whole[c.j as usize];
                 !severed && (c.j == j || c.j.abs_diff(j) <= 3 && self.chains.one_piece(c.j, j, state))
             };
@@ -220,9 +224,9 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
                 }
             }
         }
-        for c in self.old.iter_mut().filter(|c| c.share > 0.0) {
-            let mut gone = Partial { released: normal_energy(&self.laws, &c.history), ..Default::default() };
-            part::<N, T>(&self.laws, &mut c.history, 0.0, &mut gone);
+        for c in self.old.iter().filter(|c| c.share > 0.0) {
+            let released = normal_energy(&self.laws, &c.history, c.overlap);
+            let gone = Partial { released, friction: leave(&self.laws, &c.history), ..Default::default() };
             lost.add(&gone.scaled(c.share));
         }
         self.partial.clear();
@@ -236,8 +240,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
             |(contacts, partial)| {
                 *partial = Partial::beyond(deepest);
                 for c in contacts {
-                    let mut own = Partial::beyond(partial.deepest);
-                    capsule_pair(laws, shared, chains, c, &mut own);
+                    let own = capsule_pair(laws, shared, chains, c, &mut partial.deepest);
                     partial.add(&own.scaled(c.share));
                 }
             },
@@ -249,12 +252,12 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
         sum
     }
 
-    fn elastic_energy(&self) -> f64 {
-        self.contacts.iter().map(|c| c.share * elastic_energy(&self.laws, &c.history)).sum()
+    fn elastic_energy(&self, _: &State) -> f64 {
+        self.contacts.iter().map(|c| c.share * elastic_energy(&self.laws, &c.history, c.overlap)).sum()
     }
 
     fn add_normal_forces(&self, onto: &mut [f64]) {
-        for c in self.contacts.iter().filter(|c| c.history.touching) {
+        for c in self.contacts.iter().filter(|c| c.history.touching()) {
             let force = c.share * c.history.normal_force;
             onto[c.i as usize] += force;
             onto[c.j as usize] += force * (1.0 - c.t);
@@ -265,7 +268,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
     }
 
     fn active(&self) -> usize {
-        self.contacts.iter().filter(|c| c.history.touching).count()
+        self.contacts.iter().filter(|c| c.history.touching()).count()
     }
 
     fn candidates(&self) -> usize {
@@ -273,7 +276,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
     }
 
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
-        for c in self.contacts.iter().filter(|c| c.history.touching) {
+        for c in self.contacts.iter().filter(|c| c.history.touching()) {
             let mut c = *c;
             let point = walk(state, &self.chains, &mut c);
             let (i, j) = (c.i as usize, c.j as usize);
@@ -284,7 +287,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
             let radius = state.radius[j] * (1.0 - c.t) + state.radius[next] * c.t;
             let overlap = state.radius[i] + radius - c.history.offset - distance;
             let Some(k) = foreseen_stiffness(&self.laws, &c.history, overlap, approach, horizon) else { continue };
-            let viscosity = viscous_coefficient(self.laws.damping, reduced_mass(state, &c), k[0]) * c.share;
+            let viscosity = viscous_coefficient(self.laws.damping, mass_of(state, &c), k[0]) * c.share;
             let weight = [1.0, 1.0 - c.t, c.t];
             let arm = [state.radius[i], radius, radius];
             out.contact([c.i, c.j, next as u32], weight, k.map(|k| k * c.share), arm, viscosity);
@@ -292,18 +295,18 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
     }
 }
 
-fn reduced_mass<N, S>(state: &State, c: &Contact<N, S>) -> f64 {
+fn mass_of<N: NormalLaw, T: TangentialLaw>(state: &State, c: &Contact<N, T>) -> f64 {
     let (j, next) = (c.j as usize, c.j as usize + usize::from(c.segment));
     // A segment weighs what its point does, from whichever end one counts: the last particle of a wire has half a mass.
     let (a, b) = (state.mass[c.i as usize], state.mass[j] * (1.0 - c.t) + state.mass[next] * c.t);
-    a * b / (a + b)
+    reduced_mass(a, b)
 }
 
 /// Lets the contact walk along the other body until its nearest point lies on the segment (j, j + 1), and returns that
 /// point. Where two segments meet on the outside of a bend the particle between them is nearest; at the end of a piece
 /// its last particle is.
 #[inline(always)]
-fn walk<N, S>(state: &State, chains: &Chains, c: &mut Contact<N, S>) -> DVec3 {
+fn walk<N: NormalLaw, T: TangentialLaw>(state: &State, chains: &Chains, c: &mut Contact<N, T>) -> DVec3 {
     let p = state.x.get(c.i as usize);
     let (i, own) = (c.i as usize, chains.one_wire(c.i, c.j));
     let segment = |k: usize| {
@@ -314,7 +317,7 @@ fn walk<N, S>(state: &State, chains: &Chains, c: &mut Contact<N, S>) -> DVec3 {
     for _ in 0..4 {
         let j = c.j as usize;
         let before = || j.checked_sub(1).and_then(segment);
-        let at_particle = |c: &mut Contact<N, S>, j: usize| {
+        let at_particle = |c: &mut Contact<N, T>, j: usize| {
             (c.j, c.t, c.segment) = (j as u32, 0.0, segment(j).is_some());
             state.x.get(j)
         };
@@ -356,7 +359,7 @@ fn walk<N, S>(state: &State, chains: &Chains, c: &mut Contact<N, S>) -> DVec3 {
 
 /// Vector from the particle to the nearest point of the other body, and the distance at which they touch [m].
 #[inline(always)]
-fn across<N, S>(state: &State, chains: &Chains, c: &mut Contact<N, S>) -> (DVec3, f64) {
+fn across<N: NormalLaw, T: TangentialLaw>(state: &State, chains: &Chains, c: &mut Contact<N, T>) -> (DVec3, f64) {
     let point = walk(state, chains, c);
     let (i, j) = (c.i as usize, c.j as usize);
     let next = if c.segment { j + 1 } else { j };
@@ -364,27 +367,30 @@ fn across<N, S>(state: &State, chains: &Chains, c: &mut Contact<N, S>) -> (DVec3
     (point - state.x.get(i), state.radius[i] + radius)
 }
 
-/// Kinematics and response of one contact.
+/// Kinematics and response of one contact; the energies are those of its whole.
 #[inline(always)]
 fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
     laws: &Laws<N, T>,
     state: &State,
     chains: &Chains,
-    c: &mut Contact<N::State, T::State>,
-    partial: &mut Partial,
-) {
+    c: &mut Contact<N, T>,
+    deepest: &mut Deepest,
+) -> Partial {
     let (d, touching) = across(state, chains, c);
     let (i, j) = (c.i as usize, c.j as usize);
     let next = if c.segment { j + 1 } else { j };
     let reach = touching - c.history.offset;
     let distance2 = d.length_squared();
-    if distance2 >= reach * reach {
-        part::<N, T>(laws, &mut c.history, touching - distance2.sqrt(), partial);
-        return;
+    let apart = distance2 >= reach * reach;
+    if apart && c.history.offset > 0.0 {
+        c.history.offset = c.history.offset.min((touching - distance2.sqrt()).max(0.0));
+    }
+    if apart && !c.history.touching() {
+        return Partial::default();
     }
     let distance = distance2.sqrt();
     let normal = d * (1.0 / distance);
-    let overlap = reach - distance;
+    c.overlap = if apart { 0.0 } else { reach - distance };
     // The arms meet where the surfaces do, so that they add up to the distance.
     let arm = state.radius[i] - 0.5 * (touching - distance);
     c.arm = [arm, distance - arm];
@@ -393,10 +399,13 @@ fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
         let spin = state.w.get(j).lerp(state.w.get(next), c.t);
         velocity -= (state.w.get(i) * c.arm[0] + spin * c.arm[1]).cross(normal);
     }
-    let mass = reduced_mass(state, c);
-    let meeting = Meeting { normal, overlap, reach, velocity, mass, dt: state.dt };
-    c.action = touch(laws, &mut c.history, &meeting, partial);
-    c.twist = normal.cross(c.action.friction);
+    let viscosity = viscous_coefficient(laws.damping, mass_of(state, c), 1.0);
+    let (overlap, dt) = (c.overlap, state.dt);
+    let meeting = Meeting { normal: normal.into(), overlap, reach, velocity: velocity.into(), viscosity, dt };
+    let (action, given) = meet(laws, &mut c.history, &meeting);
+    c.twist = Triple::from(normal).cross(action.friction);
+    c.action = action;
     let least = state.radius[i].min(touching - state.radius[i]);
-    partial.deepest.meet([c.i, c.j], overlap, least, c.history.reduced_radius, c.history.normal_force);
+    deepest.meet([c.i, c.j], overlap, least, c.history.reduced_radius, c.history.normal_force);
+    given.partial()
 }

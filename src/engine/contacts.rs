@@ -23,8 +23,8 @@ pub trait Contacts: Send {
     fn rebuild(&mut self, list: &PairList, state: &State) -> Partial;
     /// Computes all contacts and adds them up per particle in `state`; returns the energies of the step.
     fn compute(&mut self, state: &mut State) -> Partial;
-    /// Stored elastic energy [J].
-    fn elastic_energy(&self) -> f64;
+    /// Stored elastic energy at the positions of the last call of `compute` [J].
+    fn elastic_energy(&self, state: &State) -> f64;
     /// Adds to each particle the normal forces of its contacts, without regard to direction [N].
     fn add_normal_forces(&self, onto: &mut [f64]);
     /// Number of touching pairs.
@@ -68,7 +68,7 @@ fn shape<N: NormalLaw, T: TangentialLaw>(
 ) -> Box<dyn Contacts> {
     let laws = Laws { normal, tangential, damping: spec.damping };
     match spec.shape {
-        Shape::Sphere => Box::new(SphereContacts::new(laws)),
+        Shape::Sphere => Box::new(SphereContacts::new(laws, assembly)),
         Shape::Capsule => Box::new(CapsuleContacts::new(laws, assembly)),
     }
 }

@@ -4,7 +4,6 @@ use super::neighbours::Reference;
 use super::state::{BondActions, CHUNK, State};
 use crate::base::lanes::{BLOCK, Lanes, Real};
 use crate::base::vectors::Vectors;
-use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -131,34 +130,55 @@ impl Rows<'_> {
             let undeformed = Lanes::load_up_to_end(simd, radius0, k);
             let kept = Lanes::load_up_to_end(simd, radius, k);
             let held = live.above(live.like(0.0));
-            Lanes::choose(held, undeformed * (thinning / live), kept).store_up_to_end(radius, k);
+            let share = Lanes::choose(live.above(live.like(1.0)), live.like(0.5), live.like(1.0));
+            Lanes::choose(held, undeformed * (thinning * share), kept).store_up_to_end(radius, k);
         }
     }
 }
 
 /// Velocities and spins over `dt` [s].
-pub fn kick(state: &mut State, dt: f64, turn: bool) {
-    accelerate(&mut state.v, &state.force, &state.inverse_mass, dt);
+pub fn kick(state: &mut State, dt: f64, turn: bool, arch: Arch) {
+    accelerate(&mut state.v, &state.force, &state.inverse_mass, dt, arch);
     if turn {
-        accelerate(&mut state.w, &state.torque, &state.inverse_inertia, dt);
+        accelerate(&mut state.w, &state.torque, &state.inverse_inertia, dt, arch);
     }
 }
 
-/// v += F/m dt, one stream per axis.
-fn accelerate(v: &mut Vectors, f: &Vectors, inverse_mass: &[f64], dt: f64) {
+/// v += F/m dt.
+fn accelerate(v: &mut Vectors, f: &Vectors, inverse_mass: &[f64], dt: f64, arch: Arch) {
     (v.x.par_chunks_mut(CHUNK), v.y.par_chunks_mut(CHUNK), v.z.par_chunks_mut(CHUNK))
         .into_par_iter()
         .with_max_len(1)
         .enumerate()
-        .for_each(|(chunk, (vx, vy, vz))| {
-            let here = chunk * CHUNK..chunk * CHUNK + vx.len();
-            let per_mass = &inverse_mass[here.clone()];
-            for (v, f) in [(vx, &f.x), (vy, &f.y), (vz, &f.z)] {
-                for ((v, f), per_mass) in v.iter_mut().zip(&f[here.clone()]).zip(per_mass) {
-                    *v += f * (dt * per_mass);
-                }
-            }
+        .for_each(|(chunk, (x, y, z))| {
+            let here = chunk * CHUNK..chunk * CHUNK + x.len();
+            let force = f.rows().map(|row| &row[here.clone()]);
+            arch.dispatch(Kick { v: [x, y, z], force, inverse_mass: &inverse_mass[here], dt });
         });
+}
+
+/// Velocities of one chunk.
+struct Kick<'a> {
+    v: [&'a mut [f64]; 3],
+    force: [&'a [f64]; 3],
+    inverse_mass: &'a [f64],
+    dt: f64,
+}
+
+impl WithSimd for Kick<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Kick { v, force, inverse_mass, dt } = self;
+        for k in (0..inverse_mass.len()).step_by(Lanes::<S>::LEN) {
+            let per_force = Lanes::load_up_to_end(simd, inverse_mass, k) * dt;
+            for axis in 0..3 {
+                let change = Lanes::load_up_to_end(simd, force[axis], k) * per_force;
+                (Lanes::load_up_to_end(simd, v[axis], k) + change).store_up_to_end(v[axis], k);
+            }
+        }
+    }
 }
 
 /// What a drift saw.
@@ -179,32 +199,72 @@ impl Drifted {
 }
 
 /// Positions over `state.dt`.
-pub fn drift(state: &mut State, neighbours: Option<&Reference>) -> Drifted {
+pub fn drift(state: &mut State, neighbours: Option<&Reference>, arch: Arch) -> Drifted {
     let dt = state.dt;
     let (v, x) = (&state.v, &mut state.x);
     (x.x.par_chunks_mut(CHUNK), x.y.par_chunks_mut(CHUNK), x.z.par_chunks_mut(CHUNK))
         .into_par_iter()
         .with_max_len(1)
         .enumerate()
-        .map(|(chunk, (px, py, pz))| {
-            let here = chunk * CHUNK..chunk * CHUNK + px.len();
-            let (vx, vy, vz) = (&v.x[here.clone()], &v.y[here.clone()], &v.z[here.clone()]);
-            let mut largest2 = 0.0;
-            for k in 0..px.len() {
-                let step = DVec3::new(vx[k], vy[k], vz[k]) * dt;
-                px[k] += step.x;
-                py[k] += step.y;
-                pz[k] += step.z;
-                largest2 = larger(largest2, step.length_squared());
-            }
-            let residual2 = neighbours.map_or(0.0, |r| r.residual2(here.start, px, py, pz));
-            Drifted { largest2, residual2 }
+        .map(|(chunk, (x, y, z))| {
+            let here = chunk * CHUNK..chunk * CHUNK + x.len();
+            let v = v.rows().map(|row| &row[here.clone()]);
+            arch.dispatch(Drift { first: here.start, x: [x, y, z], v, dt, neighbours })
         })
         .reduce(|| Drifted::NOTHING, Drifted::with)
 }
 
+/// Positions of one chunk.
+struct Drift<'a> {
+    first: usize,
+    x: [&'a mut [f64]; 3],
+    v: [&'a [f64]; 3],
+    dt: f64,
+    neighbours: Option<&'a Reference<'a>>,
+}
+
+impl WithSimd for Drift<'_> {
+    type Output = Drifted;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Drifted {
+        let Drift { first, x, v, dt, neighbours } = self;
+        let zero = Lanes::splat(simd, 0.0);
+        let (mut largest2, mut residual2) = (zero, zero);
+        for k in (0..x[0].len()).step_by(Lanes::<S>::LEN) {
+            let (mut step2, mut here) = (zero, [zero; 3]);
+            for axis in 0..3 {
+                let step = Lanes::load_up_to_end(simd, v[axis], k) * dt;
+                step2 += step * step;
+                here[axis] = Lanes::load_up_to_end(simd, x[axis], k) + step;
+                here[axis].store_up_to_end(x[axis], k);
+            }
+            largest2 = worse(largest2, step2);
+            if let Some(reference) = neighbours {
+                let mut residual = reference.residual2(simd, first + k, here);
+                // Past the end there is no particle.
+                (x[0].len().saturating_sub(k)..Lanes::<S>::LEN).for_each(|lane| residual.put(lane, 0.0));
+                residual2 = worse(residual2, residual);
+            }
+        }
+        Drifted { largest2: largest(largest2), residual2: largest(residual2) }
+    }
+}
+
+/// The larger of two numbers, lane by lane; one that is none wins, so that it is seen.
+#[inline(always)]
+fn worse<R: Real>(most: R, next: R) -> R {
+    R::choose(!most.above(next) & most.above(most.like(f64::NEG_INFINITY)), next, most)
+}
+
+/// The largest of some numbers.
+#[inline(always)]
+fn largest<R: Real>(numbers: R) -> f64 {
+    (0..R::COUNT).map(|k| numbers.at(k)).fold(0.0, larger)
+}
+
 /// The larger of two numbers; NaN wins, so that it is seen.
 #[inline(always)]
-pub(super) fn larger(a: f64, b: f64) -> f64 {
+fn larger(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }

@@ -121,7 +121,7 @@ impl Engine {
             work: self.holds.work_now(&self.state),
             kinetic: self.holds.kinetic(&self.state),
             elastic_bonds: self.bonds.as_ref().map_or(0.0, |b| b.elastic_energy(&self.state)),
-            elastic_contacts: self.contacts.as_ref().map_or(0.0, |c| c.stage.elastic_energy()),
+            elastic_contacts: self.contacts.as_ref().map_or(0.0, |c| c.stage.elastic_energy(&self.state)),
             ..self.energy
         }
     }

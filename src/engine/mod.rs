@@ -172,16 +172,17 @@ impl Engine {
         let began = Instant::now();
         let kicked = 0.5 * (self.state.dt + self.next_dt);
         let turn = self.plan.rotations;
-        integrate::kick(&mut self.state, kicked, turn);
+        integrate::kick(&mut self.state, kicked, turn, self.arch);
         self.state.dt = self.next_dt;
         self.holds.apply(&mut self.state, kicked);
         let stretch = self.holds.stretch;
         let reference = self.contacts.as_ref().and_then(|c| c.neighbours.reference(&stretch));
-        let drifted = integrate::drift(&mut self.state, reference.as_ref());
+        let drifted = integrate::drift(&mut self.state, reference.as_ref(), self.arch);
         self.state.step += 1;
         self.state.time += self.state.dt;
         self.measures.grip(&self.holds.reaction, self.state.dt);
         self.timings.integrate += began.elapsed();
+        self.state.travel += drifted.largest2.sqrt();
         let limit = RUNAWAY * self.least_radius;
         if drifted.largest2.is_nan() || drifted.largest2 > limit * limit {
             return Err(self.runaway(limit));
@@ -325,7 +326,7 @@ impl Engine {
     /// steps, and with full ones the energy of that is off by per cents.
     fn start(&self) -> f64 {
         let much = THROWN * self.negligible_energy();
-        let pressed = self.contacts.as_ref().is_some_and(|c| c.stage.elastic_energy() > much);
+        let pressed = self.contacts.as_ref().is_some_and(|c| c.stage.elastic_energy(&self.state) > much);
         if pressed { START } else { 1.0 }
     }
 

@@ -3,12 +3,13 @@
 //! The whole strand stretches by a third, so displacements are measured against the affine stretch of the gauge: a
 //! pair stays covered while 2 max|u − u_affine| + Δε (reach + skin) < skin.
 
-use super::integrate::larger;
 use super::state::{CHUNK, State};
+use crate::base::lanes::{Lanes, Real};
 use crate::base::vectors::Vectors;
 use crate::scene::spec::Shape;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
+use pulp::Simd;
 use rayon::prelude::*;
 
 /// The search follows bonds up to this multiple of the longest stress-free length [-]: one bond that necks without end
@@ -41,19 +42,16 @@ pub struct Reference<'a> {
 }
 
 impl Reference<'_> {
-    /// Greatest squared distance of particles from where the stretch would have them [m²]; the particles are those from
-    /// `first` on, at x, y, z.
+    /// Squared distance of particles from where the stretch would have them [m²]; they are those from `first` on, at
+    /// `here`. Past the last particle it means nothing.
     #[inline(always)]
-    pub fn residual2(&self, first: usize, x: &[f64], y: &[f64], z: &[f64]) -> f64 {
-        let here = first..first + x.len();
-        let (rx, ry, rz) = (&self.position.x[here.clone()], &self.position.y[here.clone()], &self.position.z[here]);
-        let mut largest = 0.0;
-        for k in 0..x.len() {
-            let affine = self.moved * ((rz[k] - self.low) * self.inverse_length).clamp(0.0, 1.0);
-            let d = DVec3::new(x[k] - rx[k], y[k] - ry[k], z[k] - rz[k] - affine);
-            largest = larger(largest, d.length_squared());
-        }
-        largest
+    pub fn residual2<S: Simd>(&self, simd: S, first: usize, here: [Lanes<S>; 3]) -> Lanes<S> {
+        let load = |row: &[f64]| Lanes::load_up_to_end(simd, row, first);
+        let (x, y, z) = (load(&self.position.x), load(&self.position.y), load(&self.position.z));
+        let share = (z - self.low) * self.inverse_length;
+        let share = share.greater(share.like(0.0)).lesser(share.like(1.0));
+        let (dx, dy, dz) = (here[0] - x, here[1] - y, here[2] - z - share * self.moved);
+        dx * dx + dy * dy + dz * dz
     }
 }
 
@@ -403,8 +401,14 @@ mod tests {
                 let z0 = start.z[i];
                 state.x.z[i] = z0 + d * ((z0 - 0.01) / 0.1).clamp(0.0, 1.0);
             }
-            let seen = neighbours.reference(&now).map(|r| r.residual2(0, &state.x.x, &state.x.y, &state.x.z));
-            let largest = seen.unwrap_or(0.0);
+            let seen = |r: Reference| {
+                let all = (0..state.len()).map(|i| {
+                    let here = state.x.get(i).to_array().map(|x| Lanes::splat(pulp::Scalar, x));
+                    r.residual2(pulp::Scalar, i, here).at(0)
+                });
+                all.fold(0.0, f64::max)
+            };
+            let largest = neighbours.reference(&now).map_or(0.0, seen);
             if neighbours.stale(largest, &now) {
                 neighbours.search(&state, now);
             }

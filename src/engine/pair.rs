@@ -1,10 +1,10 @@
-//! One touching pair: normal law, friction, damping, thinning. Shared by spheres and capsules.
+//! A touching pair, or several at once: normal law, friction, damping, thinning. Shared by spheres and capsules.
 
 use super::state::Partial;
+use crate::base::lanes::Real;
+use crate::base::triple::Triple;
 use crate::law::contact::NormalLaw;
-use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::{TangentialInput, TangentialLaw};
-use glam::DVec3;
 
 /// The laws of a run.
 #[derive(Debug, Clone, Copy)]
@@ -19,123 +19,181 @@ pub struct Laws<N, T> {
 
 /// Where and how two surfaces meet at this step.
 #[derive(Debug, Clone, Copy)]
-pub struct Meeting {
+pub struct Meeting<R = f64> {
     /// Unit normal from the first body to the second.
-    pub normal: DVec3,
-    /// Overlap δ > 0 [m].
-    pub overlap: f64,
-    /// Sum of the current radii [m].
-    pub reach: f64,
+    pub normal: Triple<R>,
+    /// Overlap δ [m]; 0 where the surfaces are apart.
+    pub overlap: R,
+    /// Sum of the current radii, less the overlap that does not count [m].
+    pub reach: R,
     /// Velocity of the second surface relative to the first at the contact point [m/s].
-    pub velocity: DVec3,
-    /// Reduced mass m* [kg].
-    pub mass: f64,
+    pub velocity: Triple<R>,
+    /// 2ξ√m* with the damping fraction ξ and the reduced mass m* [√kg].
+    pub viscosity: R,
     /// Step [s].
     pub dt: f64,
 }
 
-/// What a contact remembers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct History<N, T> {
+/// What a contact remembers. All of it but the first two is 0 before the first touch.
+pub struct History<N: NormalLaw, T: TangentialLaw, R: Real = f64> {
     /// Reduced radius R* [m], undeformed.
-    pub reduced_radius: f64,
-    /// Normal law's state.
-    pub normal: N,
-    /// Tangential law's state.
-    pub tangential: T,
+    pub reduced_radius: R,
     /// Overlap that does not count [m]: two parts of a wire that a bond held until it broke may overlap, or two ends
     /// lie under one particle. It shrinks as they part, and is 0 for everything else.
-    pub offset: f64,
-    /// Whether the surfaces touched at the last step.
-    pub touching: bool,
-    /// Overlap [m], sum of radii [m] and elastic normal force [N] at the last step.
-    pub overlap: f64,
-    reach: f64,
-    pub normal_force: f64,
+    pub offset: R,
+    /// Normal law's state.
+    pub normal: N::State<R>,
+    /// Tangential law's state.
+    pub tangential: T::State<R>,
+    /// [`Meeting::reach`] at the last step [m]; 0 where the surfaces were apart.
+    pub reach: R,
+    /// Elastic normal force at the last step [N].
+    pub normal_force: R,
     /// Force of the dashpot at the last step [N].
-    viscous: f64,
-    /// Tangent stiffnesses at the last step [N/m]: greatest normal, tangential.
-    pub stiffness: [f64; 2],
+    pub viscous: R,
 }
 
-impl<N: Default, T: Default> History<N, T> {
+impl<N: NormalLaw, T: TangentialLaw, R: Real> Clone for History<N, T, R> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<N: NormalLaw, T: TangentialLaw, R: Real> Copy for History<N, T, R> {}
+
+impl<N: NormalLaw, T: TangentialLaw, R: Real> History<N, T, R> {
+    /// Numbers of a history.
+    pub const NUMBERS: usize = 5 + N::HISTORY + T::HISTORY;
+    /// Place of [`Self::reduced_radius`] among them.
+    pub const RADIUS: usize = 0;
+    /// Place of [`Self::offset`].
+    pub const OFFSET: usize = 1;
+    /// Place of [`Self::reach`].
+    pub const REACH: usize = 2;
+    /// Place of [`Self::normal_force`].
+    pub const FORCE: usize = 3;
+    const VISCOUS: usize = 4;
+    const NORMAL: usize = 5;
+    const TANGENTIAL: usize = Self::NORMAL + N::HISTORY;
+
+    /// The history from its numbers.
+    #[inline(always)]
+    pub fn of(numbers: impl Fn(usize) -> R) -> Self {
+        Self {
+            reduced_radius: numbers(Self::RADIUS),
+            offset: numbers(Self::OFFSET),
+            reach: numbers(Self::REACH),
+            normal_force: numbers(Self::FORCE),
+            viscous: numbers(Self::VISCOUS),
+            normal: N::history(|k| numbers(Self::NORMAL + k)),
+            tangential: T::history(|k| numbers(Self::TANGENTIAL + k)),
+        }
+    }
+
+    /// What may have changed in a step: all numbers but the reduced radius, each with its place.
+    #[inline(always)]
+    pub fn each_changing(&self, mut put: impl FnMut(usize, R)) {
+        put(Self::OFFSET, self.offset);
+        put(Self::REACH, self.reach);
+        put(Self::FORCE, self.normal_force);
+        put(Self::VISCOUS, self.viscous);
+        N::each_number(&self.normal, |k, number| put(Self::NORMAL + k, number));
+        T::each_number(&self.tangential, |k, number| put(Self::TANGENTIAL + k, number));
+    }
+
+    /// Contacts that touch.
+    #[inline(always)]
+    pub fn touching(&self) -> R::Mask {
+        self.reach.above(self.reach.like(0.0))
+    }
+}
+
+impl<N: NormalLaw, T: TangentialLaw> History<N, T> {
     /// A contact that never touched.
     pub fn new(reduced_radius: f64) -> Self {
-        Self {
-            reduced_radius,
-            normal: N::default(),
-            tangential: T::default(),
-            offset: 0.0,
-            touching: false,
-            overlap: 0.0,
-            reach: 0.0,
-            normal_force: 0.0,
-            viscous: 0.0,
-            stiffness: [0.0; 2],
-        }
+        Self { reduced_radius, ..Self::of(|_| 0.0) }
     }
 }
 
 /// Force on the first body [N] and the friction in it (the tangential part, which has a lever arm).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PairForce {
+pub struct PairForce<R = f64> {
     /// Whole force on the first body; the second feels minus this.
-    pub force: DVec3,
+    pub force: Triple<R>,
     /// Its tangential part.
-    pub friction: DVec3,
+    pub friction: Triple<R>,
 }
 
-/// Response of a touching pair.
+/// Energies that contacts give off in a step [J]; see [`Partial`].
+#[derive(Debug, Clone, Copy)]
+pub struct Given<R = f64> {
+    /// Plastic work.
+    pub plastic: R,
+    /// Work of contact pressure on thinning wires.
+    pub thinning: R,
+    /// Friction.
+    pub friction: R,
+    /// Viscous damping.
+    pub damping: R,
+}
+
+impl Given {
+    /// As a partial sum.
+    pub fn partial(&self) -> Partial {
+        let Self { plastic, thinning, friction, damping } = *self;
+        Partial { plastic, thinning, friction, damping, ..Partial::default() }
+    }
+}
+
+/// Response of pairs, of those that touch and of those that have just parted: what friction had stored is then lost.
 #[inline(always)]
-pub fn touch<N: NormalLaw, T: TangentialLaw>(
+pub fn meet<N: NormalLaw, T: TangentialLaw, R: Real>(
     laws: &Laws<N, T>,
-    history: &mut History<N::State, T::State>,
-    meeting: &Meeting,
-    partial: &mut Partial,
-) -> PairForce {
+    history: &mut History<N, T, R>,
+    meeting: &Meeting<R>,
+) -> (PairForce<R>, Given<R>) {
+    let zero = meeting.overlap.like(0.0);
+    let touches = meeting.overlap.above(zero);
     let answer = laws.normal.response(&mut history.normal, history.reduced_radius, meeting.overlap);
-    partial.plastic += answer.plastic_work;
-    let reach_before = if history.touching { history.reach } else { meeting.reach };
-    partial.thinning += 0.5 * (history.normal_force + answer.force) * (reach_before - meeting.reach);
-    history.touching = true;
-    history.overlap = meeting.overlap;
-    history.reach = meeting.reach;
+    let mean = (history.normal_force + answer.force) * 0.5;
+    let thinner = R::choose(touches & history.touching(), history.reach - meeting.reach, zero);
+    let mut given = Given { plastic: answer.plastic_work, thinning: mean * thinner, friction: zero, damping: zero };
+    history.reach = R::choose(touches, meeting.reach, zero);
     history.normal_force = answer.force;
-    history.stiffness[0] =
-        laws.normal.greatest_stiffness(&history.normal, history.reduced_radius, meeting.overlap).max(answer.stiffness);
 
     let approach = meeting.velocity.dot(meeting.normal);
-    let across = meeting.velocity - meeting.normal * approach;
     let mut push = answer.force;
-    let mut friction = DVec3::ZERO;
+    let mut friction = Triple::zero(zero);
     if T::ACTIVE {
+        let across = meeting.velocity - meeting.normal * approach;
         let input = TangentialInput {
             normal: meeting.normal,
-            slip: across * meeting.dt,
+            slip: across * zero.like(meeting.dt),
             normal_force: answer.force,
             radius: answer.radius,
+            inverse_radius: answer.inverse_radius,
         };
         let pull = laws.tangential.response(&mut history.tangential, &input);
-        partial.friction += pull.friction_work;
-        history.stiffness[1] = pull.stiffness;
+        given.friction = pull.friction_work;
         friction = pull.pull;
     }
-    if laws.damping > 0.0 && answer.force > 0.0 {
-        // Damping never turns the push into a pull.
-        let c = viscous_coefficient(laws.damping, meeting.mass, answer.stiffness);
-        let viscous = (-c * approach).max(-answer.force);
+    if laws.damping > 0.0 {
+        // √k from one root; 0 where nothing pushes. Damping never turns the push into a pull.
+        let root = answer.stiffness * answer.stiffness.inverse_sqrt();
+        let damper = -(meeting.viscosity * root * approach);
+        let viscous = R::choose(answer.force.above(zero), damper.greater(-answer.force), zero);
         push += viscous;
-        partial.damping -= 0.5 * (history.viscous + viscous) * approach * meeting.dt;
+        given.damping = -((history.viscous + viscous) * approach * (0.5 * meeting.dt));
         history.viscous = viscous;
     }
-    PairForce { force: friction - meeting.normal * push, friction }
+    (PairForce { force: friction - meeting.normal * push, friction }, given)
 }
 
 /// Greatest normal and tangential stiffness [N/m] that a touching pair can reach within `horizon` [s] if it goes on
 /// approaching at `approach` [m/s] from `overlap` [m]; `None` when it has parted.
 pub fn foreseen_stiffness<N: NormalLaw, T: TangentialLaw>(
     laws: &Laws<N, T>,
-    history: &History<N::State, T::State>,
+    history: &History<N, T>,
     overlap: f64,
     approach: f64,
     horizon: f64,
@@ -144,54 +202,32 @@ pub fn foreseen_stiffness<N: NormalLaw, T: TangentialLaw>(
     if deepest <= 0.0 {
         return None;
     }
-    let (mut normal, mut tangential) = (history.normal, history.tangential);
-    let answer = laws.normal.response(&mut normal, history.reduced_radius, deepest);
-    let stiffness = laws.normal.greatest_stiffness(&normal, history.reduced_radius, deepest).max(answer.stiffness);
-    let mut across = 0.0;
-    if T::ACTIVE && answer.force > 0.0 {
-        let input =
-            TangentialInput { normal: DVec3::Z, slip: DVec3::ZERO, normal_force: answer.force, radius: answer.radius };
-        across = laws.tangential.response(&mut tangential, &input).stiffness;
-    }
-    Some([stiffness.max(history.stiffness[0]), across.max(history.stiffness[1])])
+    let at = |overlap: f64| {
+        let (mut normal, mut tangential) = (history.normal, history.tangential);
+        let answer = laws.normal.response(&mut normal, history.reduced_radius, overlap);
+        let stiffness = laws.normal.greatest_stiffness(&normal, history.reduced_radius, overlap).max(answer.stiffness);
+        let mut across = 0.0;
+        if T::ACTIVE && answer.force > 0.0 {
+            let input = TangentialInput::at_rest(answer.force, answer.radius);
+            across = laws.tangential.response(&mut tangential, &input).stiffness;
+        }
+        [stiffness, across]
+    };
+    let (then, now) = (at(deepest), at(overlap));
+    Some([then[0].max(now[0]), then[1].max(now[1])])
 }
 
-/// The surfaces are apart: what friction had stored is lost. `overlap` is the geometrical one, negative over a gap [m].
-#[inline(always)]
-pub fn part<N: NormalLaw, T: TangentialLaw>(
-    laws: &Laws<N, T>,
-    history: &mut History<N::State, T::State>,
-    overlap: f64,
-    partial: &mut Partial,
-) {
-    if history.offset > 0.0 {
-        history.offset = history.offset.min(overlap.max(0.0));
-    }
-    if !history.touching {
-        return;
-    }
-    if T::ACTIVE {
-        let input = TangentialInput { normal: DVec3::Z, slip: DVec3::ZERO, normal_force: 0.0, radius: 0.0 };
-        partial.friction += laws.tangential.response(&mut history.tangential, &input).friction_work;
-    }
-    history.touching = false;
-    history.normal_force = 0.0;
-    history.viscous = 0.0;
-    history.overlap = 0.0;
-    history.stiffness = [0.0; 2];
+/// A pair leaves the list: what friction had stored is lost, and returned [J].
+pub fn leave<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>) -> f64 {
+    if history.touching() { laws.tangential.elastic_energy(&history.tangential) } else { 0.0 }
 }
 
-/// Recoverable energy of the normal force [J].
-pub fn normal_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N::State, T::State>) -> f64 {
-    if history.touching {
-        laws.normal.elastic_energy(&history.normal, history.reduced_radius, history.overlap)
-    } else {
-        0.0
-    }
+/// Recoverable energy of the normal force at `overlap` [J].
+pub fn normal_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>, overlap: f64) -> f64 {
+    if history.touching() { laws.normal.elastic_energy(&history.normal, history.reduced_radius, overlap) } else { 0.0 }
 }
 
-/// Recoverable energy of a contact [J].
-pub fn elastic_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N::State, T::State>) -> f64 {
-    normal_energy(laws, history)
-        + if history.touching { laws.tangential.elastic_energy(&history.tangential) } else { 0.0 }
+/// Recoverable energy of a contact at `overlap` [J].
+pub fn elastic_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>, overlap: f64) -> f64 {
+    normal_energy(laws, history, overlap) + leave(laws, history)
 }

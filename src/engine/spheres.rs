@@ -1,253 +1,312 @@
 //! Contact stage for spheres: every particle is a ball of its wire's diameter.
+//!
+//! Wires that touch lie side by side over many particles: where particle i meets j, i + 1 meets j + 1, and only here and
+//! there a wire has gained a particle on its neighbour. So pairs are kept in diagonals, j − i constant, cut into blocks
+//! of [`BLOCK`] pairs that begin at a multiple of [`BLOCK`] in i. A block needs no list of particles and no gathered
+//! loads: both its sides are contiguous in memory, and 96 to 99 % of the places in the blocks of a strand are pairs.
+//!
+//! Blocks are ordered by the chunk of particles that their first side lies in, then by diagonal. A chunk's task adds
+//! the first sides to its own particles; the second sides are left as actions, which [`gather`] adds up.
+
+mod gather;
+mod kernel;
 
 use super::contacts::Contacts;
 use super::neighbours::PairList;
-use super::pair::{History, Laws, Meeting, elastic_energy, foreseen_stiffness, part, touch};
+use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
 use super::state::{CHUNK, Deepest, Partial, State};
 use super::time_step::Stiffness;
+use crate::base::lanes::BLOCK;
 use crate::law::contact::NormalLaw;
-use crate::law::contact::constants::reduced_radius;
+use crate::law::contact::constants::{reduced_mass, reduced_radius};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
-use glam::DVec3;
+use crate::strand::assembly::Assembly;
+use gather::SecondSides;
+use kernel::Work;
+use pulp::Arch;
 use rayon::prelude::*;
 
-/// A candidate pair with its history.
+/// Pairs (i + k, j + k), k below [`BLOCK`].
 #[derive(Debug, Clone, Copy)]
-struct Contact<N, T> {
+struct Block {
+    /// A multiple of [`BLOCK`].
     i: u32,
     j: u32,
-    history: History<N, T>,
+    /// Which of them are candidates, a bit each.
+    pairs: u16,
+    /// Whether any of them touched at the last step.
+    acts: bool,
+    /// Nothing can touch until [`State::travel`] has reached this [m].
+    quiet_until: f64,
 }
 
-/// What a contact does at this step, apart from its history so that gathering reads little; zero when nothing touches.
-#[derive(Debug, Clone, Copy, Default)]
-struct Action {
-    /// Force on the first particle [N]; the second feels minus this.
-    force: DVec3,
-    /// n × friction: torque per lever arm on either particle [N].
-    twist: DVec3,
-    /// How far the contact point lies inside either radius [m].
-    sunk: f64,
+impl Block {
+    /// The order of blocks; see [`key`].
+    fn key(&self) -> u64 {
+        key(self.i, self.j) / BLOCK as u64
+    }
+
+    fn lanes(&self) -> impl Iterator<Item = usize> + use<> {
+        let pairs = self.pairs;
+        (0..BLOCK).filter(move |k| pairs >> k & 1 == 1)
+    }
+}
+
+/// Orders pairs by chunk of i, diagonal, i; pairs of a block share all but the last digits.
+fn key(i: u32, j: u32) -> u64 {
+    let (chunk, within) = (i as u64 / CHUNK as u64, i as u64 % CHUNK as u64);
+    chunk << 40 | u64::from(j - i) << 8 | within
+}
+
+const _: () = assert!(CHUNK == 256 && CHUNK.is_multiple_of(BLOCK), "a key has eight bits for the place in a chunk");
+
+/// The pair that a key stands for.
+fn pair(key: u64) -> [u32; 2] {
+    let i = (key >> 40) as u32 * CHUNK as u32 + (key & 0xFF) as u32;
+    [i, i + (key >> 8) as u32]
+}
+
+/// Blocks with what their contacts remember: field after field of [`BLOCK`] numbers each.
+#[derive(Default)]
+struct Store {
+    blocks: Vec<Block>,
+    records: Vec<f64>,
 }
 
 /// Contacts between spheres with normal law `N` and tangential law `T`.
 pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     laws: Laws<N, T>,
-    contacts: Vec<Contact<N::State, T::State>>,
-    actions: Vec<Action>,
-    /// The list before a rebuild; kept for its memory.
-    old: Vec<Contact<N::State, T::State>>,
-    /// For each particle the contacts that it is in: index << 1 | 1 when it is the second of the pair.
-    of_particle: Vec<u32>,
-    start: Vec<u32>,
+    now: Store,
+    /// Before a rebuild; kept for its memory.
+    old: Store,
+    /// Keys of all pairs; kept for its memory.
+    keys: Vec<u64>,
+    /// Per chunk of particles the first of its blocks, and their number at the end.
+    starts: Vec<u32>,
+    /// What blocks do to their second sides, [`kernel::rows`] rows of [`BLOCK`] numbers each, with a block to spare at
+    /// either end.
+    actions: Vec<f64>,
+    second: SecondSides,
     partial: Vec<Partial>,
     /// The deepest contact so far.
     deepest: Deepest,
+    /// By how much the gap of two particles may close while no particle moves further than 1 [-]: 2 for the way of
+    /// both, the rest for wires that thicken as they shorten.
+    closing: f64,
+    arch: Arch,
 }
 
 impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
+    /// Fields of a record: the history, and 2ξ√m*.
+    const FIELDS: usize = History::<N, T>::NUMBERS + 1;
+    const VISCOSITY: usize = Self::FIELDS - 1;
+
     /// Without contacts yet.
-    pub fn new(laws: Laws<N, T>) -> Self {
+    pub fn new(laws: Laws<N, T>, assembly: &Assembly) -> Self {
+        let largest = assembly.radius.iter().copied().fold(0.0, f64::max);
+        let shortest = assembly.rest_length.iter().copied().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
         Self {
             laws,
-            contacts: Vec::new(),
+            now: Store::default(),
+            old: Store::default(),
+            keys: Vec::new(),
+            starts: Vec::new(),
             actions: Vec::new(),
-            old: Vec::new(),
-            of_particle: Vec::new(),
-            start: Vec::new(),
+            second: SecondSides::default(),
             partial: Vec::new(),
             deepest: Deepest::default(),
+            // Two ends of a bond that come 2 nearer raise its log strain by 2/l, and its radius by half of that; a bond
+            // may be half as long as at rest.
+            closing: 2.0 + 2.0 * (2.0 * largest) / shortest,
+            arch: Arch::new(),
         }
     }
 
-    fn index_particles(&mut self, n: usize) {
-        self.start.clear();
-        self.start.resize(n + 1, 0);
-        for c in &self.contacts {
-            self.start[c.i as usize + 1] += 1;
-            self.start[c.j as usize + 1] += 1;
-        }
-        for p in 0..n {
-            self.start[p + 1] += self.start[p];
-        }
-        self.of_particle.clear();
-        self.of_particle.resize(2 * self.contacts.len(), 0);
-        let mut next = self.start.clone();
-        for (k, c) in self.contacts.iter().enumerate() {
-            for (particle, side) in [(c.i, 0), (c.j, 1)] {
-                self.of_particle[next[particle as usize] as usize] = (k as u32) << 1 | side;
-                next[particle as usize] += 1;
+    fn place(block: usize, field: usize, lane: usize) -> usize {
+        (block * Self::FIELDS + field) * BLOCK + lane
+    }
+
+    fn history(store: &Store, block: usize, lane: usize) -> History<N, T> {
+        History::of(|k| store.records[Self::place(block, k, lane)])
+    }
+
+    /// All pairs: block, place in it, the two particles.
+    fn pairs(store: &Store) -> impl Iterator<Item = (usize, usize, [usize; 2])> + '_ {
+        store.blocks.iter().enumerate().flat_map(|(b, block)| {
+            let [i, j] = [block.i, block.j].map(|p| p as usize);
+            block.lanes().map(move |k| (b, k, [i + k, j + k]))
+        })
+    }
+
+    /// Pairs that touch, with their history.
+    fn touching(&self) -> impl Iterator<Item = (History<N, T>, [usize; 2])> + '_ {
+        let all = Self::pairs(&self.now).map(|(b, k, pair)| (Self::history(&self.now, b, k), pair));
+        all.filter(|(history, _)| history.touching())
+    }
+
+    /// Blocks for the pairs in `keys`, their records all 0.
+    fn lay_out(&mut self) {
+        let Store { blocks, records } = &mut self.now;
+        blocks.clear();
+        for key in &self.keys {
+            let [i, j] = pair(*key);
+            let lane = i % BLOCK as u32;
+            let first = Block { i: i - lane, j: j - lane, pairs: 0, acts: false, quiet_until: 0.0 };
+            if blocks.last().is_none_or(|last: &Block| last.key() != first.key()) {
+                blocks.push(first);
+            }
+            if let Some(last) = blocks.last_mut() {
+                last.pairs |= 1 << lane;
             }
         }
+        records.clear();
+        records.resize(blocks.len() * Self::FIELDS * BLOCK, 0.0);
     }
 
-    /// Adds up each particle's contacts in the order of the list.
-    fn gather(&self, state: &mut State) {
-        let (actions, start, of_particle) = (&self.actions, &self.start, &self.of_particle);
-        let radius = &state.radius;
-        let f = &mut state.contact_force;
-        let t = &mut state.contact_torque;
-        (
-            f.x.par_chunks_mut(CHUNK),
-            f.y.par_chunks_mut(CHUNK),
-            f.z.par_chunks_mut(CHUNK),
-            t.x.par_chunks_mut(CHUNK),
-            t.y.par_chunks_mut(CHUNK),
-            t.z.par_chunks_mut(CHUNK),
-        )
-            .into_par_iter()
-            .with_max_len(1)
-            .enumerate()
-            .for_each(|(chunk, (fx, fy, fz, tx, ty, tz))| {
-                for k in 0..fx.len() {
-                    let p = chunk * CHUNK + k;
-                    let (mut force, mut torque) = (DVec3::ZERO, DVec3::ZERO);
-                    for entry in &of_particle[start[p] as usize..start[p + 1] as usize] {
-                        let action = &actions[(entry >> 1) as usize];
-                        let sign = if entry & 1 == 0 { 1.0 } else { -1.0 };
-                        force += action.force * sign;
-                        torque += action.twist * (radius[p] - action.sunk);
-                    }
-                    (fx[k], fy[k], fz[k]) = force.into();
-                    (tx[k], ty[k], tz[k]) = torque.into();
+    /// Fills the records from the old ones, and for pairs that were not there afresh; returns what friction had stored
+    /// in pairs that left [J].
+    fn take_over(&mut self, state: &State) -> f64 {
+        let (mut lost, mut o) = (0.0, 0);
+        let old = std::mem::take(&mut self.old);
+        let (size, laws) = (Self::FIELDS * BLOCK, self.laws);
+        let leaving = |o: usize, lanes: &mut dyn Iterator<Item = usize>| -> f64 {
+            lanes.map(|lane| leave(&laws, &Self::history(&old, o, lane))).sum()
+        };
+        for b in 0..self.now.blocks.len() {
+            let block = self.now.blocks[b];
+            while o < old.blocks.len() && old.blocks[o].key() < block.key() {
+                lost += leaving(o, &mut old.blocks[o].lanes());
+                o += 1;
+            }
+            let before = old.blocks.get(o).filter(|before| before.key() == block.key()).copied();
+            let kept = before.map_or(0, |before| before.pairs);
+            for lane in block.lanes() {
+                if kept >> lane & 1 == 1 {
+                    (0..Self::FIELDS).for_each(|field| {
+                        let from = old.records[o * size + field * BLOCK + lane];
+                        self.now.records[b * size + field * BLOCK + lane] = from;
+                    });
+                } else {
+                    self.set_up(b, lane, state);
                 }
-            });
+            }
+            if let Some(before) = before {
+                lost += leaving(o, &mut before.lanes().filter(|lane| block.pairs >> lane & 1 == 0));
+                o += 1;
+            }
+        }
+        (o..old.blocks.len()).for_each(|o| lost += leaving(o, &mut old.blocks[o].lanes()));
+        self.old = old;
+        lost
+    }
+
+    /// A pair that is new in the list. During a run it was beyond reach until now, or a bond has just broken.
+    fn set_up(&mut self, block: usize, lane: usize, state: &State) {
+        let [i, j] = [self.now.blocks[block].i, self.now.blocks[block].j].map(|p| p as usize + lane);
+        let mut put = |field: usize, number: f64| self.now.records[Self::place(block, field, lane)] = number;
+        put(History::<N, T>::RADIUS, reduced_radius(state.radius0[i], state.radius0[j]));
+        put(Self::VISCOSITY, viscous_coefficient(self.laws.damping, reduced_mass(state.mass[i], state.mass[j]), 1.0));
+        if state.step > 0 {
+            let distance = (state.x.get(j) - state.x.get(i)).length();
+            put(History::<N, T>::OFFSET, (state.radius[i] + state.radius[j] - distance).max(0.0));
+        }
+    }
+
+    /// Overlap that counts, now [m].
+    fn overlap(history: &History<N, T>, state: &State, [i, j]: [usize; 2]) -> f64 {
+        state.radius[i] + state.radius[j] - history.offset - (state.x.get(j) - state.x.get(i)).length()
     }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     fn rebuild(&mut self, list: &PairList, state: &State) -> Partial {
-        std::mem::swap(&mut self.contacts, &mut self.old);
-        self.contacts.clear();
-        let mut lost = Partial::default();
-        let mut k = 0;
-        for (i, j) in list.pairs.iter().copied() {
-            while k < self.old.len() && (self.old[k].i, self.old[k].j) < (i, j) {
-                part::<N, T>(&self.laws, &mut self.old[k].history, 0.0, &mut lost);
-                k += 1;
-            }
-            if k < self.old.len() && (self.old[k].i, self.old[k].j) == (i, j) {
-                self.contacts.push(self.old[k]);
-                k += 1;
-            } else {
-                self.contacts.push(fresh(i, j, state));
-            }
-        }
-        for c in &mut self.old[k..] {
-            part::<N, T>(&self.laws, &mut c.history, 0.0, &mut lost);
-        }
+        std::mem::swap(&mut self.now, &mut self.old);
+        self.keys.clear();
+        self.keys.extend(list.pairs.iter().map(|(i, j)| key(*i, *j)));
+        self.keys.par_sort_unstable();
+        self.lay_out();
+        let friction = self.take_over(state);
+        let chunks = state.len().div_ceil(CHUNK);
+        let blocks = &self.now.blocks;
+        self.starts.clear();
+        self.starts.extend((0..=chunks).map(|c| blocks.partition_point(|b| (b.i as usize) < c * CHUNK) as u32));
         self.actions.clear();
-        self.actions.resize(self.contacts.len(), Action::default());
+        self.actions.resize((blocks.len() * kernel::rows::<T>() + 2) * BLOCK, 0.0);
         self.partial.clear();
-        self.partial.resize(self.contacts.len().div_ceil(CHUNK), Partial::default());
-        self.index_particles(state.len());
-        lost
+        self.partial.resize(chunks, Partial::default());
+        self.second.index(blocks, state.len());
+        Partial { friction, ..Partial::default() }
     }
 
     fn compute(&mut self, state: &mut State) -> Partial {
-        let (laws, deepest) = (&self.laws, self.deepest);
-        let shared = &*state;
-        (self.contacts.par_chunks_mut(CHUNK), self.actions.par_chunks_mut(CHUNK), self.partial.par_iter_mut())
-            .into_par_iter()
-            .with_max_len(1)
-            .for_each(|(contacts, actions, partial)| {
-                // The sum stays on this thread's stack: its neighbours in memory belong to other threads.
-                let mut sum = Partial::beyond(deepest);
-                for (contact, action) in contacts.iter_mut().zip(actions) {
-                    *action = sphere_pair(laws, shared, contact, &mut sum);
-                }
-                *partial = sum;
-            });
-        self.gather(state);
+        let (laws, arch, deepest, closing) = (&self.laws, self.arch, self.deepest, self.closing);
+        let (seen, sides) = state.split_contacts();
+        let end = self.actions.len() - BLOCK;
+        let work = Work {
+            first: 0,
+            starts: &self.starts,
+            blocks: &mut self.now.blocks,
+            records: &mut self.now.records,
+            actions: &mut self.actions[BLOCK..end],
+            sides,
+            partial: &mut self.partial,
+        };
+        work.share(Self::FIELDS, kernel::rows::<T>(), &|chunk| {
+            arch.dispatch(kernel::Chunk { laws, seen: &seen, deepest, closing, work: chunk });
+        });
+        self.second.add(&self.now.blocks, &self.actions, T::ACTIVE, state, arch);
         let mut sum = Partial::beyond(deepest);
         self.partial.iter().for_each(|p| sum.add(p));
         self.deepest = sum.deepest;
         sum
     }
 
-    fn elastic_energy(&self) -> f64 {
-        self.contacts.iter().map(|c| elastic_energy(&self.laws, &c.history)).sum()
+    fn elastic_energy(&self, state: &State) -> f64 {
+        self.touching().map(|(h, pair)| elastic_energy(&self.laws, &h, Self::overlap(&h, state, pair))).sum()
     }
 
     fn add_normal_forces(&self, onto: &mut [f64]) {
-        for c in &self.contacts {
-            onto[c.i as usize] += c.history.normal_force;
-            onto[c.j as usize] += c.history.normal_force;
+        for (history, pair) in self.touching() {
+            pair.into_iter().for_each(|p| onto[p] += history.normal_force);
         }
     }
 
     fn active(&self) -> usize {
-        self.contacts.iter().filter(|c| c.history.touching).count()
+        self.touching().count()
     }
 
     fn candidates(&self) -> usize {
-        self.contacts.len()
+        self.keys.len()
     }
 
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
-        for c in self.contacts.iter().filter(|c| c.history.touching) {
-            let (i, j) = (c.i as usize, c.j as usize);
+        for (history, pair @ [i, j]) in self.touching() {
             let d = state.x.get(j) - state.x.get(i);
-            let distance = d.length();
-            let approach = (state.v.get(i) - state.v.get(j)).dot(d) / distance;
-            let overlap = state.radius[i] + state.radius[j] - c.history.offset - distance;
-            let Some(k) = foreseen_stiffness(&self.laws, &c.history, overlap, approach, horizon) else { continue };
-            let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);
+            let approach = (state.v.get(i) - state.v.get(j)).dot(d) / d.length();
+            let overlap = Self::overlap(&history, state, pair);
+            let Some(k) = foreseen_stiffness(&self.laws, &history, overlap, approach, horizon) else { continue };
+            let mass = reduced_mass(state.mass[i], state.mass[j]);
             let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
-            out.contact([c.i, c.j, 0], [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], viscosity);
+            let nodes = [i as u32, j as u32, 0];
+            out.contact(nodes, [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], viscosity);
         }
     }
 }
 
-/// A pair that is new in the list. During a run it was beyond reach until now, or a bond has just broken.
-fn fresh<N: Default, S: Default>(i: u32, j: u32, state: &State) -> Contact<N, S> {
-    let (a, b) = (i as usize, j as usize);
-    let mut history = History::new(reduced_radius(state.radius0[a], state.radius0[b]));
-    if state.step > 0 {
-        let distance = (state.x.get(b) - state.x.get(a)).length();
-        history.offset = (state.radius[a] + state.radius[b] - distance).max(0.0);
-    }
-    Contact { i, j, history }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Geometrical overlap [m]; the lever arms of friction end in its middle, so that they add up to the distance.
-fn sunk<N, S>(history: &History<N, S>) -> f64 {
-    history.overlap + history.offset
-}
-
-/// Kinematics and response of one candidate pair.
-#[inline(always)]
-fn sphere_pair<N: NormalLaw, T: TangentialLaw>(
-    laws: &Laws<N, T>,
-    state: &State,
-    c: &mut Contact<N::State, T::State>,
-    partial: &mut Partial,
-) -> Action {
-    let (i, j) = (c.i as usize, c.j as usize);
-    let d = state.x.get(j) - state.x.get(i);
-    let touching = state.radius[i] + state.radius[j];
-    let reach = touching - c.history.offset;
-    let distance2 = d.length_squared();
-    if distance2 >= reach * reach {
-        if c.history.touching || c.history.offset > 0.0 {
-            part::<N, T>(laws, &mut c.history, touching - distance2.sqrt(), partial);
+    #[test]
+    fn a_key_stands_for_its_pair_and_orders_by_chunk_diagonal_particle() {
+        let pairs = [[3, 900], [4, 901], [255, 256], [256, 257], [300, 1_000_000], [2_000_000, 2_000_001]];
+        for [i, j] in pairs {
+            assert_eq!(pair(key(i, j)), [i, j]);
         }
-        return Action::default();
+        // One diagonal of one chunk before the next diagonal, one chunk before the next.
+        assert!(key(3, 900) < key(4, 901) && key(4, 901) < key(3, 901) && key(3, 901) < key(256, 257));
+        let block = |i: u32, j: u32| key(i, j) / BLOCK as u64;
+        assert!(block(8, 100) == block(15, 107) && block(15, 107) != block(16, 108) && block(8, 100) != block(8, 101));
     }
-    let distance = distance2.sqrt();
-    let normal = d * (1.0 / distance);
-    let overlap = reach - distance;
-    let mut velocity = state.v.get(j) - state.v.get(i);
-    if T::ACTIVE {
-        let half = 0.5 * (overlap + c.history.offset);
-        let arms = state.w.get(i) * (state.radius[i] - half) + state.w.get(j) * (state.radius[j] - half);
-        velocity -= arms.cross(normal);
-    }
-    let mass = 1.0 / (state.inverse_mass[i] + state.inverse_mass[j]);
-    let meeting = Meeting { normal, overlap, reach, velocity, mass, dt: state.dt };
-    let pair = touch(laws, &mut c.history, &meeting, partial);
-    let least = state.radius[i].min(state.radius[j]);
-    partial.deepest.meet([c.i, c.j], overlap, least, c.history.reduced_radius, c.history.normal_force);
-    Action { force: pair.force, twist: normal.cross(pair.friction), sunk: 0.5 * sunk(&c.history) }
 }

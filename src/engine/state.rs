@@ -123,6 +123,8 @@ pub struct State {
     pub time: f64,
     /// Step that led here [s].
     pub dt: f64,
+    /// Sum over the steps of the greatest displacement in each [m]: no particle has gone further.
+    pub travel: f64,
 }
 
 impl State {
@@ -150,7 +152,16 @@ impl State {
             step: 0,
             time: 0.0,
             dt: 0.0,
+            travel: 0.0,
         }
+    }
+
+    /// What contacts read, and what they write.
+    pub fn split_contacts(&mut self) -> (Seen<'_>, ContactSides<'_>) {
+        let (x, v, w) = (self.x.rows(), self.v.rows(), self.w.rows());
+        let seen = Seen { x, v, w, radius: &self.radius, dt: self.dt, travel: self.travel };
+        let (f, t) = (&mut self.contact_force, &mut self.contact_torque);
+        (seen, ContactSides { force: [&mut f.x, &mut f.y, &mut f.z], torque: [&mut t.x, &mut t.y, &mut t.z] })
     }
 
     /// Number of particles.
@@ -192,6 +203,76 @@ impl State {
     pub fn free_part(&self, i: usize, first: u8, vector: DVec3) -> DVec3 {
         let free = |k: u8| if self.fixed[i] >> (first + k) & 1 == 1 { 0.0 } else { 1.0 };
         vector * DVec3::new(free(0), free(1), free(2))
+    }
+}
+
+/// What contacts see of all particles; see [`State`].
+pub struct Seen<'a> {
+    /// Centres [m].
+    pub x: [&'a [f64]; 3],
+    /// Velocities [m/s].
+    pub v: [&'a [f64]; 3],
+    /// Spins [rad/s].
+    pub w: [&'a [f64]; 3],
+    /// Contact radii [m].
+    pub radius: &'a [f64],
+    /// Step [s].
+    pub dt: f64,
+    /// See [`State::travel`].
+    pub travel: f64,
+}
+
+/// Forces [N] and torques [N m] from contacts, of some particles.
+pub struct ContactSides<'a> {
+    /// Axis by axis.
+    pub force: [&'a mut [f64]; 3],
+    /// Axis by axis.
+    pub torque: [&'a mut [f64]; 3],
+}
+
+impl<'a> ContactSides<'a> {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.force[0].len()
+    }
+
+    /// The first `at` particles, and the others.
+    pub fn split_at(self, at: usize) -> (Self, Self) {
+        let ([f0, f1, f2], [t0, t1, t2]) = (self.force, self.torque);
+        let [f0, f1, f2, t0, t1, t2] = [f0, f1, f2, t0, t1, t2].map(|row| row.split_at_mut(at));
+        let left = Self { force: [f0.0, f1.0, f2.0], torque: [t0.0, t1.0, t2.0] };
+        (left, Self { force: [f0.1, f1.1, f2.1], torque: [t0.1, t1.1, t2.1] })
+    }
+
+    /// The forces, and with `turn` the torques.
+    pub fn rows(&mut self, turn: bool) -> impl Iterator<Item = &mut [f64]> {
+        let torque = if turn { &mut self.torque[..] } else { &mut [] };
+        self.force.iter_mut().chain(torque).map(|row| &mut **row)
+    }
+
+    /// Forces and torques.
+    pub fn all(&mut self) -> [&mut [f64]; 6] {
+        let ([fx, fy, fz], [tx, ty, tz]) = (&mut self.force, &mut self.torque);
+        [fx, fy, fz, tx, ty, tz]
+    }
+
+    /// The forces.
+    pub fn forces(&mut self) -> [&mut [f64]; 3] {
+        let [x, y, z] = &mut self.force;
+        [x, y, z]
+    }
+
+    /// Calls `each` with the particles of every chunk, `chunks` of them from the chunk `first` on, side by side.
+    pub fn share(self, first: usize, chunks: usize, each: &(impl Fn(usize, ContactSides<'_>) + Sync)) {
+        if chunks <= 1 {
+            if chunks == 1 {
+                each(first, self);
+            }
+            return;
+        }
+        let half = chunks / 2;
+        let (left, right) = self.split_at(half * CHUNK);
+        rayon::join(|| left.share(first, half, each), || right.share(first + half, chunks - half, each));
     }
 }
 

@@ -45,14 +45,13 @@ pub struct PlasticState<R = f64> {
 impl<R: Real> PlasticState<R> {
     #[inline(always)]
     fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
-        let pick = |a, b| R::choose(mask, a, b);
         Self {
-            axial: pick(yes.axial, no.axial),
-            equivalent: pick(yes.equivalent, no.equivalent),
-            thinning: pick(yes.thinning, no.thinning),
-            inverse_thinning: pick(yes.inverse_thinning, no.inverse_thinning),
-            yield_stress: pick(yes.yield_stress, no.yield_stress),
-            slope: pick(yes.slope, no.slope),
+            axial: R::choose(mask, yes.axial, no.axial),
+            equivalent: R::choose(mask, yes.equivalent, no.equivalent),
+            thinning: R::choose(mask, yes.thinning, no.thinning),
+            inverse_thinning: R::choose(mask, yes.inverse_thinning, no.inverse_thinning),
+            yield_stress: R::choose(mask, yes.yield_stress, no.yield_stress),
+            slope: R::choose(mask, yes.slope, no.slope),
         }
     }
 }
@@ -84,10 +83,8 @@ impl ElastoPlastic {
         state.equivalent += equivalent;
         // e^(∓Δε_p/2) to the rounding of a double: the next term of a step of 1e-5 is 2e-17.
         let half = plastic_axial * 0.5;
-        let small = [half * (half * -0.5 + 1.0), half * (half * 0.5 + 1.0)];
-        let before = [state.thinning, state.inverse_thinning];
-        state.thinning = before[0] - before[0] * small[0];
-        state.inverse_thinning = before[1] + before[1] * small[1];
+        state.thinning -= state.thinning * (half * (half * -0.5 + 1.0));
+        state.inverse_thinning += state.inverse_thinning * (half * (half * 0.5 + 1.0));
         let large = half.abs().above(half.like(5e-6)) & wanted;
         if large.any() {
             let thinning = (state.axial * -0.5).exp();
@@ -155,8 +152,12 @@ impl BondLaw for ElastoPlastic {
 
     #[inline(always)]
     fn each_number<R: Real>(s: &PlasticState<R>, mut put: impl FnMut(usize, R)) {
-        let all = [s.axial, s.equivalent, s.thinning, s.inverse_thinning, s.yield_stress, s.slope];
-        all.into_iter().enumerate().for_each(|(k, number)| put(k, number));
+        put(0, s.axial);
+        put(1, s.equivalent);
+        put(2, s.thinning);
+        put(3, s.inverse_thinning);
+        put(4, s.yield_stress);
+        put(5, s.slope);
     }
 
     fn initial(&self) -> PlasticState {
@@ -174,7 +175,8 @@ impl BondLaw for ElastoPlastic {
         live: R::Mask,
     ) -> R {
         let section = self.section(shape, state);
-        let k = section.stiffness(&self.moduli, natural_length(shape, state));
+        let compliance = Compliance::new(&self.moduli, shape, state);
+        let k = compliance.stiffness(&self.moduli, &section, natural_length(shape, state));
         let before = *force;
         add_transverse(force, &k, step);
         let stress = (step.log_strain - state.axial) * self.moduli.young;
@@ -192,7 +194,6 @@ impl BondLaw for ElastoPlastic {
             flowed.bend[axis] *= end.bend;
         }
         flowed.twist *= end.twist;
-        let compliance = Compliance::new(&k, &self.moduli);
         let plastic_axial = (stress - stress * end.axial) * self.moduli.compliance;
         // Both ends of the step on the section at its start.
         let work = (before.axial + stress * end.axial * section.area) * 0.5 * step.length * plastic_axial
@@ -280,11 +281,25 @@ struct Compliance<R> {
 }
 
 impl<R: Real> Compliance<R> {
+    /// l³/(12EI) + l/(κGA), l/(EI), l/(GJ): inverses of radius and length are at hand, so nothing is divided.
     #[inline(always)]
-    fn new(k: &BondStiffness<R>, moduli: &Moduli) -> Self {
-        let bend = k.bend.inverse();
+    fn new(moduli: &Moduli, shape: &BondShape<R>, state: &PlasticState<R>) -> Self {
+        let wider = state.inverse_thinning;
+        let inverse_radius = shape.inverse_radius * wider;
+        let inverse_radius2 = inverse_radius * inverse_radius;
+        // The stress-free length grows as the section thins: l₀e^(ε_p).
+        let length = shape.rest_length * (wider * wider);
+        let bend = length * inverse_radius2 * inverse_radius2 * (4.0 * FRAC_1_PI * moduli.compliance);
+        let slide = length * inverse_radius2 * (FRAC_1_PI / (moduli.kappa * moduli.shear));
+        let shear = bend * length * length * (1.0 / 12.0) + slide;
         // Torsion is GJ/l = 2GI/l, bending EI/l.
-        Self { shear: k.shear.inverse(), bend, twist: bend * moduli.bend_over_twist }
+        Self { shear, bend, twist: bend * moduli.bend_over_twist }
+    }
+
+    /// The stiffnesses; those of [`Section::stiffness`].
+    #[inline(always)]
+    fn stiffness(&self, moduli: &Moduli, section: &Section<R>, inverse_length: R) -> BondStiffness<R> {
+        BondStiffness { shear: self.shear.inverse(), ..section.stiffness(moduli, inverse_length) }
     }
 }
 
@@ -297,13 +312,17 @@ fn transverse_plastic_work<R: Real>(
     c: &Compliance<R>,
     step: &BondIncrement<R>,
 ) -> R {
-    let mode = |f0: R, f1: R, c: R, total: R| (f0 + f1) * 0.5 * (total - (f1 - f0) * c);
-    let mut work = mode(before.twist, after.twist, c.twist, step.twist);
-    for axis in 0..2 {
-        work += mode(before.shear[axis], after.shear[axis], c.shear, step.shear[axis]);
-        work += mode(before.bend[axis], after.bend[axis], c.bend, step.bend[axis]);
-    }
-    work
+    mode(before.twist, after.twist, c.twist, step.twist)
+        + mode(before.shear[0], after.shear[0], c.shear, step.shear[0])
+        + mode(before.bend[0], after.bend[0], c.bend, step.bend[0])
+        + mode(before.shear[1], after.shear[1], c.shear, step.shear[1])
+        + mode(before.bend[1], after.bend[1], c.bend, step.bend[1])
+}
+
+/// The part of one mode, whose force goes from `f0` to `f1` over the displacement `total`.
+#[inline(always)]
+fn mode<R: Real>(f0: R, f1: R, compliance: R, total: R) -> R {
+    (f0 + f1) * 0.5 * (total - (f1 - f0) * compliance)
 }
 
 /// Elastic shear, bending and torsion stay what they were while the section thins: forces follow the stiffness, and the

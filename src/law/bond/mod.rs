@@ -96,13 +96,19 @@ pub struct BondForce<R = f64> {
 /// Length of a 2-vector; forces are far from the ends of the number range, so no scaling is needed.
 #[inline(always)]
 fn size<R: Real>(v: [R; 2]) -> R {
-    square(v).sqrt()
+    let square = square(v);
+    square * square.inverse_sqrt()
 }
 
 /// Square of the length of a 2-vector.
 #[inline(always)]
 fn square<R: Real>(v: [R; 2]) -> R {
     v[0] * v[0] + v[1] * v[1]
+}
+
+#[inline(always)]
+fn choose_both<R: Real>(mask: R::Mask, yes: [R; 2], no: [R; 2]) -> [R; 2] {
+    [R::choose(mask, yes[0], no[0]), R::choose(mask, yes[1], no[1])]
 }
 
 impl<R: Real> BondForce<R> {
@@ -121,13 +127,11 @@ impl<R: Real> BondForce<R> {
     /// `yes` where the mask holds, `no` elsewhere.
     #[inline(always)]
     pub fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
-        let pick = |a, b| R::choose(mask, a, b);
-        let both = |a: [R; 2], b: [R; 2]| [pick(a[0], b[0]), pick(a[1], b[1])];
         Self {
-            axial: pick(yes.axial, no.axial),
-            shear: both(yes.shear, no.shear),
-            bend: both(yes.bend, no.bend),
-            twist: pick(yes.twist, no.twist),
+            axial: R::choose(mask, yes.axial, no.axial),
+            shear: choose_both(mask, yes.shear, no.shear),
+            bend: choose_both(mask, yes.bend, no.bend),
+            twist: R::choose(mask, yes.twist, no.twist),
         }
     }
 }

@@ -16,18 +16,22 @@ pub(super) struct Return<R> {
     pub equivalent: R,
 }
 
-impl<R: Real> Return<R> {
-    #[inline(always)]
-    fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
-        let pick = |a, b| R::choose(mask, a, b);
-        Self {
-            axial: pick(yes.axial, no.axial),
-            bend: pick(yes.bend, no.bend),
-            twist: pick(yes.twist, no.twist),
-            shear: pick(yes.shear, no.shear),
-            equivalent: pick(yes.equivalent, no.equivalent),
-        }
-    }
+/// Half of how fast the square of a mode falls with z.
+#[inline(always)]
+fn fall_of<R: Real>(value: R, rate: R, soft: R, h: R) -> R {
+    value * value * (h + rate * soft)
+}
+
+/// A stress point on the way back, relative to the yield values there.
+struct Point<R> {
+    /// σ_y₀/σ_y [-].
+    shrink: R,
+    /// What plastic flow leaves of σ*, T*, V* [-].
+    soft: [R; 3],
+    axial: R,
+    bend: R,
+    twist: R,
+    shear: R,
 }
 
 /// Trial point and compliances of the return, all relative to the yield values at the start of the step.
@@ -71,43 +75,74 @@ impl<R: Real> Trial<R> {
         // Plastic work per x is 2 − m on the surface. Hardening within the step takes m from the trial: what that
         // leaves out is of second order in the step, and the next step starts from σ_y(p) again.
         let h = self.hardening_rate * (-self.bend.lesser(one) + 2.0);
-        let square = |value: R, rate: R| [value * value, value * value * (h + rate)];
-        let (n, t, v) = (
-            square(self.axial, self.axial_rate),
-            square(self.twist, self.twist_rate),
-            square(self.shear, self.shear_rate),
-        );
-        let size2 = n[0] + t[0] + v[0];
-        let end_of_range = R::choose(h.above(zero), h.inverse(), zero.like(f64::INFINITY));
-        let start = ((size2.sqrt() - 1.0) * size2 / (n[1] + t[1] + v[1])).greater(zero);
-        let mut z = start.lesser(end_of_range * 0.5);
-        let mut end = Return { axial: one, bend: one, twist: one, shear: one, equivalent: zero };
+        let (n2, t2, v2) = (self.axial * self.axial, self.twist * self.twist, self.shear * self.shear);
+        let fall = n2 * (h + self.axial_rate) + t2 * (h + self.twist_rate) + v2 * (h + self.shear_rate);
+        let size2 = n2 + t2 + v2;
+        let size = size2 * size2.inverse_sqrt();
+        let start = ((size - 1.0) * size2 / fall).greater(zero);
+        let mut z = self.within_range(h, zero, start);
         let mut open = wanted;
         for round in 0..=60 {
-            let shrink = one - h * z;
-            // Each mode apart, so that the axial one has the same bits without the others.
-            let soft = |rate: R| (z * rate + 1.0).inverse();
-            let (axial, twist, shear) = (soft(self.axial_rate), soft(self.twist_rate), soft(self.shear_rate));
-            let (n, t, v) = (self.axial * shrink * axial, self.twist * shrink * twist, self.shear * shrink * shear);
-            let bend = (self.bend * shrink - z * self.bend_rate).greater(zero);
-            let bent = bend.above(zero);
-            let f = n * n + bend + t * t + v * v - 1.0;
+            let point = self.at(h, z);
+            let f =
+                point.axial * point.axial + point.bend + point.twist * point.twist + point.shear * point.shear - 1.0;
             if round > 0 {
-                let growth = shrink.inverse();
-                let kept = R::choose(bent, bend * growth / self.bend, zero);
-                let equivalent = z * (-bend + 2.0) * self.inverse_yield * growth;
-                end = Return::choose(open, &Return { axial, bend: kept, twist, shear, equivalent }, &end);
                 open = open & !one.above(f.abs() * 1e10);
                 if !open.any() {
-                    break;
+                    return self.end(z, &point);
                 }
             }
-            let fall = |value: R, rate: R, soft: R| value * value * (h + rate * soft);
-            let slope =
-                fall(n, self.axial_rate, axial) + fall(t, self.twist_rate, twist) + fall(v, self.shear_rate, shear);
+            let slope = fall_of(point.axial, self.axial_rate, point.soft[0], h)
+                + fall_of(point.twist, self.twist_rate, point.soft[1], h)
+                + fall_of(point.shear, self.shear_rate, point.soft[2], h);
+            let bent = point.bend.above(zero);
             let slope = slope * -2.0 - R::choose(bent, self.bend * h + self.bend_rate, zero);
-            z = (z - f / slope).greater(zero).lesser((z + end_of_range) * 0.5);
+            let next = self.within_range(h, z, (z - f / slope).greater(zero));
+            z = R::choose(open, next, z);
         }
-        end
+        self.end(z, &self.at(h, z))
+    }
+
+    /// `next`, or half way from `last` to the end of the range of z where it lies beyond that.
+    #[inline(always)]
+    fn within_range(&self, h: R, last: R, next: R) -> R {
+        let far = (next * h).above((last * h + 1.0) * 0.5);
+        if far.any() { R::choose(far, (last + h.inverse()) * 0.5, next) } else { next }
+    }
+
+    /// The stress point at `z`, relative to the yield values that belong to it.
+    #[inline(always)]
+    fn at(&self, h: R, z: R) -> Point<R> {
+        let shrink = z.like(1.0) - h * z;
+        // The axial mode apart, so that it has the same bits without the others; two inverses from one division.
+        let axial = (z * self.axial_rate + 1.0).inverse();
+        let (twist, shear) = (z * self.twist_rate + 1.0, z * self.shear_rate + 1.0);
+        let both = (twist * shear).inverse();
+        let soft = [axial, both * shear, both * twist];
+        Point {
+            shrink,
+            soft,
+            axial: self.axial * shrink * soft[0],
+            twist: self.twist * shrink * soft[1],
+            shear: self.shear * shrink * soft[2],
+            bend: (self.bend * shrink - z * self.bend_rate).greater(z.like(0.0)),
+        }
+    }
+
+    /// What becomes of the trial values at the answer.
+    #[inline(always)]
+    fn end(&self, z: R, point: &Point<R>) -> Return<R> {
+        let zero = z.like(0.0);
+        let bent = point.bend.above(zero);
+        let bend = R::choose(bent, self.bend, z.like(1.0));
+        let inverse = (point.shrink * bend).inverse();
+        let growth = inverse * bend;
+        Return {
+            axial: point.soft[0],
+            twist: point.soft[1],
+            shear: point.soft[2],
+            bend: R::choose(bent, point.bend * inverse, zero),
+            equivalent: z * (-point.bend + 2.0) * self.inverse_yield * growth,
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Elastic contact of two spheres: F = (4/3) E* √R* δ^(3/2) (Hertz 1882; Johnson, Contact Mechanics, eq. 4.23).
 
 use super::{NormalLaw, NormalResponse};
+use crate::base::lanes::Real;
 
 /// Hertz's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,41 +10,53 @@ pub struct Hertz {
     pub effective_modulus: f64,
 }
 
-/// Response on a Hertzian curve of effective modulus E* [Pa] and radius R [m] at overlap δ > 0 [m]: a = √(R δ),
-/// F = (4/3) E* a δ, dF/dδ = 2 E* a. Thornton's unloading curves have this form too.
+/// Response on a Hertzian curve of effective modulus E* [Pa] at overlap δ ≥ 0 [m], from the square of the contact radius
+/// a² = R δ [m²]: F = (4/3) E* a δ, dF/dδ = 2 E* a. Thornton's unloading curves have this form too.
 #[inline(always)]
-pub(super) fn hertzian(effective_modulus: f64, radius: f64, overlap: f64) -> NormalResponse {
-    let contact_radius = (radius * overlap).sqrt();
+pub(super) fn hertzian<R: Real>(effective_modulus: f64, radius_squared: R, overlap: R) -> NormalResponse<R> {
+    let inverse_radius = radius_squared.inverse_sqrt();
+    let radius = radius_squared * inverse_radius;
     NormalResponse {
-        force: 4.0 / 3.0 * effective_modulus * contact_radius * overlap,
-        stiffness: 2.0 * effective_modulus * contact_radius,
-        radius: contact_radius,
-        plastic_work: 0.0,
+        force: radius * (4.0 / 3.0 * effective_modulus) * overlap,
+        stiffness: radius * (2.0 * effective_modulus),
+        radius,
+        inverse_radius,
+        plastic_work: overlap.like(0.0),
     }
 }
 
 /// Energy under a Hertzian curve: (8/15) E* √R δ^(5/2) = (2/5) F δ [J].
 #[inline(always)]
 pub(super) fn hertzian_energy(effective_modulus: f64, radius: f64, overlap: f64) -> f64 {
-    0.4 * overlap * hertzian(effective_modulus, radius, overlap).force
+    0.4 * overlap * hertzian(effective_modulus, radius * overlap, overlap).force
 }
 
 impl NormalLaw for Hertz {
-    type State = ();
+    type State<R: Real> = ();
+
+    const HISTORY: usize = 0;
 
     #[inline(always)]
-    fn response(&self, _: &mut (), reduced_radius: f64, overlap: f64) -> NormalResponse {
-        hertzian(self.effective_modulus, reduced_radius, overlap.max(0.0))
+    fn history<R: Real>(_: impl Fn(usize) -> R) {}
+
+    #[inline(always)]
+    fn each_number<R: Real>((): &(), _: impl FnMut(usize, R)) {}
+
+    #[inline(always)]
+    fn response<R: Real>(&self, (): &mut (), reduced_radius: R, overlap: R) -> NormalResponse<R> {
+        let overlap = overlap.greater(overlap.like(0.0));
+        hertzian(self.effective_modulus, reduced_radius * overlap, overlap)
     }
 
     #[inline(always)]
-    fn elastic_energy(&self, _: &(), reduced_radius: f64, overlap: f64) -> f64 {
+    fn elastic_energy(&self, (): &(), reduced_radius: f64, overlap: f64) -> f64 {
         hertzian_energy(self.effective_modulus, reduced_radius, overlap.max(0.0))
     }
 
     #[inline(always)]
-    fn greatest_stiffness(&self, _: &(), reduced_radius: f64, overlap: f64) -> f64 {
-        hertzian(self.effective_modulus, reduced_radius, overlap.max(0.0)).stiffness
+    fn greatest_stiffness(&self, (): &(), reduced_radius: f64, overlap: f64) -> f64 {
+        let overlap = overlap.max(0.0);
+        hertzian(self.effective_modulus, reduced_radius * overlap, overlap).stiffness
     }
 }
 
@@ -79,8 +92,10 @@ mod tests {
 
     #[test]
     fn bodies_apart_feel_nothing() {
-        assert_eq!(at(0.0), NormalResponse::default());
-        assert_eq!(at(-1e-6), NormalResponse::default());
+        for overlap in [0.0, -1e-6] {
+            let answer = at(overlap);
+            assert_eq!([answer.force, answer.stiffness, answer.radius, answer.plastic_work], [0.0; 4]);
+        }
         assert_eq!(LAW.elastic_energy(&(), RADIUS, -1e-6), 0.0);
     }
 

@@ -13,6 +13,7 @@ use std::f64::consts::PI;
 
 use super::hertz::{hertzian, hertzian_energy};
 use super::{NormalLaw, NormalResponse};
+use crate::base::lanes::{Mask, Real};
 
 /// Thornton's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,102 +28,146 @@ pub struct Thornton {
 ///
 /// It lasts as long as the contact's history: the dent stays when the bodies part.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ThorntonState {
+pub struct ThorntonState<R = f64> {
     /// Greatest overlap δ_m so far [m].
-    pub greatest_overlap: f64,
+    pub greatest_overlap: R,
     /// Force F_m there [N].
-    pub greatest_force: f64,
+    pub greatest_force: R,
     /// Radius R_p of the dent, in which it unloads [m].
-    pub dent_radius: f64,
+    pub dent_radius: R,
     /// Overlap δ_p that remains when the force is gone [m].
-    pub residual_overlap: f64,
+    pub residual_overlap: R,
 }
 
-impl ThorntonState {
+impl<R: Real> ThorntonState<R> {
     /// Energy that unloading from δ_m gives back: (2/5) F_m (δ_m − δ_p) [J].
     #[inline(always)]
-    fn recoverable(&self) -> f64 {
-        0.4 * self.greatest_force * (self.greatest_overlap - self.residual_overlap)
+    fn recoverable(&self) -> R {
+        self.greatest_force * 0.4 * (self.greatest_overlap - self.residual_overlap)
+    }
+
+    #[inline(always)]
+    fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        Self {
+            greatest_overlap: R::choose(mask, yes.greatest_overlap, no.greatest_overlap),
+            greatest_force: R::choose(mask, yes.greatest_force, no.greatest_force),
+            dent_radius: R::choose(mask, yes.dent_radius, no.dent_radius),
+            residual_overlap: R::choose(mask, yes.residual_overlap, no.residual_overlap),
+        }
     }
 }
 
 impl Thornton {
     /// Overlap at first yield δ_y = (π p_y/2E*)² R* [m].
     #[inline(always)]
-    pub fn yield_overlap(&self, reduced_radius: f64) -> f64 {
+    pub fn yield_overlap<R: Real>(&self, reduced_radius: R) -> R {
         let strain = PI * self.limiting_pressure / (2.0 * self.effective_modulus);
-        strain * strain * reduced_radius
+        reduced_radius * (strain * strain)
     }
 
-    /// The unloading curve from a point of the plastic line at `overlap` > δ_y, with the contact radius a_m [m].
+    /// Slope of the plastic line π p_y R* [N/m].
     #[inline(always)]
-    fn curve_from(&self, reduced_radius: f64, overlap: f64) -> (ThorntonState, f64) {
-        let slope = PI * self.limiting_pressure * reduced_radius;
-        let force = slope * (overlap - self.yield_overlap(reduced_radius) / 3.0);
-        let contact_radius = (reduced_radius * overlap).sqrt();
-        let recovery = 3.0 * force / (4.0 * self.effective_modulus * contact_radius);
-        let state = ThorntonState {
+    fn slope<R: Real>(&self, reduced_radius: R) -> R {
+        reduced_radius * (PI * self.limiting_pressure)
+    }
+
+    /// The unloading curve from a point of the plastic line at `overlap` > δ_y; the square of the contact radius there
+    /// is `a2` [m²], its inverse `inverse_a` [1/m].
+    #[inline(always)]
+    fn curve_from<R: Real>(&self, reduced_radius: R, overlap: R, a2: R, inverse_a: R) -> ThorntonState<R> {
+        let past_yield = overlap - self.yield_overlap(reduced_radius) * (1.0 / 3.0);
+        let force = self.slope(reduced_radius) * past_yield;
+        let recovery = force * inverse_a * (0.75 / self.effective_modulus);
+        ThorntonState {
             greatest_overlap: overlap,
             greatest_force: force,
-            dent_radius: reduced_radius * overlap / recovery,
+            dent_radius: a2 / recovery,
             residual_overlap: overlap - recovery,
-        };
-        (state, contact_radius)
+        }
     }
 
     /// Work that loads a contact from `before` to `after` along the plastic line, through Hertz's curve if `before`
     /// has not yielded [J].
     #[inline(always)]
-    fn loading_work(&self, before: &ThorntonState, after: &ThorntonState, reduced_radius: f64) -> f64 {
-        let (from, force, below) = if before.greatest_overlap > 0.0 {
-            (before.greatest_overlap, before.greatest_force, 0.0)
-        } else {
-            let from = self.yield_overlap(reduced_radius);
-            let force = 2.0 / 3.0 * PI * self.limiting_pressure * reduced_radius * from;
-            (from, force, 0.4 * force * from)
-        };
-        below + 0.5 * (force + after.greatest_force) * (after.greatest_overlap - from)
+    fn loading_work<R: Real>(&self, before: &ThorntonState<R>, after: &ThorntonState<R>, reduced_radius: R) -> R {
+        let zero = reduced_radius.like(0.0);
+        let first_yield = self.yield_overlap(reduced_radius);
+        let force_there = self.slope(reduced_radius) * first_yield * (2.0 / 3.0);
+        let dented = before.greatest_overlap.above(zero);
+        let from = R::choose(dented, before.greatest_overlap, first_yield);
+        let force = R::choose(dented, before.greatest_force, force_there);
+        let below = R::choose(dented, zero, force_there * first_yield * 0.4);
+        below + (force + after.greatest_force) * 0.5 * (after.greatest_overlap - from)
     }
 
     /// Whether the contact loads plastically at `overlap` with this history.
     #[inline(always)]
-    fn yields(&self, state: &ThorntonState, reduced_radius: f64, overlap: f64) -> bool {
-        overlap > state.greatest_overlap && overlap > self.yield_overlap(reduced_radius)
+    fn yields<R: Real>(&self, state: &ThorntonState<R>, reduced_radius: R, overlap: R) -> R::Mask {
+        overlap.above(state.greatest_overlap) & overlap.above(self.yield_overlap(reduced_radius))
     }
 
     /// Radius and shift of the Hertzian curve on which the contact moves while it does not yield: (R*, 0) before
     /// first yield, (R_p, δ_p) after it.
     #[inline(always)]
-    fn elastic_curve(state: &ThorntonState, reduced_radius: f64) -> (f64, f64) {
-        if state.greatest_overlap > 0.0 { (state.dent_radius, state.residual_overlap) } else { (reduced_radius, 0.0) }
+    fn elastic_curve<R: Real>(state: &ThorntonState<R>, reduced_radius: R) -> (R, R) {
+        let zero = reduced_radius.like(0.0);
+        let dented = state.greatest_overlap.above(zero);
+        (R::choose(dented, state.dent_radius, reduced_radius), R::choose(dented, state.residual_overlap, zero))
     }
 }
 
 impl NormalLaw for Thornton {
-    type State = ThorntonState;
+    type State<R: Real> = ThorntonState<R>;
+
+    const HISTORY: usize = 4;
 
     #[inline(always)]
-    fn response(&self, state: &mut ThorntonState, reduced_radius: f64, overlap: f64) -> NormalResponse {
-        if self.yields(state, reduced_radius, overlap) {
-            let (after, contact_radius) = self.curve_from(reduced_radius, overlap);
-            let work = self.loading_work(state, &after, reduced_radius);
-            let plastic_work = work - (after.recoverable() - state.recoverable());
-            *state = after;
-            return NormalResponse {
-                force: after.greatest_force,
-                stiffness: PI * self.limiting_pressure * reduced_radius,
-                radius: contact_radius,
-                plastic_work,
-            };
+    fn history<R: Real>(numbers: impl Fn(usize) -> R) -> ThorntonState<R> {
+        ThorntonState {
+            greatest_overlap: numbers(0),
+            greatest_force: numbers(1),
+            dent_radius: numbers(2),
+            residual_overlap: numbers(3),
         }
+    }
+
+    #[inline(always)]
+    fn each_number<R: Real>(s: &ThorntonState<R>, mut put: impl FnMut(usize, R)) {
+        put(0, s.greatest_overlap);
+        put(1, s.greatest_force);
+        put(2, s.dent_radius);
+        put(3, s.residual_overlap);
+    }
+
+    #[inline(always)]
+    fn response<R: Real>(&self, state: &mut ThorntonState<R>, reduced_radius: R, overlap: R) -> NormalResponse<R> {
+        let zero = overlap.like(0.0);
+        let yields = self.yields(state, reduced_radius, overlap);
         let (radius, shift) = Self::elastic_curve(state, reduced_radius);
-        hertzian(self.effective_modulus, radius, (overlap - shift).max(0.0))
+        let elastic = (overlap - shift).greater(zero);
+        // One root serves both branches.
+        let a2 = R::choose(yields, reduced_radius * overlap, radius * elastic);
+        let answer = hertzian(self.effective_modulus, a2, elastic);
+        if !yields.any() {
+            return answer;
+        }
+        let after = self.curve_from(reduced_radius, overlap, a2, answer.inverse_radius);
+        let work = self.loading_work(state, &after, reduced_radius);
+        let plastic_work = work - (after.recoverable() - state.recoverable());
+        *state = ThorntonState::choose(yields, &after, state);
+        NormalResponse {
+            force: R::choose(yields, after.greatest_force, answer.force),
+            stiffness: R::choose(yields, self.slope(reduced_radius), answer.stiffness),
+            plastic_work: R::choose(yields, plastic_work, zero),
+            ..answer
+        }
     }
 
     #[inline(always)]
     fn elastic_energy(&self, state: &ThorntonState, reduced_radius: f64, overlap: f64) -> f64 {
         if self.yields(state, reduced_radius, overlap) {
-            return self.curve_from(reduced_radius, overlap).0.recoverable();
+            let a2 = reduced_radius * overlap;
+            return self.curve_from(reduced_radius, overlap, a2, a2.inverse_sqrt()).recoverable();
         }
         let (radius, shift) = Self::elastic_curve(state, reduced_radius);
         hertzian_energy(self.effective_modulus, radius, (overlap - shift).max(0.0))
@@ -224,7 +269,8 @@ mod tests {
         let (mut state, _) = loaded_to(300.0 * LAW.yield_overlap(RADIUS));
         let dent = state;
         for overlap in [dent.residual_overlap, 0.5 * dent.residual_overlap, 0.0, -1e-3] {
-            assert_eq!(LAW.response(&mut state, RADIUS, overlap), NormalResponse::default());
+            let answer = LAW.response(&mut state, RADIUS, overlap);
+            assert_eq!([answer.force, answer.stiffness, answer.radius, answer.plastic_work], [0.0; 4]);
             assert_eq!(LAW.elastic_energy(&state, RADIUS, overlap), 0.0);
         }
         assert_eq!(state, dent);

@@ -12,9 +12,9 @@
 //! F = s (A + k_t Δδ), s ≤ 1, mean pull times slip less the change of U is (1/s − 1) F·(F + A)/(2 k_t) ≥ 0, because
 //! |A| ≤ μ F_n = |F| where s < 1. The mean pull is the one over the slip, (A + F)/2.
 
-use glam::DVec3;
-
-use super::{TangentialInput, TangentialLaw, TangentialResponse, turn};
+use super::{TangentialInput, TangentialLaw, TangentialResponse, held_to, turn};
+use crate::base::lanes::Real;
+use crate::base::triple::Triple;
 
 /// Mindlin's spring with Coulomb's cap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,56 +25,68 @@ pub struct Mindlin {
     pub friction: f64,
 }
 
-/// History of one contact.
+/// History of one contact, or of several.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct MindlinState {
+pub struct MindlinState<R = f64> {
     /// Pull at the last step [N].
-    pub pull: DVec3,
-    /// Contact radius at the last step [m].
-    pub radius: f64,
-    /// Normal force at the last step [N].
-    pub normal_force: f64,
+    pub pull: Triple<R>,
+    /// 1/a at the last step [1/m]; 0 where nothing touched.
+    pub inverse_radius: R,
 }
 
-/// `vector` scaled back to the length `cap` where it is longer.
-#[inline(always)]
-pub(super) fn held_to(vector: DVec3, cap: f64) -> DVec3 {
-    let length_squared = vector.length_squared();
-    if length_squared > cap * cap { vector * (cap / length_squared.sqrt()) } else { vector }
+impl Mindlin {
+    /// F²/(2 k_t) [J].
+    #[inline(always)]
+    fn stored<R: Real>(&self, state: &MindlinState<R>) -> R {
+        state.pull.length_squared() * state.inverse_radius * (1.0 / (16.0 * self.shear_modulus_star))
+    }
 }
 
 impl TangentialLaw for Mindlin {
-    type State = MindlinState;
+    type State<R: Real> = MindlinState<R>;
+
+    const HISTORY: usize = 4;
 
     const ACTIVE: bool = true;
 
     #[inline(always)]
-    fn response(&self, state: &mut MindlinState, input: &TangentialInput) -> TangentialResponse {
-        let energy = self.elastic_energy(state);
-        if input.normal_force <= 0.0 || input.radius <= 0.0 {
-            *state = MindlinState::default();
-            return TangentialResponse { friction_work: energy, ..Default::default() };
-        }
-        let stiffness = 8.0 * self.shear_modulus_star * input.radius;
-        let cap = self.friction * input.normal_force;
-        let mut before = turn(state.pull, input.normal);
-        if input.radius < state.radius || input.normal_force < state.normal_force {
-            before *= (input.radius / state.radius).min(1.0);
-        }
-        before = held_to(before, cap);
+    fn history<R: Real>(numbers: impl Fn(usize) -> R) -> MindlinState<R> {
+        MindlinState { pull: Triple { x: numbers(0), y: numbers(1), z: numbers(2) }, inverse_radius: numbers(3) }
+    }
+
+    #[inline(always)]
+    fn each_number<R: Real>(s: &MindlinState<R>, mut put: impl FnMut(usize, R)) {
+        put(0, s.pull.x);
+        put(1, s.pull.y);
+        put(2, s.pull.z);
+        put(3, s.inverse_radius);
+    }
+
+    #[inline(always)]
+    fn response<R: Real>(&self, state: &mut MindlinState<R>, input: &TangentialInput<R>) -> TangentialResponse<R> {
+        let (zero, one) = (input.radius.like(0.0), input.radius.like(1.0));
+        let touches = input.normal_force.above(zero) & input.radius.above(zero);
+        let energy = self.stored(state);
+        let stiffness = input.radius * (8.0 * self.shear_modulus_star);
+        let cap = input.normal_force * self.friction;
+        // A radius that has not changed must not wear the pull away by rounding.
+        let ratio = input.radius * state.inverse_radius;
+        let kept = R::choose(ratio.above(one - 1e-14), one, ratio);
+        let before = held_to(turn(state.pull, input.normal) * kept, cap);
         let pull = held_to(before + input.slip * stiffness, cap);
-        *state = MindlinState { pull, radius: input.radius, normal_force: input.normal_force };
-        let work = 0.5 * (before + pull).dot(input.slip);
-        TangentialResponse { pull, stiffness, friction_work: work - (self.elastic_energy(state) - energy) }
+        state.pull = Triple::choose(touches, pull, Triple::zero(zero));
+        state.inverse_radius = R::choose(touches, input.inverse_radius, zero);
+        let work = (before + pull).dot(input.slip) * 0.5 - (self.stored(state) - energy);
+        TangentialResponse {
+            pull: state.pull,
+            stiffness: R::choose(touches, stiffness, zero),
+            friction_work: R::choose(touches, work, energy),
+        }
     }
 
     #[inline(always)]
     fn elastic_energy(&self, state: &MindlinState) -> f64 {
-        if state.radius > 0.0 {
-            state.pull.length_squared() / (16.0 * self.shear_modulus_star * state.radius)
-        } else {
-            0.0
-        }
+        self.stored(state)
     }
 }
 
@@ -82,12 +94,13 @@ impl TangentialLaw for Mindlin {
 mod tests {
     use super::super::testing::{ball_on_ball, check_walk, walk};
     use super::*;
+    use glam::DVec3;
     use proptest::prelude::*;
 
     const LAW: Mindlin = Mindlin { shear_modulus_star: 13e9, friction: 0.2 };
 
     fn input(slip: f64, normal_force: f64) -> TangentialInput {
-        TangentialInput { slip: DVec3::X * slip, ..ball_on_ball(normal_force) }
+        TangentialInput { slip: (DVec3::X * slip).into(), ..ball_on_ball(normal_force) }
     }
 
     #[test]
@@ -113,7 +126,7 @@ mod tests {
         let before = LAW.elastic_energy(&state);
         let response = LAW.response(&mut state, &input(0.0, 0.512));
         let ratio = 0.512f64.cbrt();
-        assert!((response.pull - full * ratio).length() < 1e-14);
+        assert!((response.pull - full * ratio).length_squared().sqrt() < 1e-14);
         assert!((response.friction_work - (before - LAW.elastic_energy(&state))).abs() < 1e-24);
         let again = LAW.response(&mut state, &input(0.0, 1.0)).pull;
         assert_eq!(again, response.pull, "normal loading leaves the pull alone");

@@ -45,11 +45,13 @@
 //! energy. The mean pull of `friction_work` is the one over the slip: between the pull after the change of load and
 //! the pull after the slip.
 
-use glam::DVec3;
-
 use super::curve::Curve;
-use super::mindlin::held_to;
-use super::{TangentialInput, TangentialLaw, TangentialResponse, turn};
+pub use super::memory::{Branch, MindlinDeresiewiczState};
+use super::memory::{Numbers, held_to};
+use super::{TangentialInput, TangentialLaw, TangentialResponse};
+use crate::base::lanes::Real;
+use crate::base::triple::Triple;
+use glam::DVec3;
 
 /// Mindlin and Deresiewicz's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,43 +62,6 @@ pub struct MindlinDeresiewicz {
     pub friction: f64,
 }
 
-/// Branch on which the contact is, with the pulls at which it turned round (k = 0, 1, 2).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub enum Branch {
-    /// First loading: no memory.
-    #[default]
-    Loading,
-    /// Unloading.
-    Unloading {
-        /// Pull F* at which loading ended [N].
-        peak: DVec3,
-    },
-    /// Reloading.
-    Reloading {
-        /// Pull F* at which loading ended [N].
-        peak: DVec3,
-        /// Pull F** at which unloading ended [N].
-        valley: DVec3,
-    },
-}
-
-/// History of one contact.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct MindlinDeresiewiczState {
-    /// Pull at the last step [N].
-    pub pull: DVec3,
-    /// Branch and memory.
-    pub branch: Branch,
-    /// Cap μ F_n at the last step [N].
-    pub cap: f64,
-    /// Contact radius at the last step [m].
-    pub radius: f64,
-    /// Unit normal at the last step: pull and memory turn as one body, or their energy would change.
-    pub normal: DVec3,
-    /// Stored energy at the last step [J].
-    pub energy: f64,
-}
-
 /// `vector`, normal to the unit vector `from`, rotated as the shortest rotation takes `from` to `to`.
 #[inline(always)]
 fn rotated(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
@@ -105,153 +70,10 @@ fn rotated(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     if scale > 1e-12 { vector - (from + to) * (vector.dot(to) / scale) } else { vector }
 }
 
-/// `vector` without its last `by` [m].
+/// `vector` turned into the plane normal to `normal`, keeping its length.
 #[inline(always)]
-fn shorter(vector: DVec3, by: f64) -> DVec3 {
-    let length = vector.length();
-    if by < length { vector * (1.0 - by / length) } else { DVec3::ZERO }
-}
-
-impl MindlinDeresiewiczState {
-    /// Stored energy [J] on the curve of the present load.
-    fn stored(&self, curve: &Curve) -> f64 {
-        match self.branch {
-            Branch::Loading => curve.stored(self.pull.length()),
-            Branch::Unloading { peak } => curve.stored(peak.length()) + curve.masing_energy(peak, self.pull),
-            Branch::Reloading { peak, valley } => {
-                let turned = curve.stored(peak.length()) + curve.masing_energy(peak, valley);
-                turned + curve.masing_energy(valley, self.pull)
-            }
-        }
-    }
-
-    /// Replaces pull and memory by what `change` makes of them.
-    #[inline(always)]
-    fn map(&mut self, change: impl Fn(DVec3) -> DVec3) {
-        self.pull = change(self.pull);
-        self.branch = match self.branch {
-            Branch::Loading => Branch::Loading,
-            Branch::Unloading { peak } => Branch::Unloading { peak: change(peak) },
-            Branch::Reloading { peak, valley } => Branch::Reloading { peak: change(peak), valley: change(valley) },
-        };
-    }
-
-    /// Drops a turning point that the pull has left behind: all memory when it has reached the peak, the valley when
-    /// it lies on the unloading side of it.
-    fn forget_passed_turns(&mut self) {
-        if let Branch::Reloading { peak, valley } = self.branch
-            && (self.pull - valley).dot(peak - valley) < 0.0
-        {
-            self.branch = Branch::Unloading { peak };
-        }
-        if let Branch::Unloading { peak } | Branch::Reloading { peak, .. } = self.branch
-            && self.pull.length_squared() >= peak.length_squared()
-        {
-            self.branch = Branch::Loading;
-        }
-    }
-
-    /// A turned branch after the load has fallen from the curve `old` to `new`, δ_c by `fall` [m].
-    fn shed(&mut self, old: &Curve, new: &Curve, mut fall: f64) {
-        let since = |from: DVec3, to: DVec3| 2.0 * old.displacement_of(0.5 * (to - from));
-        let (peak, down, up) = match self.branch {
-            Branch::Loading => (self.pull, DVec3::ZERO, DVec3::ZERO),
-            Branch::Unloading { peak } => (peak, since(peak, self.pull), DVec3::ZERO),
-            Branch::Reloading { peak, valley } => (peak, since(peak, valley), since(valley, self.pull)),
-        };
-        let (mut first, mut down, mut up) = (old.displacement_of(peak), down, up);
-        if up != DVec3::ZERO {
-            // The loop ends where reloading is undone, or where it has caught up with unloading.
-            let [back, forth] = [down.length(), up.length()];
-            let part = fall.min(forth).min(back - forth).max(0.0);
-            (first, down, up) = (shorter(first, part), shorter(down, 2.0 * part), shorter(up, part));
-            if part < fall && part < forth {
-                (first, down, up) = (first + down + up, DVec3::ZERO, DVec3::ZERO);
-            }
-            fall -= part;
-        }
-        if up == DVec3::ZERO && down != DVec3::ZERO {
-            let part = fall.min(down.length());
-            if part < fall {
-                (first, down) = (first + down, DVec3::ZERO);
-            } else {
-                (first, down) = (shorter(first, part), shorter(down, part));
-            }
-        }
-        let peak = new.force_of(first);
-        let valley = peak + 2.0 * new.force_of(0.5 * down);
-        self.pull = valley + 2.0 * new.force_of(0.5 * up);
-        self.branch = match (down == DVec3::ZERO, up == DVec3::ZERO) {
-            (true, _) => Branch::Loading,
-            (false, true) => Branch::Unloading { peak },
-            (false, false) => Branch::Reloading { peak, valley },
-        };
-    }
-
-    /// Slip on the branch where the contact is, at constant normal load.
-    fn slip(&mut self, curve: &Curve, slip: DVec3) {
-        match self.branch {
-            Branch::Loading => self.slip_loading(curve, slip),
-            Branch::Unloading { peak } => {
-                let displacement = 2.0 * curve.displacement_of(0.5 * (self.pull - peak));
-                if slip.dot(displacement) >= 0.0 {
-                    let pull = peak + 2.0 * curve.force_of(0.5 * (displacement + slip));
-                    self.continue_to(curve, slip, peak, pull, self.branch);
-                } else {
-                    let pull = self.pull + 2.0 * curve.force_of(0.5 * slip);
-                    let branch = Branch::Reloading { peak, valley: self.pull };
-                    self.continue_to(curve, slip, peak, pull, branch);
-                }
-            }
-            Branch::Reloading { peak, valley } => {
-                let displacement = 2.0 * curve.displacement_of(0.5 * (self.pull - valley));
-                if slip.dot(displacement) >= 0.0 {
-                    let pull = valley + 2.0 * curve.force_of(0.5 * (displacement + slip));
-                    self.continue_to(curve, slip, peak, pull, self.branch);
-                } else {
-                    // A reversal within the loop: the older memory is dropped, as in the published law.
-                    self.slip_loading(curve, slip);
-                }
-            }
-        }
-    }
-
-    /// Whether memory is worth its energy: no state may store less than the virgin one with its pull. That holds by
-    /// itself on unloading, and on reloading along one line; not where reloading leaves the line of the loop.
-    #[inline(always)]
-    fn can_hold_memory(&self, curve: &Curve) -> bool {
-        !matches!(self.branch, Branch::Reloading { .. }) || self.stored(curve) >= curve.stored(self.pull.length())
-    }
-
-    /// Takes the pull that a Masing branch reaches, or drops the memory before the step where the branch ends: at the
-    /// peak, or where it can no longer hold its memory.
-    fn continue_to(&mut self, curve: &Curve, slip: DVec3, peak: DVec3, pull: DVec3, branch: Branch) {
-        let onward = MindlinDeresiewiczState { pull, branch, ..*self };
-        if pull.length_squared() < peak.length_squared() && onward.can_hold_memory(curve) {
-            *self = onward;
-        } else {
-            self.slip_loading(curve, slip);
-        }
-    }
-
-    /// Slip from the virgin state at the present pull.
-    fn slip_loading(&mut self, curve: &Curve, slip: DVec3) {
-        let start = self.pull;
-        let displacement = curve.displacement_of(start);
-        let onward = displacement + slip;
-        self.branch = Branch::Loading;
-        if onward.length_squared() >= displacement.length_squared() {
-            self.pull = curve.force_of(onward);
-            return;
-        }
-        let pull = start + 2.0 * curve.force_of(0.5 * slip);
-        if pull.length_squared() < start.length_squared() {
-            (self.pull, self.branch) = (pull, Branch::Unloading { peak: start });
-        } else {
-            // A slip nearly square to the pull, slightly inward: it only turns the pull.
-            self.pull = held_to(pull, start.length());
-        }
-    }
+fn turn(vector: DVec3, normal: DVec3) -> DVec3 {
+    super::turn(vector.into(), normal.into()).into()
 }
 
 impl MindlinDeresiewicz {
@@ -311,12 +133,9 @@ impl MindlinDeresiewicz {
     }
 }
 
-impl TangentialLaw for MindlinDeresiewicz {
-    type State = MindlinDeresiewiczState;
-
-    const ACTIVE: bool = true;
-
-    fn response(&self, state: &mut MindlinDeresiewiczState, input: &TangentialInput) -> TangentialResponse {
+impl MindlinDeresiewicz {
+    /// The response of one contact.
+    fn one(&self, state: &mut MindlinDeresiewiczState, input: &TangentialInput) -> TangentialResponse {
         let cap = self.friction * input.normal_force;
         let stiffness = 8.0 * self.shear_modulus_star * input.radius;
         if cap <= 0.0 || stiffness <= 0.0 {
@@ -326,26 +145,69 @@ impl TangentialLaw for MindlinDeresiewicz {
         }
         let curve = Curve::new(cap, stiffness);
         let energy = state.energy;
-        let last = std::mem::replace(&mut state.normal, input.normal);
-        state.map(|vector| turn(rotated(vector, last, input.normal), input.normal));
+        let normal = DVec3::from(input.normal);
+        let last = std::mem::replace(&mut state.normal, normal);
+        state.map(|vector| turn(rotated(vector, last, normal), normal));
         let fresh = self.change_load(state, &curve, input.radius);
         let before = state.pull;
-        let slip = input.slip.length();
+        let slipped = DVec3::from(input.slip);
+        let slip = slipped.length();
         if slip > 0.0 {
             let stuck = if state.branch == Branch::Loading { curve.displacement(fresh).min(slip) } else { 0.0 };
-            state.pull += input.slip * (curve.force(stuck) / slip);
+            state.pull += slipped * (curve.force(stuck) / slip);
             if stuck < slip {
-                state.slip(&curve, input.slip * (1.0 - stuck / slip));
+                state.slip(&curve, slipped * (1.0 - stuck / slip));
             }
         }
         state.energy = state.stored(&curve);
-        let work = 0.5 * (before + state.pull).dot(input.slip);
-        TangentialResponse { pull: state.pull, stiffness, friction_work: work - (state.energy - energy) }
+        let work = 0.5 * (before + state.pull).dot(slipped);
+        TangentialResponse { pull: state.pull.into(), stiffness, friction_work: work - (state.energy - energy) }
+    }
+}
+
+impl TangentialLaw for MindlinDeresiewicz {
+    type State<R: Real> = Numbers<R>;
+
+    const HISTORY: usize = 16;
+
+    const ACTIVE: bool = true;
+
+    #[inline(always)]
+    fn history<R: Real>(numbers: impl Fn(usize) -> R) -> Numbers<R> {
+        std::array::from_fn(numbers)
     }
 
     #[inline(always)]
-    fn elastic_energy(&self, state: &MindlinDeresiewiczState) -> f64 {
-        state.energy
+    fn each_number<R: Real>(state: &Numbers<R>, mut put: impl FnMut(usize, R)) {
+        state.iter().enumerate().for_each(|(k, number)| put(k, *number));
+    }
+
+    /// One contact after the other: their branches differ.
+    #[inline(always)]
+    fn response<R: Real>(&self, state: &mut Numbers<R>, input: &TangentialInput<R>) -> TangentialResponse<R> {
+        let zero = input.radius.like(0.0);
+        let mut out = TangentialResponse { pull: Triple::zero(zero), stiffness: zero, friction_work: zero };
+        for k in 0..R::COUNT {
+            let mut own = MindlinDeresiewiczState::from_numbers(&state.map(|number| number.at(k)));
+            let input = TangentialInput {
+                normal: input.normal.at(k).into(),
+                slip: input.slip.at(k).into(),
+                normal_force: input.normal_force.at(k),
+                radius: input.radius.at(k),
+                inverse_radius: input.inverse_radius.at(k),
+            };
+            let answer = self.one(&mut own, &input);
+            state.iter_mut().zip(own.numbers()).for_each(|(number, own)| number.put(k, own));
+            out.pull.put(k, answer.pull.into());
+            out.stiffness.put(k, answer.stiffness);
+            out.friction_work.put(k, answer.friction_work);
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn elastic_energy(&self, state: &Numbers<f64>) -> f64 {
+        state[15]
     }
 }
 
@@ -374,7 +236,7 @@ mod tests {
     }
 
     fn step(state: &mut MindlinDeresiewiczState, slip: f64, normal_force: f64) -> TangentialResponse {
-        LAW.response(state, &TangentialInput { slip: DVec3::X * slip, ..ball_on_ball(normal_force) })
+        LAW.one(state, &TangentialInput { slip: (DVec3::X * slip).into(), ..ball_on_ball(normal_force) })
     }
 
     fn near(value: f64, expected: f64, tolerance: f64) {
@@ -470,12 +332,12 @@ mod tests {
     #[test]
     fn an_oscillating_normal_force_never_raises_the_pull_above_its_peak() {
         let mut state = MindlinDeresiewiczState::default();
-        let peak = step(&mut state, 0.8 * reach(), NORMAL_FORCE).pull.length();
+        let peak = DVec3::from(step(&mut state, 0.8 * reach(), NORMAL_FORCE).pull).length();
         step(&mut state, -0.5 * reach(), NORMAL_FORCE);
         assert!(matches!(state.branch, Branch::Unloading { .. }));
         for i in 0..200 {
             let response = step(&mut state, 0.0, NORMAL_FORCE * (1.0 - 0.01 * f64::from(i % 2)));
-            assert!(response.pull.length() <= peak);
+            assert!(DVec3::from(response.pull).length() <= peak);
             assert!(response.friction_work >= 0.0);
         }
     }
@@ -487,10 +349,8 @@ mod tests {
     fn a_falling_normal_force_sheds_the_annuli_one_by_one() {
         let (law, count) = (MindlinDeresiewicz { shear_modulus_star: 0.25, friction: 1.0 }, 4000);
         let input = |depth: f64, slip: f64| TangentialInput {
-            normal: DVec3::Z,
-            slip: DVec3::X * slip,
-            normal_force: 4.0 / 3.0 * depth.powf(1.5),
-            radius: depth.sqrt(),
+            slip: (DVec3::X * slip).into(),
+            ..TangentialInput::at_rest(4.0 / 3.0 * depth.powf(1.5), depth.sqrt())
         };
         // Slips at full load, then the slip while the load falls, and the depth at which it ends.
         let turned = ([0.7, -0.4, 0.0], -0.07, 0.5);
@@ -500,7 +360,7 @@ mod tests {
         for (path, last, end) in [turned, turned_far, turned_twice, turned_twice_far] {
             let (mut state, mut springs) = (MindlinDeresiewiczState::default(), vec![0.0f64; count]);
             let mut go = |depth: f64, slip: f64| {
-                let pull = law.response(&mut state, &input(depth, slip)).pull.x;
+                let pull = law.one(&mut state, &input(depth, slip)).pull.x;
                 let mut sum = 0.0;
                 for (k, force) in springs.iter_mut().enumerate() {
                     let limit = (depth - ((k as f64 + 0.5) / count as f64).powi(2)).max(0.0);
@@ -524,15 +384,16 @@ mod tests {
     fn turning_the_frame_turns_the_pull_and_keeps_the_energy() {
         let mut state = MindlinDeresiewiczState::default();
         for slip in [DVec3::new(0.8, 0.0, 0.0), DVec3::new(-0.3, 0.2, 0.0), DVec3::new(0.1, -0.1, 0.0)] {
-            LAW.response(&mut state, &TangentialInput { slip: slip * reach(), ..ball_on_ball(NORMAL_FORCE) });
+            LAW.one(&mut state, &TangentialInput { slip: (slip * reach()).into(), ..ball_on_ball(NORMAL_FORCE) });
         }
         assert!(matches!(state.branch, Branch::Reloading { .. }), "{state:?}");
         let (length, energy) = (state.pull.length(), state.energy);
         for i in 1..=100 {
             let normal = DVec3::new((0.01 * f64::from(i)).sin(), 0.0, (0.01 * f64::from(i)).cos());
-            let response = LAW.response(&mut state, &TangentialInput { normal, ..ball_on_ball(NORMAL_FORCE) });
-            near(response.pull.length(), length, 1e-12 * length);
-            near(response.pull.dot(normal), 0.0, 1e-12 * length);
+            let input = TangentialInput { normal: normal.into(), ..ball_on_ball(NORMAL_FORCE) };
+            let pull = DVec3::from(LAW.one(&mut state, &input).pull);
+            near(pull.length(), length, 1e-12 * length);
+            near(pull.dot(normal), 0.0, 1e-12 * length);
             near(state.energy, energy, 1e-9 * energy);
         }
     }
@@ -541,11 +402,23 @@ mod tests {
     fn stored_energy_comes_back_as_friction_when_the_bodies_part() {
         let mut state = MindlinDeresiewiczState::default();
         step(&mut state, 0.5 * reach(), NORMAL_FORCE);
-        let stored = LAW.elastic_energy(&state);
+        let stored = state.energy;
         assert!(stored > 0.5 * state.pull.length_squared() / stiffness(NORMAL_FORCE));
         let response = step(&mut state, reach(), 0.0);
         assert_eq!(response, TangentialResponse { friction_work: stored, ..Default::default() });
         assert_eq!(state, MindlinDeresiewiczState::default());
+    }
+
+    #[test]
+    fn numbers_hold_the_whole_history() {
+        let mut state = MindlinDeresiewiczState::default();
+        for slip in [0.8, -0.3, 0.1] {
+            let numbers = state.numbers();
+            assert_eq!(MindlinDeresiewiczState::from_numbers(&numbers), state);
+            step(&mut state, slip * reach(), NORMAL_FORCE);
+        }
+        assert!(matches!(state.branch, Branch::Reloading { .. }));
+        assert_eq!(MindlinDeresiewiczState::from_numbers(&state.numbers()), state);
     }
 
     proptest! {

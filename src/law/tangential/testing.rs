@@ -4,8 +4,8 @@ use glam::DVec3;
 use proptest::prelude::*;
 
 use super::{TangentialInput, TangentialLaw};
-use crate::law::contact::NormalLaw;
 use crate::law::contact::thornton::{Thornton, ThorntonState};
+use crate::law::contact::{NormalLaw, NormalResponse};
 
 const EFFECTIVE_MODULUS: f64 = 65e9;
 const RADIUS: f64 = 0.1e-3;
@@ -13,7 +13,7 @@ const RADIUS: f64 = 0.1e-3;
 /// A Hertzian contact under `normal_force` [N] without slip.
 pub fn ball_on_ball(normal_force: f64) -> TangentialInput {
     let radius = (0.75 * normal_force * RADIUS / EFFECTIVE_MODULUS).cbrt();
-    TangentialInput { normal: DVec3::Z, slip: DVec3::ZERO, normal_force, radius }
+    TangentialInput::at_rest(normal_force, radius)
 }
 
 /// One step of a walk.
@@ -53,20 +53,25 @@ pub fn check_walk<L: TangentialLaw>(law: &L, friction: f64, shear: f64, steps: &
     for limiting_pressure in [1e12, 250e6] {
         let normal_law = Thornton { effective_modulus: EFFECTIVE_MODULUS, limiting_pressure };
         let greatest = 1e-6;
-        let top = normal_law.response(&mut ThorntonState::default(), RADIUS, greatest);
+        let top: NormalResponse = normal_law.response(&mut ThorntonState::default(), RADIUS, greatest);
         let sliding = 1.5 * friction * top.force / (8.0 * shear * top.radius);
         let rounding = 1e-12 * friction * top.force * sliding;
-        let (mut dent, mut state, mut normal) = (ThorntonState::default(), L::State::default(), DVec3::Z);
+        let (mut dent, mut state, mut normal) = (ThorntonState::default(), L::history(|_| 0.0), DVec3::Z);
         for step in steps {
             normal = (normal + DVec3::new(step.tilt[0], step.tilt[1], 0.0)).normalize();
             let contact = normal_law.response(&mut dent, RADIUS, step.overlap * greatest);
             let (u, v) = normal.any_orthonormal_pair();
             let slip = (u * step.slip[0] + v * step.slip[1]) * sliding;
-            let input = TangentialInput { normal, slip, normal_force: contact.force, radius: contact.radius };
+            let input = TangentialInput {
+                normal: normal.into(),
+                slip: slip.into(),
+                ..TangentialInput::at_rest(contact.force, contact.radius)
+            };
             let response = law.response(&mut state, &input);
+            let pull = DVec3::from(response.pull);
             let cap = friction * contact.force;
-            prop_assert!(response.pull.length() <= cap * (1.0 + 1e-9), "past the cap");
-            prop_assert!(response.pull.dot(normal).abs() <= 1e-9 * cap, "out of the plane");
+            prop_assert!(pull.length() <= cap * (1.0 + 1e-9), "past the cap");
+            prop_assert!(pull.dot(normal).abs() <= 1e-9 * cap, "out of the plane");
             let (work, stored) = (response.friction_work, law.elastic_energy(&state));
             prop_assert!(work >= -rounding, "creates {:e} of {:e}", -work, rounding * 1e12);
             prop_assert!(stored >= 0.0, "stores {stored:e}");
