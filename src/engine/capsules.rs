@@ -5,7 +5,7 @@
 //! force. A contact walks along the other wire from segment to segment as the particle slides, and keeps its history.
 //! A free sphere against a wire, or two free spheres, carry the whole force.
 
-use super::contacts::Contacts;
+use super::contacts::{Contacts, closing};
 use super::neighbours::{PairList, apart};
 use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, leave, meet, normal_energy};
 use super::state::{CHUNK, Deepest, Partial, State};
@@ -18,6 +18,7 @@ use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// A particle against another body near particle `j` of it.
@@ -35,6 +36,8 @@ struct Contact<N: NormalLaw, T: TangentialLaw> {
     history: History<N, T>,
     /// Overlap at the last step [m].
     overlap: f64,
+    /// Nothing can touch until [`State::travel`] has reached this [m].
+    quiet_until: f64,
     action: PairForce,
     /// n × friction [N].
     twist: Triple,
@@ -81,6 +84,34 @@ pub struct CapsuleContacts<N: NormalLaw, T: TangentialLaw> {
     deepest: Deepest,
     /// Directed candidates (particle, other particle), kept for their memory.
     directed: Vec<(u32, u32)>,
+    /// See [`closing`].
+    closing: f64,
+    arch: Arch,
+}
+
+/// The contacts of one chunk. They are taken one by one, but with the instructions of the machine: the laws round as
+/// these do, and without them a library function has to ([`Real::mul_add`](crate::base::lanes::Real::mul_add)).
+struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
+    laws: &'a Laws<N, T>,
+    state: &'a State,
+    chains: &'a Chains,
+    deepest: Deepest,
+    closing: f64,
+    contacts: &'a mut [Contact<N, T>],
+}
+
+impl<N: NormalLaw, T: TangentialLaw> WithSimd for Chunk<'_, N, T> {
+    type Output = Partial;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Partial {
+        let mut sum = Partial::beyond(self.deepest);
+        for c in self.contacts.iter_mut().filter(|c| c.quiet_until <= self.state.travel) {
+            let own = capsule_pair(self.laws, self.state, self.chains, self.closing, c, &mut sum.deepest);
+            sum.add(&own.scaled(c.share));
+        }
+        sum
+    }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
@@ -94,6 +125,8 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             partial: Vec::new(),
             deepest: Deepest::default(),
             directed: Vec::new(),
+            closing: closing(assembly),
+            arch: Arch::new(),
         }
     }
 
@@ -130,6 +163,7 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             share: if free_i || free_j { 1.0 } else { 0.5 },
             history: History::new(radius),
             overlap: 0.0,
+            quiet_until: 0.0,
             action: PairForce::default(),
             twist: Triple::default(),
             arm: [0.0; 2],
@@ -214,7 +248,8 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
                 .min_by_key(|k| self.old[*k].j.abs_diff(j));
             match kept {
                 Some(k) => {
-                    self.contacts.push(self.old[k]);
+                    // What is near may have changed: a bond broke, or the contact belongs to another segment now.
+                    self.contacts.push(Contact { quiet_until: 0.0, ..self.old[k] });
                     // A share of 0 marks an old contact as taken over.
                     self.old[k].share = 0.0;
                 }
@@ -235,14 +270,11 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
     }
 
     fn compute(&mut self, state: &mut State) -> Partial {
-        let (laws, shared, chains, deepest) = (&self.laws, &*state, &self.chains, self.deepest);
+        let (laws, shared, chains, arch) = (&self.laws, &*state, &self.chains, self.arch);
+        let (deepest, closing) = (self.deepest, self.closing);
         (self.contacts.par_chunks_mut(CHUNK), self.partial.par_iter_mut()).into_par_iter().for_each(
             |(contacts, partial)| {
-                *partial = Partial::beyond(deepest);
-                for c in contacts {
-                    let own = capsule_pair(laws, shared, chains, c, &mut partial.deepest);
-                    partial.add(&own.scaled(c.share));
-                }
+                *partial = arch.dispatch(Chunk { laws, state: shared, chains, deepest, closing, contacts });
             },
         );
         self.scatter(state);
@@ -373,6 +405,7 @@ fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
     laws: &Laws<N, T>,
     state: &State,
     chains: &Chains,
+    closing: f64,
     c: &mut Contact<N, T>,
     deepest: &mut Deepest,
 ) -> Partial {
@@ -385,10 +418,13 @@ fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
     if apart && c.history.offset > 0.0 {
         c.history.offset = c.history.offset.min((touching - distance2.sqrt()).max(0.0));
     }
+    let distance = distance2.sqrt();
     if apart && !c.history.touching() {
+        if c.history.offset == 0.0 {
+            c.quiet_until = state.travel + (distance - reach) / closing;
+        }
         return Partial::default();
     }
-    let distance = distance2.sqrt();
     let normal = d * (1.0 / distance);
     c.overlap = if apart { 0.0 } else { reach - distance };
     // The arms meet where the surfaces do, so that they add up to the distance.

@@ -35,6 +35,16 @@ pub trait Contacts: Send {
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
 }
 
+/// By how much the gap of two bodies may close while no particle moves further than 1 [-]: 2 for the way of both, the
+/// rest for wires that thicken as they shorten. So a pair that is apart need not be looked at for a while.
+pub fn closing(assembly: &Assembly) -> f64 {
+    let largest = assembly.radius.iter().copied().fold(0.0, f64::max);
+    let shortest = assembly.rest_length.iter().copied().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    // Two ends of a bond that come 2 nearer raise its log strain by 2/l, and its radius by half of that times itself; a
+    // bond may be half as long as at rest.
+    2.0 + 2.0 * (2.0 * largest) / shortest
+}
+
 /// Chooses laws and shape, once per run.
 pub fn build(spec: &ContactSpec, material: &Material, assembly: &Assembly) -> Box<dyn Contacts> {
     let (e, nu, g) = (material.young, material.poisson, material.shear());

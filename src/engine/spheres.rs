@@ -11,7 +11,7 @@
 mod gather;
 mod kernel;
 
-use super::contacts::Contacts;
+use super::contacts::{Contacts, closing};
 use super::neighbours::PairList;
 use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
 use super::state::{CHUNK, Deepest, Partial, State};
@@ -91,8 +91,7 @@ pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     partial: Vec<Partial>,
     /// The deepest contact so far.
     deepest: Deepest,
-    /// By how much the gap of two particles may close while no particle moves further than 1 [-]: 2 for the way of
-    /// both, the rest for wires that thicken as they shorten.
+    /// See [`closing`].
     closing: f64,
     arch: Arch,
 }
@@ -104,8 +103,6 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
 
     /// Without contacts yet.
     pub fn new(laws: Laws<N, T>, assembly: &Assembly) -> Self {
-        let largest = assembly.radius.iter().copied().fold(0.0, f64::max);
-        let shortest = assembly.rest_length.iter().copied().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
         Self {
             laws,
             now: Store::default(),
@@ -116,9 +113,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
             second: SecondSides::default(),
             partial: Vec::new(),
             deepest: Deepest::default(),
-            // Two ends of a bond that come 2 nearer raise its log strain by 2/l, and its radius by half of that; a bond
-            // may be half as long as at rest.
-            closing: 2.0 + 2.0 * (2.0 * largest) / shortest,
+            closing: closing(assembly),
             arch: Arch::new(),
         }
     }

@@ -232,7 +232,7 @@ pub struct ContactSides<'a> {
 
 impl<'a> ContactSides<'a> {
     /// Number of particles.
-    pub fn len(&self) -> usize {
+    pub fn particles(&self) -> usize {
         self.force[0].len()
     }
 

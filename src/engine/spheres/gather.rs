@@ -55,7 +55,7 @@ impl SecondSides {
     /// Takes forces off and adds torques to the particles of `state`; with `turn` there are torques.
     pub fn add(&self, blocks: &[Block], actions: &[f64], turn: bool, state: &mut State, arch: Arch) {
         let (_, sides) = state.split_contacts();
-        let chunks = sides.len().div_ceil(CHUNK);
+        let chunks = sides.particles().div_ceil(CHUNK);
         sides.share(0, chunks, &|chunk, sides| {
             arch.dispatch(Gather { all: self, blocks, actions, turn, first: chunk * CHUNK, sides });
         });
@@ -77,7 +77,7 @@ impl WithSimd for Gather<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        for at in (0..self.sides.len()).step_by(BLOCK) {
+        for at in (0..self.sides.particles()).step_by(BLOCK) {
             let block = (self.first + at) / BLOCK;
             let entries = self.all.start[block] as usize..self.all.start[block + 1] as usize;
             let acting = self.all.entries[entries].iter().filter(|e| self.blocks[e.block as usize].acts);
