@@ -403,7 +403,6 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         let mut put = |field: usize, number: Lanes<S>| {
             Lanes::choose(live, number, number.like(0.0)).store(self.actions, field * CHUNK + at);
         };
-        put(BondActions::LIVE, thinning.like(1.0));
         put(BondActions::THINNING, thinning);
         put(BondActions::PULL, acts.pull.x);
         put(BondActions::PULL + 1, acts.pull.y);

@@ -8,6 +8,7 @@
 use super::contacts::{Contacts, closing};
 use super::neighbours::{PairList, apart};
 use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, leave, meet, normal_energy};
+use super::spheres::SecondSides;
 use super::state::{CHUNK, Deepest, Partial, State};
 use super::time_step::Stiffness;
 use crate::base::triple::Triple;
@@ -36,6 +37,8 @@ struct Contact<N: NormalLaw, T: TangentialLaw> {
     history: History<N, T>,
     /// Overlap at the last step [m].
     overlap: f64,
+    /// Sum of the radii at the last step, less the overlap that does not count [m].
+    reach: f64,
     /// Nothing can touch until [`State::travel`] has reached this [m].
     quiet_until: f64,
     action: PairForce,
@@ -163,6 +166,7 @@ impl<N: NormalLaw, T: TangentialLaw> CapsuleContacts<N, T> {
             share: if free_i || free_j { 1.0 } else { 0.5 },
             history: History::new(radius),
             overlap: 0.0,
+            reach: 0.0,
             quiet_until: 0.0,
             action: PairForce::default(),
             twist: Triple::default(),
@@ -282,6 +286,10 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
         self.partial.iter().for_each(|p| sum.add(p));
         self.deepest = sum.deepest;
         sum
+    }
+
+    fn second_sides(&self) -> Option<SecondSides<'_>> {
+        None
     }
 
     fn elastic_energy(&self, _: &State) -> f64 {
@@ -436,8 +444,9 @@ fn capsule_pair<N: NormalLaw, T: TangentialLaw>(
         velocity -= (state.w.get(i) * c.arm[0] + spin * c.arm[1]).cross(normal);
     }
     let viscosity = viscous_coefficient(laws.damping, mass_of(state, c), 1.0);
-    let (overlap, dt) = (c.overlap, state.dt);
-    let meeting = Meeting { normal: normal.into(), overlap, reach, velocity: velocity.into(), viscosity, dt };
+    let (overlap, thinner, dt) = (c.overlap, c.reach - reach, state.dt);
+    c.reach = reach;
+    let meeting = Meeting { normal: normal.into(), overlap, thinner, velocity: velocity.into(), viscosity, dt };
     let (action, given) = meet(laws, &mut c.history, &meeting);
     c.twist = Triple::from(normal).cross(action.friction);
     c.action = action;

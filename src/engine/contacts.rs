@@ -3,7 +3,7 @@
 use super::capsules::CapsuleContacts;
 use super::neighbours::PairList;
 use super::pair::Laws;
-use super::spheres::SphereContacts;
+use super::spheres::{SecondSides, SphereContacts};
 use super::state::{Partial, State};
 use super::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
@@ -21,8 +21,11 @@ use crate::strand::assembly::Assembly;
 pub trait Contacts: Send {
     /// Takes a new list of candidates; history of pairs that stay is kept. Returns what was lost with pairs that left.
     fn rebuild(&mut self, list: &PairList, state: &State) -> Partial;
-    /// Computes all contacts and adds them up per particle in `state`; returns the energies of the step.
+    /// Computes all contacts and adds them up per particle in `state`, but for [`Self::second_sides`]; returns the
+    /// energies of the step.
     fn compute(&mut self, state: &mut State) -> Partial;
+    /// What contacts do besides what they have added up.
+    fn second_sides(&self) -> Option<SecondSides<'_>>;
     /// Stored elastic energy at the positions of the last call of `compute` [J].
     fn elastic_energy(&self, state: &State) -> f64;
     /// Adds to each particle the normal forces of its contacts, without regard to direction [N].

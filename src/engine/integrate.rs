@@ -1,6 +1,7 @@
 //! Leapfrog: forces gathered per particle in a fixed order, velocities kicked, positions drifted.
 
 use super::neighbours::Reference;
+use super::spheres::SecondSides;
 use super::state::{BondActions, CHUNK, State};
 use crate::base::lanes::{BLOCK, Lanes, Real};
 use crate::base::vectors::Vectors;
@@ -8,12 +9,12 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// What there is to add up.
-#[derive(Debug, Clone, Copy)]
-pub struct Parts {
+#[derive(Clone, Copy)]
+pub struct Parts<'a> {
     /// Torques, because particles turn.
     pub turn: bool,
-    /// Forces of contacts.
-    pub contacts: bool,
+    /// Forces of contacts, with second sides or without.
+    pub contacts: Option<Option<SecondSides<'a>>>,
     /// Radii, because plastic wires thin as they stretch.
     pub thin: bool,
 }
@@ -22,7 +23,7 @@ pub struct Parts {
 /// is the mean over its bonds.
 pub fn gather(state: &mut State, parts: Parts, arch: Arch) {
     let (bond, radius0) = (&state.bond, &state.radius0);
-    let others = parts.contacts.then_some([&state.contact_force, &state.contact_torque]);
+    let first_sides = parts.contacts.is_some().then_some([&state.contact_force, &state.contact_torque]);
     let (f, t) = (&mut state.force, &mut state.torque);
     (
         f.x.par_chunks_mut(CHUNK),
@@ -32,56 +33,28 @@ pub fn gather(state: &mut State, parts: Parts, arch: Arch) {
         t.y.par_chunks_mut(CHUNK),
         t.z.par_chunks_mut(CHUNK),
         state.radius.par_chunks_mut(CHUNK),
+        state.thinned.par_chunks_mut(CHUNK),
     )
         .into_par_iter()
         .with_max_len(1)
         .enumerate()
-        .for_each(|(chunk, (fx, fy, fz, tx, ty, tz, radius))| {
+        .for_each(|(chunk, (fx, fy, fz, tx, ty, tz, radius, thinned))| {
             let first = chunk * CHUNK;
+            let rows =
+                Rows { bond, first, actions: &bond.data[first * bond.fields()..(first + CHUNK) * bond.fields()] };
             let (force, torque) = ([fx, fy, fz], [tx, ty, tz]);
-            arch.dispatch(Gather { bond, first, others, parts, force, torque, radius, radius0 });
+            arch.dispatch(Gather { rows, first_sides, parts, force, torque });
+            if parts.thin {
+                arch.dispatch(Thin { rows, radius, thinned, radius0: &radius0[first..] });
+            }
         });
 }
 
-/// The particles of one chunk.
-struct Gather<'a> {
-    bond: &'a BondActions,
-    /// The first of them.
-    first: usize,
-    /// Forces and torques from contacts.
-    others: Option<[&'a Vectors; 2]>,
-    parts: Parts,
-    force: [&'a mut [f64]; 3],
-    torque: [&'a mut [f64]; 3],
-    radius: &'a mut [f64],
-    radius0: &'a [f64],
-}
-
-impl WithSimd for Gather<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Gather { bond, first, others, parts, force, torque, radius, radius0 } = self;
-        let rows = Rows { bond, first, actions: &bond.data[first * bond.fields()..(first + CHUNK) * bond.fields()] };
-        let [push, twist] = others.map_or([None, None], |o| o.map(|v| Some([&v.x[..], &v.y[..], &v.z[..]])));
-        for (axis, out) in force.into_iter().enumerate() {
-            rows.add(simd, out, BondActions::PULL + axis, BondActions::PULL + axis, -1.0, push.map(|p| p[axis]));
-        }
-        if parts.turn {
-            for (axis, out) in torque.into_iter().enumerate() {
-                rows.add(simd, out, BondActions::NEAR + axis, BondActions::FAR + axis, 1.0, twist.map(|t| t[axis]));
-            }
-        }
-        if parts.thin {
-            rows.thin(simd, radius, &radius0[first..]);
-        }
-    }
-}
-
 /// What the bonds of one chunk do.
+#[derive(Clone, Copy)]
 struct Rows<'a> {
     bond: &'a BondActions,
+    /// The first particle.
     first: usize,
     actions: &'a [f64],
 }
@@ -108,60 +81,127 @@ impl Rows<'_> {
         numbers[1..].copy_from_slice(&self.row(field)[..BLOCK - 1]);
         Lanes::load(simd, &numbers, 0)
     }
+}
 
-    /// One axis: the bond behind a particle, the bond before it, and what contacts do.
+/// Forces and torques of one chunk.
+struct Gather<'a> {
+    rows: Rows<'a>,
+    /// Forces and torques from contacts on their first sides.
+    first_sides: Option<[&'a Vectors; 2]>,
+    parts: Parts<'a>,
+    force: [&'a mut [f64]; 3],
+    torque: [&'a mut [f64]; 3],
+}
+
+impl WithSimd for Gather<'_> {
+    type Output = ();
+
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, out: &mut [f64], near: usize, far: usize, sign: f64, others: Option<&[f64]>) {
-        for k in (0..out.len()).step_by(Lanes::<S>::LEN) {
-            let mut sum = self.here(simd, near, k) + self.before(simd, far, k) * sign;
-            if let Some(others) = others {
-                sum += Lanes::load_up_to_end(simd, others, self.first + k);
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Gather { rows, first_sides, parts, force, torque } = self;
+        let zero = Lanes::splat(simd, 0.0);
+        for k in (0..force[0].len()).step_by(Lanes::<S>::LEN) {
+            // The bond behind a particle, the bond before it, and what contacts do.
+            let mut sum = [zero; 6];
+            for axis in 0..3 {
+                let pull = BondActions::PULL + axis;
+                sum[axis] = rows.here(simd, pull, k) - rows.before(simd, pull, k);
+                if parts.turn {
+                    let (near, far) = (BondActions::NEAR + axis, BondActions::FAR + axis);
+                    sum[3 + axis] = rows.here(simd, near, k) + rows.before(simd, far, k);
+                }
             }
-            sum.store_up_to_end(out, k);
+            if let Some([push, twist]) = first_sides {
+                add(simd, &mut sum, 0, push, rows.first + k);
+                if parts.turn {
+                    add(simd, &mut sum, 3, twist, rows.first + k);
+                }
+            }
+            if let Some(Some(second)) = &parts.contacts {
+                second.add(simd, (rows.first + k) / BLOCK, k % BLOCK, &mut sum);
+            }
+            for axis in 0..3 {
+                sum[axis].store_up_to_end(force[axis], k);
+                if parts.turn {
+                    sum[3 + axis].store_up_to_end(torque[axis], k);
+                }
+            }
         }
     }
+}
+
+/// Adds the vectors from `at` on to three of the sums.
+#[inline(always)]
+fn add<S: Simd>(simd: S, sum: &mut [Lanes<S>; 6], first: usize, v: &Vectors, at: usize) {
+    sum[first] += Lanes::load_up_to_end(simd, &v.x, at);
+    sum[first + 1] += Lanes::load_up_to_end(simd, &v.y, at);
+    sum[first + 2] += Lanes::load_up_to_end(simd, &v.z, at);
+}
+
+/// Radii of one chunk.
+struct Thin<'a> {
+    rows: Rows<'a>,
+    radius: &'a mut [f64],
+    thinned: &'a mut [f64],
+    radius0: &'a [f64],
+}
+
+impl WithSimd for Thin<'_> {
+    type Output = ();
 
     /// Radius as the mean over the bonds that hold; a particle without any keeps its own.
     #[inline(always)]
-    fn thin<S: Simd>(&self, simd: S, radius: &mut [f64], radius0: &[f64]) {
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Thin { rows, radius, thinned, radius0 } = self;
+        let (zero, half, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 0.5), Lanes::splat(simd, 1.0));
         for k in (0..radius.len()).step_by(Lanes::<S>::LEN) {
-            let live = self.here(simd, BondActions::LIVE, k) + self.before(simd, BondActions::LIVE, k);
-            let thinning = self.here(simd, BondActions::THINNING, k) + self.before(simd, BondActions::THINNING, k);
+            let here = rows.here(simd, BondActions::THINNING, k);
+            let before = rows.before(simd, BondActions::THINNING, k);
+            let (some, both) = (here.above(zero) | before.above(zero), here.above(zero) & before.above(zero));
             let undeformed = Lanes::load_up_to_end(simd, radius0, k);
             let kept = Lanes::load_up_to_end(simd, radius, k);
-            let held = live.above(live.like(0.0));
-            let share = Lanes::choose(live.above(live.like(1.0)), live.like(0.5), live.like(1.0));
-            Lanes::choose(held, undeformed * (thinning * share), kept).store_up_to_end(radius, k);
+            let mean = undeformed * ((here + before) * Lanes::choose(both, half, one));
+            let now = Lanes::choose(some, mean, kept);
+            now.store_up_to_end(radius, k);
+            (kept - now).store_up_to_end(thinned, k);
         }
     }
 }
 
+/// Chunks that one task takes when there is little to do in each.
+const GRAIN: usize = 4;
+
 /// Velocities and spins over `dt` [s].
 pub fn kick(state: &mut State, dt: f64, turn: bool, arch: Arch) {
-    accelerate(&mut state.v, &state.force, &state.inverse_mass, dt, arch);
-    if turn {
-        accelerate(&mut state.w, &state.torque, &state.inverse_inertia, dt, arch);
-    }
-}
-
-/// v += F/m dt.
-fn accelerate(v: &mut Vectors, f: &Vectors, inverse_mass: &[f64], dt: f64, arch: Arch) {
-    (v.x.par_chunks_mut(CHUNK), v.y.par_chunks_mut(CHUNK), v.z.par_chunks_mut(CHUNK))
+    let State { v, w, force, torque, inverse_mass, inverse_inertia, .. } = state;
+    let (v, w) = (&mut *v, &mut *w);
+    (
+        v.x.par_chunks_mut(CHUNK),
+        v.y.par_chunks_mut(CHUNK),
+        v.z.par_chunks_mut(CHUNK),
+        w.x.par_chunks_mut(CHUNK),
+        w.y.par_chunks_mut(CHUNK),
+        w.z.par_chunks_mut(CHUNK),
+    )
         .into_par_iter()
-        .with_max_len(1)
+        .with_min_len(GRAIN)
         .enumerate()
-        .for_each(|(chunk, (x, y, z))| {
-            let here = chunk * CHUNK..chunk * CHUNK + x.len();
-            let force = f.rows().map(|row| &row[here.clone()]);
-            arch.dispatch(Kick { v: [x, y, z], force, inverse_mass: &inverse_mass[here], dt });
+        .for_each(|(chunk, (vx, vy, vz, wx, wy, wz))| {
+            let first = chunk * CHUNK;
+            arch.dispatch(Kick { v: [vx, vy, vz], force, inverse_mass, first, dt });
+            if turn {
+                arch.dispatch(Kick { v: [wx, wy, wz], force: torque, inverse_mass: inverse_inertia, first, dt });
+            }
         });
 }
 
-/// Velocities of one chunk.
+/// Velocities of one chunk: v += F/m dt.
 struct Kick<'a> {
     v: [&'a mut [f64]; 3],
-    force: [&'a [f64]; 3],
+    /// Of all particles.
+    force: &'a Vectors,
     inverse_mass: &'a [f64],
+    first: usize,
     dt: f64,
 }
 
@@ -170,11 +210,12 @@ impl WithSimd for Kick<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Kick { v, force, inverse_mass, dt } = self;
-        for k in (0..inverse_mass.len()).step_by(Lanes::<S>::LEN) {
-            let per_force = Lanes::load_up_to_end(simd, inverse_mass, k) * dt;
+        let Kick { v, force, inverse_mass, first, dt } = self;
+        let force = force.rows();
+        for k in (0..v[0].len()).step_by(Lanes::<S>::LEN) {
+            let per_force = Lanes::load_up_to_end(simd, inverse_mass, first + k) * dt;
             for axis in 0..3 {
-                let change = Lanes::load_up_to_end(simd, force[axis], k) * per_force;
+                let change = Lanes::load_up_to_end(simd, force[axis], first + k) * per_force;
                 (Lanes::load_up_to_end(simd, v[axis], k) + change).store_up_to_end(v[axis], k);
             }
         }
@@ -204,7 +245,7 @@ pub fn drift(state: &mut State, neighbours: Option<&Reference>, arch: Arch) -> D
     let (v, x) = (&state.v, &mut state.x);
     (x.x.par_chunks_mut(CHUNK), x.y.par_chunks_mut(CHUNK), x.z.par_chunks_mut(CHUNK))
         .into_par_iter()
-        .with_max_len(1)
+        .with_min_len(GRAIN)
         .enumerate()
         .map(|(chunk, (x, y, z))| {
             let here = chunk * CHUNK..chunk * CHUNK + x.len();

@@ -234,7 +234,7 @@ impl Engine {
         let before_gather = Instant::now();
         let parts = integrate::Parts {
             turn: self.plan.rotations,
-            contacts: self.contacts.is_some(),
+            contacts: self.contacts.as_ref().map(|c| c.stage.second_sides()),
             thin: matches!(self.spec.bond.law, BondLawSpec::ElastoPlastic(_)),
         };
         integrate::gather(&mut self.state, parts, self.arch);

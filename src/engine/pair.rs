@@ -24,8 +24,8 @@ pub struct Meeting<R = f64> {
     pub normal: Triple<R>,
     /// Overlap δ [m]; 0 where the surfaces are apart.
     pub overlap: R,
-    /// Sum of the current radii, less the overlap that does not count [m].
-    pub reach: R,
+    /// By how much the sum of the radii has shrunk in the last step [m].
+    pub thinner: R,
     /// Velocity of the second surface relative to the first at the contact point [m/s].
     pub velocity: Triple<R>,
     /// 2ξ√m* with the damping fraction ξ and the reduced mass m* [√kg].
@@ -34,7 +34,7 @@ pub struct Meeting<R = f64> {
     pub dt: f64,
 }
 
-/// What a contact remembers. All of it but the first two is 0 before the first touch.
+/// What a contact remembers. All of it but the radius is 0 where nothing touched yet, unless the overlap does not count.
 pub struct History<N: NormalLaw, T: TangentialLaw, R: Real = f64> {
     /// Reduced radius R* [m], undeformed.
     pub reduced_radius: R,
@@ -45,8 +45,6 @@ pub struct History<N: NormalLaw, T: TangentialLaw, R: Real = f64> {
     pub normal: N::State<R>,
     /// Tangential law's state.
     pub tangential: T::State<R>,
-    /// [`Meeting::reach`] at the last step [m]; 0 where the surfaces were apart.
-    pub reach: R,
     /// Elastic normal force at the last step [N].
     pub normal_force: R,
     /// Force of the dashpot at the last step [N].
@@ -62,27 +60,22 @@ impl<N: NormalLaw, T: TangentialLaw, R: Real> Clone for History<N, T, R> {
 impl<N: NormalLaw, T: TangentialLaw, R: Real> Copy for History<N, T, R> {}
 
 impl<N: NormalLaw, T: TangentialLaw, R: Real> History<N, T, R> {
-    /// Numbers of a history.
-    pub const NUMBERS: usize = 5 + N::HISTORY + T::HISTORY;
-    /// Place of [`Self::reduced_radius`] among them.
-    pub const RADIUS: usize = 0;
-    /// Place of [`Self::offset`].
-    pub const OFFSET: usize = 1;
-    /// Place of [`Self::reach`].
-    pub const REACH: usize = 2;
+    /// Numbers of a history, besides the radius.
+    pub const NUMBERS: usize = 3 + N::HISTORY + T::HISTORY;
+    /// Place of [`Self::offset`] among them.
+    pub const OFFSET: usize = 0;
     /// Place of [`Self::normal_force`].
-    pub const FORCE: usize = 3;
-    const VISCOUS: usize = 4;
-    const NORMAL: usize = 5;
+    pub const FORCE: usize = 1;
+    const VISCOUS: usize = 2;
+    const NORMAL: usize = 3;
     const TANGENTIAL: usize = Self::NORMAL + N::HISTORY;
 
-    /// The history from its numbers.
+    /// The history from its radius and its numbers.
     #[inline(always)]
-    pub fn of(numbers: impl Fn(usize) -> R) -> Self {
+    pub fn of(reduced_radius: R, numbers: impl Fn(usize) -> R) -> Self {
         Self {
-            reduced_radius: numbers(Self::RADIUS),
+            reduced_radius,
             offset: numbers(Self::OFFSET),
-            reach: numbers(Self::REACH),
             normal_force: numbers(Self::FORCE),
             viscous: numbers(Self::VISCOUS),
             normal: N::history(|k| numbers(Self::NORMAL + k)),
@@ -90,28 +83,27 @@ impl<N: NormalLaw, T: TangentialLaw, R: Real> History<N, T, R> {
         }
     }
 
-    /// What may have changed in a step: all numbers but the reduced radius, each with its place.
+    /// The numbers, each with its place.
     #[inline(always)]
-    pub fn each_changing(&self, mut put: impl FnMut(usize, R)) {
+    pub fn each_number(&self, mut put: impl FnMut(usize, R)) {
         put(Self::OFFSET, self.offset);
-        put(Self::REACH, self.reach);
         put(Self::FORCE, self.normal_force);
         put(Self::VISCOUS, self.viscous);
         N::each_number(&self.normal, |k, number| put(Self::NORMAL + k, number));
         T::each_number(&self.tangential, |k, number| put(Self::TANGENTIAL + k, number));
     }
 
-    /// Contacts that touch.
+    /// Contacts that push: surfaces that lie in a dent without a force count as apart.
     #[inline(always)]
     pub fn touching(&self) -> R::Mask {
-        self.reach.above(self.reach.like(0.0))
+        self.normal_force.above(self.normal_force.like(0.0))
     }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> History<N, T> {
     /// A contact that never touched.
     pub fn new(reduced_radius: f64) -> Self {
-        Self { reduced_radius, ..Self::of(|_| 0.0) }
+        Self::of(reduced_radius, |_| 0.0)
     }
 }
 
@@ -156,9 +148,8 @@ pub fn meet<N: NormalLaw, T: TangentialLaw, R: Real>(
     let touches = meeting.overlap.above(zero);
     let answer = laws.normal.response(&mut history.normal, history.reduced_radius, meeting.overlap);
     let mean = (history.normal_force + answer.force) * 0.5;
-    let thinner = R::choose(touches & history.touching(), history.reach - meeting.reach, zero);
+    let thinner = R::choose(touches & history.touching(), meeting.thinner, zero);
     let mut given = Given { plastic: answer.plastic_work, thinning: mean * thinner, friction: zero, damping: zero };
-    history.reach = R::choose(touches, meeting.reach, zero);
     history.normal_force = answer.force;
 
     let approach = meeting.velocity.dot(meeting.normal);

@@ -6,10 +6,11 @@
 //! loads: both its sides are contiguous in memory, and 96 to 99 % of the places in the blocks of a strand are pairs.
 //!
 //! Blocks are ordered by the chunk of particles that their first side lies in, then by diagonal. A chunk's task adds
-//! the first sides to its own particles; the second sides are left as actions, which [`gather`] adds up.
+//! the first sides to its own particles; the second sides are left as actions, which the gathering of all forces adds
+//! up ([`SecondSides`]).
 
-mod gather;
 mod kernel;
+mod second;
 
 use super::contacts::{Contacts, closing};
 use super::neighbours::PairList;
@@ -22,10 +23,12 @@ use crate::law::contact::constants::{reduced_mass, reduced_radius};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
-use gather::SecondSides;
 use kernel::Work;
 use pulp::Arch;
 use rayon::prelude::*;
+use second::Places;
+pub use second::SecondSides;
+use std::collections::HashMap;
 
 /// Pairs (i + k, j + k), k below [`BLOCK`].
 #[derive(Debug, Clone, Copy)]
@@ -35,6 +38,8 @@ struct Block {
     j: u32,
     /// Which of them are candidates, a bit each.
     pairs: u16,
+    /// Its rows among the constants.
+    constants: u32,
     /// Whether any of them touched at the last step.
     acts: bool,
     /// Nothing can touch until [`State::travel`] has reached this [m].
@@ -72,6 +77,34 @@ fn pair(key: u64) -> [u32; 2] {
 struct Store {
     blocks: Vec<Block>,
     records: Vec<f64>,
+    constants: Constants,
+}
+
+/// What does not change from search to search: R* [m], 0 where no candidate is, and 2ξ√m* [√kg]. Nearly all blocks of a
+/// strand are alike in it, so each kind is kept once.
+#[derive(Default)]
+struct Constants {
+    /// Two rows of [`BLOCK`] numbers each.
+    rows: Vec<f64>,
+    /// Place of each kind by its bits.
+    kinds: HashMap<[u64; 2 * BLOCK], u32>,
+}
+
+impl Constants {
+    fn clear(&mut self) {
+        self.rows.clear();
+        self.kinds.clear();
+    }
+
+    /// Where these rows are.
+    fn place(&mut self, rows: &[f64; 2 * BLOCK]) -> u32 {
+        let next = self.rows.len() as u32;
+        let place = *self.kinds.entry(rows.map(f64::to_bits)).or_insert(next);
+        if place == next {
+            self.rows.extend_from_slice(rows);
+        }
+        place
+    }
 }
 
 /// Contacts between spheres with normal law `N` and tangential law `T`.
@@ -87,7 +120,7 @@ pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     /// What blocks do to their second sides, [`kernel::rows`] rows of [`BLOCK`] numbers each, with a block to spare at
     /// either end.
     actions: Vec<f64>,
-    second: SecondSides,
+    places: Places,
     partial: Vec<Partial>,
     /// The deepest contact so far.
     deepest: Deepest,
@@ -97,9 +130,8 @@ pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
-    /// Fields of a record: the history, and 2ξ√m*.
-    const FIELDS: usize = History::<N, T>::NUMBERS + 1;
-    const VISCOSITY: usize = Self::FIELDS - 1;
+    /// Fields of a record.
+    const FIELDS: usize = History::<N, T>::NUMBERS;
 
     /// Without contacts yet.
     pub fn new(laws: Laws<N, T>, assembly: &Assembly) -> Self {
@@ -110,7 +142,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
             keys: Vec::new(),
             starts: Vec::new(),
             actions: Vec::new(),
-            second: SecondSides::default(),
+            places: Places::default(),
             partial: Vec::new(),
             deepest: Deepest::default(),
             closing: closing(assembly),
@@ -123,7 +155,8 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
     }
 
     fn history(store: &Store, block: usize, lane: usize) -> History<N, T> {
-        History::of(|k| store.records[Self::place(block, k, lane)])
+        let radius = store.constants.rows[store.blocks[block].constants as usize + lane];
+        History::of(radius, |k| store.records[Self::place(block, k, lane)])
     }
 
     /// All pairs: block, place in it, the two particles.
@@ -142,12 +175,12 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
 
     /// Blocks for the pairs in `keys`, their records all 0.
     fn lay_out(&mut self) {
-        let Store { blocks, records } = &mut self.now;
+        let Store { blocks, records, .. } = &mut self.now;
         blocks.clear();
         for key in &self.keys {
             let [i, j] = pair(*key);
             let lane = i % BLOCK as u32;
-            let first = Block { i: i - lane, j: j - lane, pairs: 0, acts: false, quiet_until: 0.0 };
+            let first = Block { i: i - lane, j: j - lane, pairs: 0, constants: 0, acts: false, quiet_until: 0.0 };
             if blocks.last().is_none_or(|last: &Block| last.key() != first.key()) {
                 blocks.push(first);
             }
@@ -157,6 +190,21 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
         }
         records.clear();
         records.resize(blocks.len() * Self::FIELDS * BLOCK, 0.0);
+    }
+
+    fn find_constants(&mut self, state: &State) {
+        let Store { blocks, constants, .. } = &mut self.now;
+        constants.clear();
+        for block in blocks {
+            let mut rows = [0.0; 2 * BLOCK];
+            for lane in block.lanes() {
+                let [i, j] = [block.i, block.j].map(|p| p as usize + lane);
+                let mass = reduced_mass(state.mass[i], state.mass[j]);
+                rows[lane] = reduced_radius(state.radius0[i], state.radius0[j]);
+                rows[BLOCK + lane] = viscous_coefficient(self.laws.damping, mass, 1.0);
+            }
+            block.constants = constants.place(&rows);
+        }
     }
 
     /// Fills the records from the old ones, and for pairs that were not there afresh; returns what friction had stored
@@ -198,13 +246,11 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
 
     /// A pair that is new in the list. During a run it was beyond reach until now, or a bond has just broken.
     fn set_up(&mut self, block: usize, lane: usize, state: &State) {
-        let [i, j] = [self.now.blocks[block].i, self.now.blocks[block].j].map(|p| p as usize + lane);
-        let mut put = |field: usize, number: f64| self.now.records[Self::place(block, field, lane)] = number;
-        put(History::<N, T>::RADIUS, reduced_radius(state.radius0[i], state.radius0[j]));
-        put(Self::VISCOSITY, viscous_coefficient(self.laws.damping, reduced_mass(state.mass[i], state.mass[j]), 1.0));
         if state.step > 0 {
+            let [i, j] = [self.now.blocks[block].i, self.now.blocks[block].j].map(|p| p as usize + lane);
             let distance = (state.x.get(j) - state.x.get(i)).length();
-            put(History::<N, T>::OFFSET, (state.radius[i] + state.radius[j] - distance).max(0.0));
+            let offset = (state.radius[i] + state.radius[j] - distance).max(0.0);
+            self.now.records[Self::place(block, History::<N, T>::OFFSET, lane)] = offset;
         }
     }
 
@@ -221,6 +267,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         self.keys.extend(list.pairs.iter().map(|(i, j)| key(*i, *j)));
         self.keys.par_sort_unstable();
         self.lay_out();
+        self.find_constants(state);
         let friction = self.take_over(state);
         let chunks = state.len().div_ceil(CHUNK);
         let blocks = &self.now.blocks;
@@ -230,7 +277,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         self.actions.resize((blocks.len() * kernel::rows::<T>() + 2) * BLOCK, 0.0);
         self.partial.clear();
         self.partial.resize(chunks, Partial::default());
-        self.second.index(blocks, state.len());
+        self.places.index(blocks, state.len());
         Partial { friction, ..Partial::default() }
     }
 
@@ -243,6 +290,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             starts: &self.starts,
             blocks: &mut self.now.blocks,
             records: &mut self.now.records,
+            constants: &self.now.constants.rows,
             actions: &mut self.actions[BLOCK..end],
             sides,
             partial: &mut self.partial,
@@ -250,11 +298,15 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         work.share(Self::FIELDS, kernel::rows::<T>(), &|chunk| {
             arch.dispatch(kernel::Chunk { laws, seen: &seen, deepest, closing, work: chunk });
         });
-        self.second.add(&self.now.blocks, &self.actions, T::ACTIVE, state, arch);
         let mut sum = Partial::beyond(deepest);
         self.partial.iter().for_each(|p| sum.add(p));
         self.deepest = sum.deepest;
         sum
+    }
+
+    fn second_sides(&self) -> Option<SecondSides<'_>> {
+        let Self { places, actions, .. } = self;
+        Some(SecondSides { places, blocks: &self.now.blocks, actions, turn: T::ACTIVE })
     }
 
     fn elastic_energy(&self, state: &State) -> f64 {

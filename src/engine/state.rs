@@ -9,24 +9,22 @@ pub const CHUNK: usize = 256;
 
 /// What bonds do to their two particles, in blocks of [`CHUNK`] slots, field after field.
 pub struct BondActions {
-    /// Per block: 1 where the bond holds and 0 elsewhere; its factor on the radius e^(−ε_p/2) [-]; its pull on the
-    /// first particle [N], of which the second feels the opposite; and where particles turn its moments on the first
-    /// and on the second [N m]. All of them 0 where no bond is.
+    /// Per block: the factor of the bond on the radius e^(−ε_p/2) [-]; its pull on the first particle [N], of which the
+    /// second feels the opposite; and where particles turn its moments on the first and on the second [N m]. All of them
+    /// 0 where no bond is.
     pub data: Vec<f64>,
     turn: bool,
 }
 
 impl BondActions {
     /// Places of the fields.
-    pub const LIVE: usize = 0;
-    /// See [`Self::data`].
-    pub const THINNING: usize = 1;
+    pub const THINNING: usize = 0;
     /// Three of them.
-    pub const PULL: usize = 2;
+    pub const PULL: usize = 1;
     /// Three of them.
-    pub const NEAR: usize = 5;
+    pub const NEAR: usize = 4;
     /// Three of them.
-    pub const FAR: usize = 8;
+    pub const FAR: usize = 7;
 
     /// Nothing done yet to `n` particles.
     pub fn new(n: usize, turn: bool) -> Self {
@@ -93,9 +91,9 @@ pub struct State {
     pub force: Vectors,
     /// Torques about the centres [N m].
     pub torque: Vectors,
-    /// Forces from contacts [N].
+    /// Forces from contacts on particles that are the first of their pair, and from capsules on all [N].
     pub contact_force: Vectors,
-    /// Torques from contacts [N m].
+    /// The same for torques [N m].
     pub contact_torque: Vectors,
     /// What bonds do.
     pub bond: BondActions,
@@ -103,6 +101,8 @@ pub struct State {
     pub whole: Vec<bool>,
     /// Current contact radii [m].
     pub radius: Vec<f64>,
+    /// By how much each has shrunk in the last step [m].
+    pub thinned: Vec<f64>,
     /// Undeformed radii [m].
     pub radius0: Vec<f64>,
     /// Masses [kg].
@@ -142,6 +142,7 @@ impl State {
             bond: BondActions::new(n, turn),
             whole: (0..n).map(|i| a.is_bond(i)).collect(),
             radius: a.radius.clone(),
+            thinned: vec![0.0; n],
             radius0: a.radius.clone(),
             mass: a.mass.clone(),
             inertia: a.inertia.clone(),
@@ -159,7 +160,7 @@ impl State {
     /// What contacts read, and what they write.
     pub fn split_contacts(&mut self) -> (Seen<'_>, ContactSides<'_>) {
         let (x, v, w) = (self.x.rows(), self.v.rows(), self.w.rows());
-        let seen = Seen { x, v, w, radius: &self.radius, dt: self.dt, travel: self.travel };
+        let seen = Seen { x, v, w, radius: &self.radius, thinned: &self.thinned, dt: self.dt, travel: self.travel };
         let (f, t) = (&mut self.contact_force, &mut self.contact_torque);
         (seen, ContactSides { force: [&mut f.x, &mut f.y, &mut f.z], torque: [&mut t.x, &mut t.y, &mut t.z] })
     }
@@ -216,6 +217,8 @@ pub struct Seen<'a> {
     pub w: [&'a [f64]; 3],
     /// Contact radii [m].
     pub radius: &'a [f64],
+    /// By how much each has shrunk in the last step [m].
+    pub thinned: &'a [f64],
     /// Step [s].
     pub dt: f64,
     /// See [`State::travel`].
@@ -231,11 +234,6 @@ pub struct ContactSides<'a> {
 }
 
 impl<'a> ContactSides<'a> {
-    /// Number of particles.
-    pub fn particles(&self) -> usize {
-        self.force[0].len()
-    }
-
     /// The first `at` particles, and the others.
     pub fn split_at(self, at: usize) -> (Self, Self) {
         let ([f0, f1, f2], [t0, t1, t2]) = (self.force, self.torque);
@@ -248,31 +246,6 @@ impl<'a> ContactSides<'a> {
     pub fn rows(&mut self, turn: bool) -> impl Iterator<Item = &mut [f64]> {
         let torque = if turn { &mut self.torque[..] } else { &mut [] };
         self.force.iter_mut().chain(torque).map(|row| &mut **row)
-    }
-
-    /// Forces and torques.
-    pub fn all(&mut self) -> [&mut [f64]; 6] {
-        let ([fx, fy, fz], [tx, ty, tz]) = (&mut self.force, &mut self.torque);
-        [fx, fy, fz, tx, ty, tz]
-    }
-
-    /// The forces.
-    pub fn forces(&mut self) -> [&mut [f64]; 3] {
-        let [x, y, z] = &mut self.force;
-        [x, y, z]
-    }
-
-    /// Calls `each` with the particles of every chunk, `chunks` of them from the chunk `first` on, side by side.
-    pub fn share(self, first: usize, chunks: usize, each: &(impl Fn(usize, ContactSides<'_>) + Sync)) {
-        if chunks <= 1 {
-            if chunks == 1 {
-                each(first, self);
-            }
-            return;
-        }
-        let half = chunks / 2;
-        let (left, right) = self.split_at(half * CHUNK);
-        rayon::join(|| left.share(first, half, each), || right.share(first + half, chunks - half, each));
     }
 }
 

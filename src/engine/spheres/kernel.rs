@@ -23,6 +23,7 @@ pub struct Work<'a> {
     pub starts: &'a [u32],
     pub blocks: &'a mut [Block],
     pub records: &'a mut [f64],
+    pub constants: &'a [f64],
     pub actions: &'a mut [f64],
     pub sides: ContactSides<'a>,
     pub partial: &'a mut [Partial],
@@ -57,6 +58,7 @@ impl<'a> Work<'a> {
             starts: &self.starts[at..],
             blocks: b1,
             records: r1,
+            constants: left.constants,
             actions: a1,
             sides: s1,
             partial: p1,
@@ -109,6 +111,7 @@ impl Sums {
 struct Ball<R> {
     x: Triple<R>,
     radius: R,
+    thinned: R,
 }
 
 impl<N: NormalLaw, T: TangentialLaw> WithSimd for Chunk<'_, N, T> {
@@ -155,13 +158,14 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let inverse = square.inverse_sqrt();
         let distance = square * inverse;
         let touching = first.radius + second.radius;
-        let reduced = load(record, History::<N, T>::RADIUS);
+        let constants = self.work.blocks[b].constants as usize + lane;
+        let reduced = Lanes::load(simd, self.work.constants, constants);
         let offset = load(record, History::<N, T>::OFFSET);
         let pairs = reduced.above(zero);
         let reach = touching - offset;
         let overlap = reach - distance;
         let touches = overlap.above(zero) & pairs;
-        let remembers = load(record, History::<N, T>::REACH).above(zero) | offset.above(zero);
+        let remembers = load(record, History::<N, T>::FORCE).above(zero) | offset.above(zero);
         if !(touches | remembers).any() {
             Lanes::choose(pairs, -overlap, zero.like(f64::INFINITY)).store(gap, lane);
             self.still(simd, b, lane);
@@ -169,19 +173,20 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         }
         zero.store(gap, lane);
 
-        let mut history = History::<N, T, _>::of(|k| load(record, k));
+        let mut history = History::<N, T, _>::of(reduced, |k| load(record, k));
         let overlap = Lanes::choose(touches, overlap, zero);
         let normal = d * inverse;
         let sunk = (overlap + offset) * 0.5;
         let arms = [first.radius - sunk, second.radius - sunk];
         let velocity = velocity::<S, T>(simd, self.seen, [i, j], normal, arms);
-        let viscosity = load(record, SphereContacts::<N, T>::VISCOSITY);
-        let meeting = Meeting { normal, overlap, reach, velocity, viscosity, dt: self.seen.dt };
+        let viscosity = Lanes::load(simd, self.work.constants, constants + BLOCK);
+        let thinner = first.thinned + second.thinned;
+        let meeting = Meeting { normal, overlap, thinner, velocity, viscosity, dt: self.seen.dt };
         let (pair, given) = meet(self.laws, &mut history, &meeting);
         sums.book(simd, lane, &given, pairs);
         // An overlap that does not count shrinks as the surfaces part.
         history.offset = Lanes::choose(touches, offset, offset.lesser((touching - distance).greater(zero)));
-        history.each_changing(|k, number| number.store(record, k * BLOCK + lane));
+        history.each_number(|k, number| number.store(record, k * BLOCK + lane));
 
         let least = first.radius.lesser(second.radius);
         let deep = touches & overlap.above(least * self.deepest.ratio);
@@ -269,7 +274,8 @@ fn vector<S: Simd>(simd: S, [x, y, z]: &[&[f64]; 3], p: usize) -> Triple<Lanes<S
 
 #[inline(always)]
 fn ball<S: Simd>(simd: S, seen: &Seen, p: usize) -> Ball<Lanes<S>> {
-    Ball { x: vector(simd, &seen.x, p), radius: Lanes::load_up_to_end(simd, seen.radius, p) }
+    let load = |row: &[f64]| Lanes::load_up_to_end(simd, row, p);
+    Ball { x: vector(simd, &seen.x, p), radius: load(seen.radius), thinned: load(seen.thinned) }
 }
 
 /// Velocity of the second surfaces relative to the first where they meet [m/s].

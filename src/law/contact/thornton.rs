@@ -31,8 +31,6 @@ pub struct Thornton {
 pub struct ThorntonState<R = f64> {
     /// Greatest overlap δ_m so far [m].
     pub greatest_overlap: R,
-    /// Force F_m there [N].
-    pub greatest_force: R,
     /// Radius R_p of the dent, in which it unloads [m].
     pub dent_radius: R,
     /// Overlap δ_p that remains when the force is gone [m].
@@ -40,17 +38,10 @@ pub struct ThorntonState<R = f64> {
 }
 
 impl<R: Real> ThorntonState<R> {
-    /// Energy that unloading from δ_m gives back: (2/5) F_m (δ_m − δ_p) [J].
-    #[inline(always)]
-    fn recoverable(&self) -> R {
-        self.greatest_force * 0.4 * (self.greatest_overlap - self.residual_overlap)
-    }
-
     #[inline(always)]
     fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         Self {
             greatest_overlap: R::choose(mask, yes.greatest_overlap, no.greatest_overlap),
-            greatest_force: R::choose(mask, yes.greatest_force, no.greatest_force),
             dent_radius: R::choose(mask, yes.dent_radius, no.dent_radius),
             residual_overlap: R::choose(mask, yes.residual_overlap, no.residual_overlap),
         }
@@ -71,33 +62,38 @@ impl Thornton {
         reduced_radius * (PI * self.limiting_pressure)
     }
 
-    /// The unloading curve from a point of the plastic line at `overlap` > δ_y; the square of the contact radius there
-    /// is `a2` [m²], its inverse `inverse_a` [1/m].
+    /// Force on the plastic line [N].
     #[inline(always)]
-    fn curve_from<R: Real>(&self, reduced_radius: R, overlap: R, a2: R, inverse_a: R) -> ThorntonState<R> {
-        let past_yield = overlap - self.yield_overlap(reduced_radius) * (1.0 / 3.0);
-        let force = self.slope(reduced_radius) * past_yield;
-        let recovery = force * inverse_a * (0.75 / self.effective_modulus);
-        ThorntonState {
-            greatest_overlap: overlap,
-            greatest_force: force,
-            dent_radius: a2 / recovery,
-            residual_overlap: overlap - recovery,
-        }
+    fn plastic_force<R: Real>(&self, reduced_radius: R, overlap: R) -> R {
+        self.slope(reduced_radius) * (overlap - self.yield_overlap(reduced_radius) * (1.0 / 3.0))
     }
 
-    /// Work that loads a contact from `before` to `after` along the plastic line, through Hertz's curve if `before`
-    /// has not yielded [J].
+    /// The unloading curve from a point of the plastic line at `overlap` > δ_y with its force [N]; the square of the
+    /// contact radius there is `a2` [m²], its inverse `inverse_a` [1/m].
     #[inline(always)]
-    fn loading_work<R: Real>(&self, before: &ThorntonState<R>, after: &ThorntonState<R>, reduced_radius: R) -> R {
+    fn curve_from<R: Real>(&self, overlap: R, force: R, a2: R, inverse_a: R) -> ThorntonState<R> {
+        let recovery = force * inverse_a * (0.75 / self.effective_modulus);
+        ThorntonState { greatest_overlap: overlap, dent_radius: a2 / recovery, residual_overlap: overlap - recovery }
+    }
+
+    /// Energy that unloading from δ_m, with the force F_m there, gives back: (2/5) F_m (δ_m − δ_p) [J].
+    #[inline(always)]
+    fn recoverable<R: Real>(state: &ThorntonState<R>, force: R) -> R {
+        force * 0.4 * (state.greatest_overlap - state.residual_overlap)
+    }
+
+    /// Work that is not stored while a contact loads from `before` to `after` along the plastic line, where the force is
+    /// `force` [N]; through Hertz's curve if `before` has not yielded [J].
+    #[inline(always)]
+    fn lost<R: Real>(&self, before: &ThorntonState<R>, after: &ThorntonState<R>, force: R, reduced_radius: R) -> R {
         let zero = reduced_radius.like(0.0);
-        let first_yield = self.yield_overlap(reduced_radius);
-        let force_there = self.slope(reduced_radius) * first_yield * (2.0 / 3.0);
         let dented = before.greatest_overlap.above(zero);
-        let from = R::choose(dented, before.greatest_overlap, first_yield);
-        let force = R::choose(dented, before.greatest_force, force_there);
-        let below = R::choose(dented, zero, force_there * first_yield * 0.4);
-        below + (force + after.greatest_force) * 0.5 * (after.greatest_overlap - from)
+        // The plastic line begins at first yield, where everything is stored.
+        let from = R::choose(dented, before.greatest_overlap, self.yield_overlap(reduced_radius));
+        let force_there = self.plastic_force(reduced_radius, from);
+        let stored = R::choose(dented, Self::recoverable(before, force_there), force_there * from * 0.4);
+        let work = (force_there + force) * 0.5 * (after.greatest_overlap - from);
+        work - (Self::recoverable(after, force) - stored)
     }
 
     /// Whether the contact loads plastically at `overlap` with this history.
@@ -119,24 +115,18 @@ impl Thornton {
 impl NormalLaw for Thornton {
     type State<R: Real> = ThorntonState<R>;
 
-    const HISTORY: usize = 4;
+    const HISTORY: usize = 3;
 
     #[inline(always)]
     fn history<R: Real>(numbers: impl Fn(usize) -> R) -> ThorntonState<R> {
-        ThorntonState {
-            greatest_overlap: numbers(0),
-            greatest_force: numbers(1),
-            dent_radius: numbers(2),
-            residual_overlap: numbers(3),
-        }
+        ThorntonState { greatest_overlap: numbers(0), dent_radius: numbers(1), residual_overlap: numbers(2) }
     }
 
     #[inline(always)]
     fn each_number<R: Real>(s: &ThorntonState<R>, mut put: impl FnMut(usize, R)) {
         put(0, s.greatest_overlap);
-        put(1, s.greatest_force);
-        put(2, s.dent_radius);
-        put(3, s.residual_overlap);
+        put(1, s.dent_radius);
+        put(2, s.residual_overlap);
     }
 
     #[inline(always)]
@@ -151,12 +141,12 @@ impl NormalLaw for Thornton {
         if !yields.any() {
             return answer;
         }
-        let after = self.curve_from(reduced_radius, overlap, a2, answer.inverse_radius);
-        let work = self.loading_work(state, &after, reduced_radius);
-        let plastic_work = work - (after.recoverable() - state.recoverable());
+        let force = self.plastic_force(reduced_radius, overlap);
+        let after = self.curve_from(overlap, force, a2, answer.inverse_radius);
+        let plastic_work = self.lost(state, &after, force, reduced_radius);
         *state = ThorntonState::choose(yields, &after, state);
         NormalResponse {
-            force: R::choose(yields, after.greatest_force, answer.force),
+            force: R::choose(yields, force, answer.force),
             stiffness: R::choose(yields, self.slope(reduced_radius), answer.stiffness),
             plastic_work: R::choose(yields, plastic_work, zero),
             ..answer
@@ -166,8 +156,8 @@ impl NormalLaw for Thornton {
     #[inline(always)]
     fn elastic_energy(&self, state: &ThorntonState, reduced_radius: f64, overlap: f64) -> f64 {
         if self.yields(state, reduced_radius, overlap) {
-            let a2 = reduced_radius * overlap;
-            return self.curve_from(reduced_radius, overlap, a2, a2.inverse_sqrt()).recoverable();
+            let (a2, force) = (reduced_radius * overlap, self.plastic_force(reduced_radius, overlap));
+            return Self::recoverable(&self.curve_from(overlap, force, a2, a2.inverse_sqrt()), force);
         }
         let (radius, shift) = Self::elastic_curve(state, reduced_radius);
         hertzian_energy(self.effective_modulus, radius, (overlap - shift).max(0.0))

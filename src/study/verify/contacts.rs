@@ -138,7 +138,7 @@ fn constant_load(lab: &Lab) -> Result<Vec<Finding>> {
         trial.run_to(1.3 * whole / rate, |engine| {
             let slip = rate * engine.time();
             if slip / whole >= 0.1 * (seen.len() + 1) as f64 {
-                seen.push((slip, engine.state().contact_force.x[1].abs()));
+                seen.push((slip, engine.state().force.x[1].abs()));
             }
         })?;
         let spent = trial.finish();

@@ -40,7 +40,7 @@ fn repeated(lab: &Lab) -> Result<Vec<Finding>> {
         let overlap = speed * time + amplitude * (TAU * frequency * time).sin();
         greatest = greatest.max(overlap);
         let exact = thornton::force(&pair, limiting_pressure, greatest, overlap);
-        let force = engine.state().contact_force.z[sphere];
+        let force = engine.state().force.z[sphere];
         strongest = strongest.max(exact);
         if (force - exact).abs() >= (worst[0] - worst[1]).abs() {
             worst = [force, exact];
