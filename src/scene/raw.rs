@@ -364,6 +364,8 @@ pub struct RawGrip {
     pub clamp_pressure: Option<Scalar>,
     /// Constant speed of the upper grip along z, "m/s"; positive pulls.
     pub speed: Option<Scalar>,
+    /// Pull faster than `speed` where nothing happens. Absent: not.
+    pub adaptive: Option<RawAdaptive>,
     /// Amplitude of a sinusoidal displacement, "mm".
     pub displacement_amplitude: Option<Scalar>,
     /// Frequency of that displacement, "Hz".
@@ -372,6 +374,18 @@ pub struct RawGrip {
     pub rotation_rate: Option<Scalar>,
     /// The upper grip turns freely about z. Default false.
     pub free_rotation: Option<bool>,
+}
+
+/// `grip.adaptive`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawAdaptive {
+    /// Greatest speed, "m/s". Required.
+    pub fastest: Option<Scalar>,
+    /// Greatest kinetic energy of the pull over the work that it has done [-]. Default "2 %".
+    pub kinetic: Option<Scalar>,
+    /// Passages of an elastic wave [-]. Default 20.
+    pub passages: Option<Scalar>,
 }
 
 /// `grip.kind`.
@@ -443,6 +457,10 @@ pub enum RawFix {
 pub struct RawTime {
     /// Fraction of the bound on the stable step, above 0 and at most 1 [-]. Default 0.8.
     pub safety: Option<Scalar>,
+    /// How finely a contact is stepped at least: Δt √(k/m*), k its stiffness and m* its effective mass [-]; `safety`
+    /// is a factor on it too. A half period, in which two bodies meet and part, takes π over it steps; what is only
+    /// stable lets them gain energy. Default 0.4.
+    pub contact_resolution: Option<Scalar>,
     /// Fixed step, "s". Default: from the bound.
     pub step: Option<Scalar>,
     /// Factor on mass [-]. Default 1.

@@ -1,8 +1,8 @@
 //! What moves and what ends a scene: grips, holds, stop.
 
 use super::at::{At, Range};
-use super::raw::{RawGrip, RawGripKind, RawHold, RawPart, RawStop};
-use super::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, StopSpec};
+use super::raw::{RawAdaptive, RawGrip, RawGripKind, RawHold, RawPart, RawStop};
+use super::spec::{AdaptiveSpec, BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, StopSpec};
 use crate::base::error::Result;
 use crate::base::units::{self, Dimension};
 use glam::DVec3;
@@ -27,6 +27,7 @@ pub(super) fn grip(at: &At, raw: &RawGrip, extent: Option<f64>) -> Result<GripSp
         kind: grip_kind(at, raw)?,
         length,
         drive: drive(at, raw)?,
+        adaptive: raw.adaptive.as_ref().map(|adaptive| self::adaptive(at, adaptive)).transpose()?,
         rotation_rate: rotation.unwrap_or(0.0),
         free_rotation,
     })
@@ -62,6 +63,15 @@ fn drive(at: &At, raw: &RawGrip) -> Result<DriveSpec> {
             Range::Positive,
         )?,
         frequency: at.required("frequency", &raw.frequency, Dimension::Frequency, Range::Positive)?,
+    })
+}
+
+fn adaptive(at: &At, raw: &RawAdaptive) -> Result<AdaptiveSpec> {
+    let at = at.key("adaptive");
+    Ok(AdaptiveSpec {
+        fastest: at.required("fastest", &raw.fastest, Dimension::Velocity, Range::Positive)?,
+        kinetic: at.ratio_or("kinetic", &raw.kinetic, 0.02, Range::Positive)?,
+        passages: at.ratio_or("passages", &raw.passages, 20.0, Range::Positive)?,
     })
 }
 

@@ -257,6 +257,8 @@ pub struct GripSpec {
     pub length: f64,
     /// Motion of the upper grip along z.
     pub drive: DriveSpec,
+    /// Faster where nothing happens; `None`: as `drive` says throughout.
+    pub adaptive: Option<AdaptiveSpec>,
     /// Rotation rate of the upper grip about z [rad/s].
     pub rotation_rate: f64,
     /// The upper grip turns freely about z (its torque is zero) instead of being held or driven.
@@ -273,6 +275,18 @@ pub enum GripKind {
         /// Radial clamp pressure on the strand's surface [Pa].
         pressure: f64,
     },
+}
+
+/// Adaptive speed of a pull, from [`DriveSpec::Speed`] at its start and near ruptures to a greater one in between.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AdaptiveSpec {
+    /// Greatest speed [m/s].
+    pub fastest: f64,
+    /// Greatest kinetic energy of the pull over the work that it has done [-].
+    pub kinetic: f64,
+    /// How long before the next rupture a speed must not be greater than that which lasts as long, in passages of an
+    /// elastic wave from grip to grip [-].
+    pub passages: f64,
 }
 
 /// Motion of the upper grip along z.
@@ -326,6 +340,8 @@ pub enum BodyPart {
 pub struct TimeSpec {
     /// Fraction of the bound on the stable step [-].
     pub safety: f64,
+    /// How finely a contact is stepped at least: Δt √(k/m*) [-], before `safety`.
+    pub contact_resolution: f64,
     /// Fixed step [s]; `None`: from the bound, recomputed as stiffness changes.
     pub step: Option<f64>,
     /// Factor on particle mass [-]; reported when not 1.
