@@ -206,7 +206,9 @@ impl Holds {
     pub fn apply(&mut self, state: &mut State, kicked: f64) {
         let dt = state.dt;
         let mut rise = 0.0;
-        let change = self.pace.as_mut().map_or(0.0, |pace| pace.advance(kicked));
+        if let Some(pace) = &mut self.pace {
+            pace.advance(kicked);
+        }
         if let Some(grip) = &self.grip {
             rise = match grip.drive {
                 DriveSpec::Speed(v) => self.pace.as_ref().map_or(v, |pace| pace.speed) * dt,
@@ -232,18 +234,25 @@ impl Holds {
             }
         }
         self.groups = groups;
-        if change != 0.0 {
-            self.hurry(state, change, kicked);
+        if self.acceleration() != 0.0 {
+            self.hurry(state, kicked);
         }
         self.stretch.displacement += rise;
     }
 
-    /// Changes the speed of the affine field by `change` [m/s], held particles left alone: their grip has moved them.
-    fn hurry(&mut self, state: &mut State, change: f64, kicked: f64) {
+    /// Acceleration of an adaptive pull [m/s²].
+    fn acceleration(&self) -> f64 {
+        self.pace.as_ref().map_or(0.0, |pace| pace.acceleration)
+    }
+
+    /// Speeds up or slows down the affine field of an adaptive pull. Held particles are left alone: their grip has moved
+    /// them.
+    fn hurry(&mut self, state: &mut State, kicked: f64) {
+        let change = self.acceleration() * kicked;
         for p in (0..state.len()).filter(|p| state.fixed[*p] == 0) {
             let push = self.share(state.x.z[p]) * change;
             let kick = state.force.z[p] * kicked / state.mass[p];
-            // Mean of the speeds before and after all that this step's kick does.
+            // Mean of the speeds before the kick, forces and this push, and after it.
             let mean = state.v.z[p] + 0.5 * (push - kick);
             self.work += state.mass[p] * push * mean;
             state.v.z[p] += push;
@@ -268,6 +277,8 @@ impl Holds {
         let (spin, rise) = if group.driven { (self.spin, rise) } else { (0.0, 0.0) };
         // The chord of the exact rotation, so that particles stay on their circle.
         let chord = (DMat2::from_angle(spin * dt) - DMat2::IDENTITY) * (1.0 / dt);
+        // What it takes to speed up the held particles themselves loads the drive, not the body.
+        let acceleration = if group.driven { self.acceleration() } else { 0.0 };
         let mut sum = DVec3::ZERO;
         let mut torque = 0.0;
         for p in &group.particles {
@@ -285,7 +296,7 @@ impl Holds {
             let push = (after - state.v.get(p)) * (state.mass[p] / kicked);
             self.work += push.dot(before + after) * (0.5 * kicked);
             let constraint = push - load;
-            sum += constraint;
+            sum += constraint - DVec3::Z * (acceleration * state.mass[p]);
             torque += arm.perp_dot(constraint.truncate());
             state.v.set(p, after);
             let turn = DVec3::Z * spin;

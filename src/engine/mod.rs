@@ -276,7 +276,6 @@ impl Engine {
                 first_of_wire: first,
             });
         }
-        self.slow_down();
         // Pieces of a wire may now touch: look for new pairs, and add the stage if it was left out until now.
         match &mut self.contacts {
             Some(c) => c.stale = true,

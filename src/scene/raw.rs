@@ -1,10 +1,13 @@
 //! A scene as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference
-//! of all keys: each with its unit, its default and its meaning.
+//! of all keys: each with its unit, its default and its meaning; those of grips and holds stand in `raw/drive.rs`.
 //!
 //! A quantity is text with a unit, `"39 mm"`; any unit of the right kind will do. A ratio may be a plain number or
 //! per cent, `0.12` or `"12 %"`. Unknown keys are refused.
 
+mod drive;
+
 use super::look::{ColourBy, Theme, View};
+pub use drive::*;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor};
 use std::fmt;
@@ -350,105 +353,6 @@ pub struct RawSphere {
     pub velocity: Option<Triple>,
     /// Initial spin, three angular velocities. Default 0.
     pub spin: Option<Triple>,
-}
-
-/// `[grip]`: either `speed`, or `displacement_amplitude` and `frequency`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RawGrip {
-    /// `all` (default): every wire is held; `jaw`: the outermost layer only, pressed inwards.
-    pub kind: Option<RawGripKind>,
-    /// Length of each grip along z, "mm". Required.
-    pub length: Option<Scalar>,
-    /// Radial clamp pressure of a jaw, "MPa". Required there and refused elsewhere.
-    pub clamp_pressure: Option<Scalar>,
-    /// Constant speed of the upper grip along z, "m/s"; positive pulls.
-    pub speed: Option<Scalar>,
-    /// Pull faster than `speed` where nothing happens. Absent: not.
-    pub adaptive: Option<RawAdaptive>,
-    /// Amplitude of a sinusoidal displacement, "mm".
-    pub displacement_amplitude: Option<Scalar>,
-    /// Frequency of that displacement, "Hz".
-    pub frequency: Option<Scalar>,
-    /// Rotation rate of the upper grip about z, "rad/s". Default 0.
-    pub rotation_rate: Option<Scalar>,
-    /// The upper grip turns freely about z. Default false.
-    pub free_rotation: Option<bool>,
-}
-
-/// `grip.adaptive`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RawAdaptive {
-    /// Greatest speed, "m/s". Required.
-    pub fastest: Option<Scalar>,
-    /// Greatest kinetic energy of the pull over the work that it has done [-]. Default "2 %".
-    pub kinetic: Option<Scalar>,
-    /// Passages of an elastic wave [-]. Default 20.
-    pub passages: Option<Scalar>,
-}
-
-/// `grip.kind`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawGripKind {
-    /// Every wire.
-    All,
-    /// The outermost layer.
-    Jaw,
-}
-
-/// `[[hold]]`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RawHold {
-    /// Body number from 0: strand wires inside out, then `[[wire]]`, then `[[sphere]]`. Required.
-    pub body: Option<i64>,
-    /// `start`, `end` or `all` (default).
-    pub part: Option<RawPart>,
-    /// Prescribed components, of `x y z rx ry rz`. Default none.
-    #[serde(default)]
-    pub fix: Vec<RawFix>,
-    /// Velocity of the prescribed x, y, z, three velocities. Default 0.
-    pub velocity: Option<Triple>,
-    /// Spin of the prescribed rx, ry, rz, three angular velocities. Default 0.
-    pub spin: Option<Triple>,
-    /// Total force on the part, three forces. Default 0.
-    pub force: Option<Triple>,
-    /// Total moment on the part, three moments. Default 0.
-    pub moment: Option<Triple>,
-    /// Time over which force and moment rise smoothly from zero, "ms". Default 0.
-    pub ramp: Option<Scalar>,
-}
-
-/// `hold.part`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawPart {
-    /// First particle.
-    Start,
-    /// Last particle.
-    End,
-    /// All particles.
-    All,
-}
-
-/// An element of `hold.fix`, in the order of [`super::spec::HoldSpec::fixed`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawFix {
-    /// Displacement along x.
-    X,
-    /// Displacement along y.
-    Y,
-    /// Displacement along z.
-    Z,
-    /// Rotation about x.
-    Rx,
-    /// Rotation about y.
-    Ry,
-    /// Rotation about z.
-    Rz,
 }
 
 /// `[time]`.

@@ -257,7 +257,7 @@ pub struct GripSpec {
     pub length: f64,
     /// Motion of the upper grip along z.
     pub drive: DriveSpec,
-    /// Faster where nothing happens; `None`: as `drive` says throughout.
+    /// Faster between the start and the first rupture; `None`: as `drive` says throughout.
     pub adaptive: Option<AdaptiveSpec>,
     /// Rotation rate of the upper grip about z [rad/s].
     pub rotation_rate: f64,
@@ -277,15 +277,14 @@ pub enum GripKind {
     },
 }
 
-/// Adaptive speed of a pull, from [`DriveSpec::Speed`] at its start and near ruptures to a greater one in between.
+/// A pull that is faster than [`DriveSpec::Speed`] between its start and the first rupture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdaptiveSpec {
     /// Greatest speed [m/s].
     pub fastest: f64,
     /// Greatest kinetic energy of the pull over the work that it has done [-].
     pub kinetic: f64,
-    /// How long before the next rupture a speed must not be greater than that which lasts as long, in passages of an
-    /// elastic wave from grip to grip [-].
+    /// Least time to the next rupture at the speed of any moment, in passages of an elastic wave from grip to grip [-].
     pub passages: f64,
 }
 
