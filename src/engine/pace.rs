@@ -1,4 +1,5 @@
-//! The speed of an adaptive pull: slow while loading begins and where a rupture is near, fast in between.
+//! The speed of an adaptive pull: slow while loading begins and layers close upon each other, and where a rupture is near;
+//! fast in between.
 //!
 //! What flows smoothly does so in the affine velocity field of the pull, z/L times its speed, which needs no force to keep
 //! going: its speed matters little there. A change of speed does. Pushed by the grip alone it would cross the strand as a
@@ -19,6 +20,8 @@ const PARTS: u32 = 500;
 pub struct Rule {
     /// Speed at the start and near ruptures [m/s].
     slow: f64,
+    /// Strain up to which it stays slow [-].
+    from: f64,
     /// Greatest speed [m/s].
     fastest: f64,
     /// Greatest kinetic energy of the affine field over the work done [-].
@@ -38,8 +41,10 @@ pub struct Rule {
 pub struct Ahead {
     /// Work done so far [J].
     pub work: f64,
-    /// Strain left until the next rupture [-]; 0 from the first rupture on.
+    /// Strain so far [-].
     pub strain: f64,
+    /// Strain left until the next rupture [-]; 0 from the first rupture on.
+    pub left: f64,
 }
 
 impl Rule {
@@ -47,7 +52,7 @@ impl Rule {
     /// the grips [m].
     pub fn new(spec: &Spec, inertia: f64, length: f64) -> Option<Self> {
         let grip = spec.grip.as_ref()?;
-        let (AdaptiveSpec { fastest, kinetic, passages }, DriveSpec::Speed(slow)) =
+        let (AdaptiveSpec { from, fastest, kinetic, passages }, DriveSpec::Speed(slow)) =
             (grip.adaptive.as_ref()?, grip.drive)
         else {
             return None;
@@ -55,6 +60,7 @@ impl Rule {
         let passage = length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt();
         Some(Self {
             slow,
+            from: *from,
             fastest: *fastest,
             share: *kinetic,
             inertia,
@@ -66,8 +72,11 @@ impl Rule {
 
     /// Speed that a state allows [m/s].
     pub fn speed(&self, ahead: Ahead) -> f64 {
+        if ahead.strain < self.from {
+            return self.slow;
+        }
         let by_energy = (2.0 * self.share * ahead.work.max(0.0) / self.inertia).sqrt();
-        let by_rupture = ahead.strain * self.length / self.settling;
+        let by_rupture = ahead.left * self.length / self.settling;
         self.fastest.min(by_energy).min(by_rupture).max(self.slow)
     }
 }
@@ -111,7 +120,7 @@ impl Engine {
         if self.holds.pace.is_none() {
             return;
         }
-        let ahead = Ahead { work: self.holds.work, strain: self.strain_left() };
+        let ahead = Ahead { work: self.holds.work, strain: self.strain(), left: self.strain_left() };
         if let Some(pace) = &mut self.holds.pace {
             pace.look(ahead, steps as f64 * self.next_dt);
         }
@@ -152,7 +161,7 @@ impl Engine {
         for k in 0..PARTS {
             let middle = begin + (f64::from(k) + 0.5) * part;
             let left = (self.rupture_strain() - middle).max(0.0);
-            time += (part * rule.length).abs() / rule.speed(Ahead { work, strain: left });
+            time += (part * rule.length).abs() / rule.speed(Ahead { work, strain: middle, left });
             work += self.nominal_stress(middle) * part * volume;
         }
         Some(time)
@@ -164,24 +173,34 @@ mod tests {
     use super::*;
 
     fn rule() -> Rule {
-        Rule { slow: 5.0, fastest: 20.0, share: 0.02, inertia: 2e-3, length: 0.1, settling: 5e-4, acceleration: 1e5 }
+        Rule {
+            slow: 5.0,
+            from: 0.01,
+            fastest: 20.0,
+            share: 0.02,
+            inertia: 2e-3,
+            length: 0.1,
+            settling: 5e-4,
+            acceleration: 1e5,
+        }
     }
 
     #[test]
     fn the_start_and_the_last_strain_before_a_rupture_are_slow() {
-        let speed = |work, strain| rule().speed(Ahead { work, strain });
+        let speed = |work, left| rule().speed(Ahead { work, strain: 0.02, left });
         assert_eq!(speed(0.0, 1.0), 5.0, "nothing is stored yet");
         assert_eq!(speed(10.0, 0.0), 5.0, "a rupture is there");
         assert_eq!(speed(1e3, f64::INFINITY), 20.0);
         // Half m s² v² = 2 % of 5 J; and 5 % of 0.1 m in 0.5 ms.
         assert_eq!(speed(5.0, 1.0), 10.0);
         assert_eq!(speed(1e3, 0.05), 10.0);
+        assert_eq!(rule().speed(Ahead { work: 1e3, strain: 0.0099, left: 1.0 }), 5.0, "layers may still close");
     }
 
     #[test]
     fn speed_changes_steadily_and_never_faster_than_allowed() {
         let mut pace = Pace::new(rule());
-        let (fast, interval) = (Ahead { work: 1e3, strain: 1.0 }, 4e-6);
+        let (fast, interval) = (Ahead { work: 1e3, strain: 0.1, left: 1.0 }, 4e-6);
         let mut before = pace.speed;
         for _ in 0..100 {
             pace.look(fast, interval);
@@ -190,7 +209,7 @@ mod tests {
             before = pace.speed;
         }
         assert!((pace.speed - 20.0).abs() < 1e-9, "{}", pace.speed);
-        pace.look(Ahead { strain: 0.0, ..fast }, interval);
+        pace.look(Ahead { left: 0.0, ..fast }, interval);
         assert_eq!(pace.acceleration, -1e5);
     }
 }

@@ -88,6 +88,7 @@ fn adaptive(at: &At, raw: &RawAdaptive, drive: DriveSpec) -> Result<AdaptiveSpec
         return Err(at.key("fastest").error(what, "make it greater than grip.speed"));
     }
     Ok(AdaptiveSpec {
+        from: at.ratio_or("from", &raw.from, 0.0, Range::NotNegative)?,
         fastest,
         kinetic: at.ratio_or("kinetic", &raw.kinetic, KINETIC, Range::Fraction)?,
         passages: at.ratio_or("passages", &raw.passages, PASSAGES, Range::Positive)?,

@@ -280,6 +280,8 @@ pub enum GripKind {
 /// A pull that is faster than [`DriveSpec::Speed`] between its start and the first rupture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdaptiveSpec {
+    /// Strain up to which the speed stays [`DriveSpec::Speed`] [-].
+    pub from: f64,
     /// Greatest speed [m/s].
     pub fastest: f64,
     /// Greatest kinetic energy of the pull over the work that it has done [-].

@@ -249,8 +249,9 @@ fn grip(out: &mut Lines, grip: Option<&GripSpec>) {
     }
     if let Some(adaptive) = &grip.adaptive {
         let fastest = quantity(adaptive.fastest, Dimension::Velocity);
-        let (kinetic, passages) = (number(adaptive.kinetic), number(adaptive.passages));
-        out.entry("adaptive", format!("{{ fastest = {fastest}, kinetic = {kinetic}, passages = {passages} }}"));
+        let [from, kinetic, passages] = [adaptive.from, adaptive.kinetic, adaptive.passages].map(number);
+        let keys = format!("from = {from}, fastest = {fastest}, kinetic = {kinetic}, passages = {passages}");
+        out.entry("adaptive", format!("{{ {keys} }}"));
     }
     out.quantity("rotation_rate", grip.rotation_rate, Dimension::AngularVelocity);
     out.entry("free_rotation", grip.free_rotation.to_string());

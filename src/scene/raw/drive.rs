@@ -32,6 +32,9 @@ pub struct RawGrip {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RawAdaptive {
+    /// Strain up to which the pull stays at `speed` [-]: that at which gaps between layers have closed. How they do decides
+    /// where single wires are strained most later on, and another speed there gives another strand. Default 0.
+    pub from: Option<Scalar>,
     /// Greatest speed, "m/s", at least `grip.speed`. Required.
     pub fastest: Option<Scalar>,
     /// Greatest kinetic energy of the pull over the work that it has done, at most 1 [-]. Default "4 %".
