@@ -145,6 +145,19 @@ fn every_key_arrives_in_si() {
 }
 
 #[test]
+fn an_adaptive_pull_arrives_in_si_with_its_defaults() {
+    let spec = good("adaptive.toml");
+    let adaptive = spec.grip.as_ref().and_then(|grip| grip.adaptive.clone()).expect("it is adaptive");
+    assert_eq!((adaptive.fastest, adaptive.passages, spec.time.contact_resolution), (15.0, 12.5, 0.6));
+    assert_close(adaptive.kinetic, 0.03);
+    assert_close(adaptive.from, 0.01);
+    let spec = load("ka4", &["grip.adaptive={ fastest = '20 m/s' }"]).unwrap().spec;
+    let adaptive = spec.grip.and_then(|grip| grip.adaptive).expect("it is adaptive");
+    assert_eq!((adaptive.from, adaptive.kinetic, adaptive.passages), (0.0, 0.04, 20.0));
+    assert_eq!(spec.time.contact_resolution, 0.4);
+}
+
+#[test]
 fn an_engineering_curve_becomes_true_stress_over_true_plastic_strain() {
     let spec = good("engineering-curve.toml");
     let BondLawSpec::ElastoPlastic(HardeningSpec::Table(points)) = &spec.bond.law else { panic!("not a table") };

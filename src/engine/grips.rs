@@ -1,6 +1,7 @@
 //! Grips, holds and applied loads: prescribed motion, the reactions to it, and the work done.
 
 use super::neighbours::Stretch;
+use super::pace::{self, Pace, Rule};
 use super::state::State;
 use crate::base::error::{Error, Result};
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
@@ -54,6 +55,8 @@ pub struct Holds {
     free_length: f64,
     /// Spin of the upper grip about z [rad/s].
     spin: f64,
+    /// Speed of an adaptive pull.
+    pub(super) pace: Option<Pace>,
     /// Reactions of the last step.
     pub reaction: Reaction,
     /// Work done so far [J].
@@ -73,6 +76,7 @@ impl Holds {
             stretch: Stretch::default(),
             free_length: 0.0,
             spin: spec.grip.as_ref().map_or(0.0, |g| g.rotation_rate),
+            pace: None,
             reaction: Reaction::default(),
             work: 0.0,
         };
@@ -92,6 +96,8 @@ impl Holds {
         }
         holds.mark(state);
         holds.start_velocities(state);
+        let inertia = pace::inertia(state, |z| holds.share(z));
+        holds.pace = Rule::new(spec, inertia, holds.free_length).map(Pace::new);
         holds.work = holds.kinetic(state);
         Ok(holds)
     }
@@ -161,13 +167,12 @@ impl Holds {
     /// The affine velocity (and spin) field of the drive, so that nothing is shocked; prescribed velocities.
     fn start_velocities(&self, state: &mut State) {
         if let Some(grip) = &self.grip {
-            let [z0, z1] = self.stretch.gauge;
             let speed = match grip.drive {
                 DriveSpec::Speed(v) => v,
                 DriveSpec::Cyclic { amplitude, frequency } => amplitude * TAU * frequency,
             };
             for p in 0..state.len() {
-                let share = ((state.x.z[p] - z0) / (z1 - z0)).clamp(0.0, 1.0);
+                let share = self.share(state.x.z[p]);
                 let spin = DVec3::Z * (self.spin * share);
                 let arm = state.x.get(p) - self.axis.extend(state.x.z[p]);
                 state.v.add(p, spin.cross(arm) + DVec3::Z * (speed * share));
@@ -186,6 +191,12 @@ impl Holds {
         }
     }
 
+    /// Share of the upper grip's speed that a place between the grips has in the affine field of the pull [-].
+    fn share(&self, z: f64) -> f64 {
+        let [z0, z1] = self.stretch.gauge;
+        ((z - z0) / (z1 + self.stretch.displacement - z0)).clamp(0.0, 1.0)
+    }
+
     /// Grip displacement over the length that is free between the grips [-].
     pub fn strain(&self) -> f64 {
         if self.free_length > 0.0 { self.stretch.displacement / self.free_length } else { 0.0 }
@@ -195,9 +206,12 @@ impl Holds {
     pub fn apply(&mut self, state: &mut State, kicked: f64) {
         let dt = state.dt;
         let mut rise = 0.0;
+        if let Some(pace) = &mut self.pace {
+            pace.advance(kicked);
+        }
         if let Some(grip) = &self.grip {
             rise = match grip.drive {
-                DriveSpec::Speed(v) => v * dt,
+                DriveSpec::Speed(v) => self.pace.as_ref().map_or(v, |pace| pace.speed) * dt,
                 DriveSpec::Cyclic { amplitude, frequency } => {
                     let at = |t: f64| amplitude * (TAU * frequency * t).sin();
                     at(state.time + dt) - at(state.time)
@@ -220,7 +234,29 @@ impl Holds {
             }
         }
         self.groups = groups;
+        if self.acceleration() != 0.0 {
+            self.hurry(state, kicked);
+        }
         self.stretch.displacement += rise;
+    }
+
+    /// Acceleration of an adaptive pull [m/s²].
+    fn acceleration(&self) -> f64 {
+        self.pace.as_ref().map_or(0.0, |pace| pace.acceleration)
+    }
+
+    /// Speeds up or slows down the affine field of an adaptive pull. Held particles are left alone: their grip has moved
+    /// them.
+    fn hurry(&mut self, state: &mut State, kicked: f64) {
+        let change = self.acceleration() * kicked;
+        for p in (0..state.len()).filter(|p| state.fixed[*p] == 0) {
+            let push = self.share(state.x.z[p]) * change;
+            let kick = state.force.z[p] * kicked / state.mass[p];
+            // Mean of the speeds before the kick, forces and this push, and after it.
+            let mean = state.v.z[p] + 0.5 * (push - kick);
+            self.work += state.mass[p] * push * mean;
+            state.v.z[p] += push;
+        }
     }
 
     /// Torque about z on the driven grip over its inertia [rad/s²].
@@ -241,6 +277,8 @@ impl Holds {
         let (spin, rise) = if group.driven { (self.spin, rise) } else { (0.0, 0.0) };
         // The chord of the exact rotation, so that particles stay on their circle.
         let chord = (DMat2::from_angle(spin * dt) - DMat2::IDENTITY) * (1.0 / dt);
+        // What it takes to speed up the held particles themselves loads the drive, not the body.
+        let acceleration = if group.driven { self.acceleration() } else { 0.0 };
         let mut sum = DVec3::ZERO;
         let mut torque = 0.0;
         for p in &group.particles {
@@ -258,7 +296,7 @@ impl Holds {
             let push = (after - state.v.get(p)) * (state.mass[p] / kicked);
             self.work += push.dot(before + after) * (0.5 * kicked);
             let constraint = push - load;
-            sum += constraint;
+            sum += constraint - DVec3::Z * (acceleration * state.mass[p]);
             torque += arm.perp_dot(constraint.truncate());
             state.v.set(p, after);
             let turn = DVec3::Z * spin;

@@ -204,7 +204,7 @@ impl Engine {
     }
 
     /// The strain at which bonds are expected to break [-]; infinite when they never do.
-    fn rupture_strain(&self) -> f64 {
+    pub(super) fn rupture_strain(&self) -> f64 {
         match self.spec.bond.rupture.as_ref().map(|r| &r.criterion) {
             // True plastic strain to engineering strain.
             Some(RuptureCriterion::PlasticStrain { strain }) => strain.exp_m1(),
@@ -223,6 +223,8 @@ impl Engine {
         if speed == 0.0 {
             return self.spec.stop.strain;
         }
+        // An adaptive pull comes at most this far in its time.
+        let speed = self.spec.grip.as_ref()?.adaptive.as_ref().map_or(speed, |adaptive| adaptive.fastest);
         let timed = self.spec.stop.time.map_or(f64::INFINITY, |t| t * speed.abs() / (gauge[1] - gauge[0]));
         let stop = self.spec.stop.strain.unwrap_or(f64::INFINITY).min(timed);
         if speed < 0.0 {
@@ -254,7 +256,7 @@ impl Engine {
     }
 
     /// Nominal axial stress of a wire strained by `strain` [-], by its bond law alone [Pa].
-    fn nominal_stress(&self, strain: f64) -> f64 {
+    pub(super) fn nominal_stress(&self, strain: f64) -> f64 {
         let elastic = self.spec.material.young * strain;
         match &self.spec.bond.law {
             BondLawSpec::Elastic => elastic,
@@ -294,7 +296,7 @@ impl Engine {
 
     fn greatest_speed(&self) -> f64 {
         let prescribed = self.spec.grip.as_ref().map_or(0.0, |g| match g.drive {
-            DriveSpec::Speed(v) => v.abs(),
+            DriveSpec::Speed(v) => g.adaptive.as_ref().map_or(v.abs(), |adaptive| adaptive.fastest),
             DriveSpec::Cyclic { amplitude, frequency } => std::f64::consts::TAU * frequency * amplitude,
         });
         let free = self.assembly.velocity.iter().map(|v| v.length()).fold(0.0, f64::max);

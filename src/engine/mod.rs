@@ -12,6 +12,7 @@ pub mod grips;
 pub mod integrate;
 pub mod measure;
 pub mod neighbours;
+pub mod pace;
 pub mod pair;
 pub mod rupture;
 pub mod spheres;
@@ -166,6 +167,7 @@ impl Engine {
     pub fn step(&mut self) -> Result<()> {
         if self.state.step.is_multiple_of(BOUND_INTERVAL) && self.state.step > 0 {
             self.choose_step()?;
+            self.choose_pace(BOUND_INTERVAL);
             self.watch_stages()?;
             self.watch_necking();
         }
@@ -295,7 +297,7 @@ impl Engine {
             c.stage.stiffness(&self.state, horizon, &mut self.stiffness);
         }
         let hold = &self.state.hold;
-        self.bound = self.stiffness.bound(&self.state, |p| hold[p] != 0);
+        self.bound = self.stiffness.bound(&self.state, self.spec.time.contact_resolution, |p| hold[p] != 0);
         self.timings.time_step += began.elapsed();
         self.next_dt = self.wanted_step()?;
         self.watch_step();

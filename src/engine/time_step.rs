@@ -7,10 +7,6 @@
 //! is stable to Δt = (2/ω)(√(1+ξ²) − ξ).
 
 use super::state::State;
-
-/// A contact is stepped at least this finely: Δt √(k/m*) [-]. A half period, in which two bodies meet and part, then
-/// takes eight steps; what is only stable would let them gain energy.
-const RESOLVED: f64 = 0.4;
 use crate::law::bond::BondStiffness;
 
 /// One bond or contact as the bound sees it.
@@ -126,8 +122,9 @@ impl Stiffness {
         });
     }
 
-    /// The bound for what was added. Particles that are wholly held do not move and do not count.
-    pub fn bound(&mut self, state: &State, held: impl Fn(usize) -> bool) -> Bound {
+    /// The bound for what was added; a contact is stepped at least as finely as Δt √(k/m*) = `resolution` [-]. Particles
+    /// that are wholly held do not move and do not count.
+    pub fn bound(&mut self, state: &State, resolution: f64, held: impl Fn(usize) -> bool) -> Bound {
         let n = state.len();
         self.translation.clear();
         self.translation.resize(n, 0.0);
@@ -164,7 +161,7 @@ impl Stiffness {
         for e in self.elements.iter().filter(|e| !e.bond) {
             // A pair of held particles never moves.
             let frequency = e.pair_frequency(state, &held);
-            let meeting = RESOLVED / frequency;
+            let meeting = resolution / frequency;
             if frequency > 0.0 && meeting < bound.step {
                 bound = Bound { step: meeting, particle: e.nodes[0] as usize, bond: false, mode: "duration" };
             }

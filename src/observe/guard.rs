@@ -314,6 +314,7 @@ mod tests {
             step: None,
             mass_scale: 1.0,
             inertia_scale: 1.0,
+            contact_resolution: 0.4,
             kinetic_limit: 0.05,
             mismatch_limit: 0.02,
         }

@@ -2,7 +2,6 @@
 
 use crate::base::error::Result;
 use crate::engine::Engine;
-use crate::engine::view::RunInfo;
 use crate::scene::spec::{DriveSpec, Spec};
 use crate::strand::assembly::Assembly;
 use std::fmt;
@@ -46,7 +45,7 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
     let (wires, particles, bonds) = (assembly.wires.len(), assembly.len(), assembly.bond_count());
     let mut engine = Engine::new(spec, assembly)?;
     let first_time_step = engine.time_step();
-    let duration = duration(spec, &engine.info());
+    let duration = duration(spec, &engine);
     let begin = Instant::now();
     let mut measured = 0;
     while measured == 0 || (measured < TRIAL_STEPS && begin.elapsed() < TRIAL_TIME) {
@@ -71,13 +70,16 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
     })
 }
 
-/// Simulated time to the expected end [s]: `stop.time`, or the expected strain at the pull's constant speed.
-fn duration(spec: &Spec, info: &RunInfo) -> Option<f64> {
+/// Simulated time to the expected end [s]: `stop.time`, or the expected strain at the pull's speed.
+fn duration(spec: &Spec, engine: &Engine) -> Option<f64> {
+    let info = engine.info();
     let gauge = info.gauge.map(|[lower, upper]| f64::from(upper - lower) * 1e-3);
     let strain = info.strain_end.or(spec.stop.strain);
     let pull = match (gauge, strain, &spec.grip) {
         (Some(gauge), Some(strain), Some(grip)) => match grip.drive {
-            DriveSpec::Speed(speed) if speed != 0.0 => Some((strain * gauge / speed).abs()),
+            DriveSpec::Speed(speed) if speed != 0.0 => {
+                engine.adaptive_time(strain).or(Some((strain * gauge / speed).abs()))
+            }
             _ => None,
         },
         _ => None,

@@ -1,10 +1,13 @@
 //! A scene as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference
-//! of all keys: each with its unit, its default and its meaning.
+//! of all keys: each with its unit, its default and its meaning; those of grips and holds stand in `raw/drive.rs`.
 //!
 //! A quantity is text with a unit, `"39 mm"`; any unit of the right kind will do. A ratio may be a plain number or
 //! per cent, `0.12` or `"12 %"`. Unknown keys are refused.
 
+mod drive;
+
 use super::look::{ColourBy, Theme, View};
+pub use drive::*;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor};
 use std::fmt;
@@ -352,97 +355,16 @@ pub struct RawSphere {
     pub spin: Option<Triple>,
 }
 
-/// `[grip]`: either `speed`, or `displacement_amplitude` and `frequency`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RawGrip {
-    /// `all` (default): every wire is held; `jaw`: the outermost layer only, pressed inwards.
-    pub kind: Option<RawGripKind>,
-    /// Length of each grip along z, "mm". Required.
-    pub length: Option<Scalar>,
-    /// Radial clamp pressure of a jaw, "MPa". Required there and refused elsewhere.
-    pub clamp_pressure: Option<Scalar>,
-    /// Constant speed of the upper grip along z, "m/s"; positive pulls.
-    pub speed: Option<Scalar>,
-    /// Amplitude of a sinusoidal displacement, "mm".
-    pub displacement_amplitude: Option<Scalar>,
-    /// Frequency of that displacement, "Hz".
-    pub frequency: Option<Scalar>,
-    /// Rotation rate of the upper grip about z, "rad/s". Default 0.
-    pub rotation_rate: Option<Scalar>,
-    /// The upper grip turns freely about z. Default false.
-    pub free_rotation: Option<bool>,
-}
-
-/// `grip.kind`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawGripKind {
-    /// Every wire.
-    All,
-    /// The outermost layer.
-    Jaw,
-}
-
-/// `[[hold]]`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RawHold {
-    /// Body number from 0: strand wires inside out, then `[[wire]]`, then `[[sphere]]`. Required.
-    pub body: Option<i64>,
-    /// `start`, `end` or `all` (default).
-    pub part: Option<RawPart>,
-    /// Prescribed components, of `x y z rx ry rz`. Default none.
-    #[serde(default)]
-    pub fix: Vec<RawFix>,
-    /// Velocity of the prescribed x, y, z, three velocities. Default 0.
-    pub velocity: Option<Triple>,
-    /// Spin of the prescribed rx, ry, rz, three angular velocities. Default 0.
-    pub spin: Option<Triple>,
-    /// Total force on the part, three forces. Default 0.
-    pub force: Option<Triple>,
-    /// Total moment on the part, three moments. Default 0.
-    pub moment: Option<Triple>,
-    /// Time over which force and moment rise smoothly from zero, "ms". Default 0.
-    pub ramp: Option<Scalar>,
-}
-
-/// `hold.part`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawPart {
-    /// First particle.
-    Start,
-    /// Last particle.
-    End,
-    /// All particles.
-    All,
-}
-
-/// An element of `hold.fix`, in the order of [`super::spec::HoldSpec::fixed`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawFix {
-    /// Displacement along x.
-    X,
-    /// Displacement along y.
-    Y,
-    /// Displacement along z.
-    Z,
-    /// Rotation about x.
-    Rx,
-    /// Rotation about y.
-    Ry,
-    /// Rotation about z.
-    Rz,
-}
-
 /// `[time]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RawTime {
     /// Fraction of the bound on the stable step, above 0 and at most 1 [-]. Default 0.8.
     pub safety: Option<Scalar>,
+    /// How finely a contact is stepped at least: Δt √(k/m*), k its stiffness and m* its effective mass [-]; `safety`
+    /// is a factor on it too. A half period, in which two bodies meet and part, takes π over it steps; what is only
+    /// stable lets them gain energy. Default 0.4.
+    pub contact_resolution: Option<Scalar>,
     /// Fixed step, "s". Default: from the bound.
     pub step: Option<Scalar>,
     /// Factor on mass [-]. Default 1.

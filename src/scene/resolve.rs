@@ -21,6 +21,8 @@ const FRICTION: f64 = 0.2;
 const HARDNESS_FACTOR: f64 = 2.8;
 /// Neighbour skin over the largest diameter [-].
 const SKIN: f64 = 0.15;
+/// Δt √(k/m*) of a contact [-]: eight steps to a half period.
+const RESOLVED: f64 = 0.4;
 /// Spacing over diameter from which a wire fits between two neighbouring spheres of another [-].
 const GAP: f64 = 2.0;
 /// Side of a frame, least and greatest [pixels].
@@ -242,6 +244,7 @@ fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<f64> 
 fn time(at: &At, raw: &RawTime) -> Result<TimeSpec> {
     Ok(TimeSpec {
         safety: at.ratio_or("safety", &raw.safety, 0.8, Range::Fraction)?,
+        contact_resolution: at.ratio_or("contact_resolution", &raw.contact_resolution, RESOLVED, Range::Positive)?,
         step: at.optional("step", &raw.step, Dimension::Time, Range::Positive)?,
         mass_scale: at.ratio_or("mass_scale", &raw.mass_scale, 1.0, Range::Positive)?,
         inertia_scale: at.ratio_or("inertia_scale", &raw.inertia_scale, 1.0, Range::Positive)?,

@@ -1,11 +1,16 @@
 //! What moves and what ends a scene: grips, holds, stop.
 
 use super::at::{At, Range};
-use super::raw::{RawGrip, RawGripKind, RawHold, RawPart, RawStop};
-use super::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, StopSpec};
+use super::raw::{RawAdaptive, RawGrip, RawGripKind, RawHold, RawPart, RawStop};
+use super::spec::{AdaptiveSpec, BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, StopSpec};
 use crate::base::error::Result;
 use crate::base::units::{self, Dimension};
 use glam::DVec3;
+
+/// Kinetic energy of an adaptive pull over its work, at most [-]: below the limit at which a run warns.
+const KINETIC: f64 = 0.04;
+/// Passages of an elastic wave from grip to grip that an adaptive pull leaves until the next rupture, at least [-].
+const PASSAGES: f64 = 20.0;
 
 /// Resolves `[grip]`; `extent` is the length along z of what it holds [m].
 pub(super) fn grip(at: &At, raw: &RawGrip, extent: Option<f64>) -> Result<GripSpec> {
@@ -23,10 +28,12 @@ pub(super) fn grip(at: &At, raw: &RawGrip, extent: Option<f64>) -> Result<GripSp
     if free_rotation && rotation.is_some_and(|rate| rate != 0.0) {
         return Err(at.key("rotation_rate").refused("has no effect beside `free_rotation = true`"));
     }
+    let drive = drive(at, raw)?;
     Ok(GripSpec {
         kind: grip_kind(at, raw)?,
         length,
-        drive: drive(at, raw)?,
+        drive,
+        adaptive: raw.adaptive.as_ref().map(|raw| adaptive(at, raw, drive)).transpose()?,
         rotation_rate: rotation.unwrap_or(0.0),
         free_rotation,
     })
@@ -62,6 +69,29 @@ fn drive(at: &At, raw: &RawGrip) -> Result<DriveSpec> {
             Range::Positive,
         )?,
         frequency: at.required("frequency", &raw.frequency, Dimension::Frequency, Range::Positive)?,
+    })
+}
+
+/// Resolves `grip.adaptive` of a grip that is driven so.
+fn adaptive(at: &At, raw: &RawAdaptive, drive: DriveSpec) -> Result<AdaptiveSpec> {
+    let at = at.key("adaptive");
+    let DriveSpec::Speed(slow) = drive else {
+        return Err(at.refused("has no effect without `speed`"));
+    };
+    if slow <= 0.0 {
+        return Err(at.refused("is for a pull: `speed` must be above zero"));
+    }
+    let fastest = at.required("fastest", &raw.fastest, Dimension::Velocity, Range::Positive)?;
+    if fastest < slow {
+        let [fastest, slow] = [fastest, slow].map(|speed| units::format(speed, Dimension::Velocity));
+        let what = format!("`fastest` is {fastest}, but the pull begins at `speed`, {slow}");
+        return Err(at.key("fastest").error(what, "make it greater than grip.speed"));
+    }
+    Ok(AdaptiveSpec {
+        from: at.ratio_or("from", &raw.from, 0.0, Range::NotNegative)?,
+        fastest,
+        kinetic: at.ratio_or("kinetic", &raw.kinetic, KINETIC, Range::Fraction)?,
+        passages: at.ratio_or("passages", &raw.passages, PASSAGES, Range::Positive)?,
     })
 }
 

@@ -257,6 +257,8 @@ pub struct GripSpec {
     pub length: f64,
     /// Motion of the upper grip along z.
     pub drive: DriveSpec,
+    /// Faster between the start and the first rupture; `None`: as `drive` says throughout.
+    pub adaptive: Option<AdaptiveSpec>,
     /// Rotation rate of the upper grip about z [rad/s].
     pub rotation_rate: f64,
     /// The upper grip turns freely about z (its torque is zero) instead of being held or driven.
@@ -273,6 +275,19 @@ pub enum GripKind {
         /// Radial clamp pressure on the strand's surface [Pa].
         pressure: f64,
     },
+}
+
+/// A pull that is faster than [`DriveSpec::Speed`] between its start and the first rupture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AdaptiveSpec {
+    /// Strain up to which the speed stays [`DriveSpec::Speed`] [-].
+    pub from: f64,
+    /// Greatest speed [m/s].
+    pub fastest: f64,
+    /// Greatest kinetic energy of the pull over the work that it has done [-].
+    pub kinetic: f64,
+    /// Least time to the next rupture at the speed of any moment, in passages of an elastic wave from grip to grip [-].
+    pub passages: f64,
 }
 
 /// Motion of the upper grip along z.
@@ -326,6 +341,8 @@ pub enum BodyPart {
 pub struct TimeSpec {
     /// Fraction of the bound on the stable step [-].
     pub safety: f64,
+    /// How finely a contact is stepped at least: Δt √(k/m*) [-], before `safety`.
+    pub contact_resolution: f64,
     /// Fixed step [s]; `None`: from the bound, recomputed as stiffness changes.
     pub step: Option<f64>,
     /// Factor on particle mass [-]; reported when not 1.

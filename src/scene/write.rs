@@ -247,6 +247,12 @@ fn grip(out: &mut Lines, grip: Option<&GripSpec>) {
             out.quantity("frequency", frequency, Dimension::Frequency);
         }
     }
+    if let Some(adaptive) = &grip.adaptive {
+        let fastest = quantity(adaptive.fastest, Dimension::Velocity);
+        let [from, kinetic, passages] = [adaptive.from, adaptive.kinetic, adaptive.passages].map(number);
+        let keys = format!("from = {from}, fastest = {fastest}, kinetic = {kinetic}, passages = {passages}");
+        out.entry("adaptive", format!("{{ {keys} }}"));
+    }
     out.quantity("rotation_rate", grip.rotation_rate, Dimension::AngularVelocity);
     out.entry("free_rotation", grip.free_rotation.to_string());
 }
@@ -274,6 +280,7 @@ fn hold(out: &mut Lines, hold: &HoldSpec) {
 fn time(out: &mut Lines, time: &TimeSpec) {
     out.table("[time]");
     out.entry("safety", number(time.safety));
+    out.entry("contact_resolution", number(time.contact_resolution));
     if let Some(step) = time.step {
         out.quantity("step", step, Dimension::Time);
     }

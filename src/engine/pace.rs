@@ -1,0 +1,215 @@
+//! The speed of an adaptive pull: slow while loading begins and layers close upon each other, and where a rupture is near;
+//! fast in between.
+//!
+//! What flows smoothly does so in the affine velocity field of the pull, z/L times its speed, which needs no force to keep
+//! going: its speed matters little there. A change of speed does. Pushed by the grip alone it would cross the strand as a
+//! wave, slow where wires flow, and leave plastic strain uneven behind it. So the whole field is sped up and slowed down
+//! together, as it is started, and the work of that is booked ([`super::grips::Holds`]).
+
+use super::Engine;
+use super::state::State;
+use crate::scene::spec::{AdaptiveSpec, DriveSpec, Spec};
+
+/// Least time in which the pull changes by its fastest speed, in passages of an elastic wave from grip to grip [-].
+const RISE_PASSAGES: f64 = 10.0;
+/// Parts into which a pull is divided to foretell how long it takes.
+const PARTS: u32 = 500;
+
+/// How fast a state may be pulled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// Speed at the start and near ruptures [m/s].
+    slow: f64,
+    /// Strain up to which it stays slow [-].
+    from: f64,
+    /// Greatest speed [m/s].
+    fastest: f64,
+    /// Greatest kinetic energy of the affine field over the work done [-].
+    share: f64,
+    /// Kinetic energy of the affine field over half the square of its speed, Σ m s² [kg].
+    inertia: f64,
+    /// Length between the grips [m].
+    length: f64,
+    /// Least time to the next rupture at the speed of any moment [s].
+    settling: f64,
+    /// Greatest acceleration [m/s²].
+    acceleration: f64,
+}
+
+/// What decides on the speed.
+#[derive(Debug, Clone, Copy)]
+pub struct Ahead {
+    /// Work done so far [J].
+    pub work: f64,
+    /// Strain so far [-].
+    pub strain: f64,
+    /// Strain left until the next rupture [-]; 0 from the first rupture on.
+    pub left: f64,
+}
+
+impl Rule {
+    /// The rule of a scene that pulls adaptively; `inertia` is Σ m s² of its affine field [kg], `length` that between
+    /// the grips [m].
+    pub fn new(spec: &Spec, inertia: f64, length: f64) -> Option<Self> {
+        let grip = spec.grip.as_ref()?;
+        let (AdaptiveSpec { from, fastest, kinetic, passages }, DriveSpec::Speed(slow)) =
+            (grip.adaptive.as_ref()?, grip.drive)
+        else {
+            return None;
+        };
+        let passage = length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt();
+        Some(Self {
+            slow,
+            from: *from,
+            fastest: *fastest,
+            share: *kinetic,
+            inertia,
+            length,
+            settling: passages * passage,
+            acceleration: fastest / (RISE_PASSAGES * passage),
+        })
+    }
+
+    /// Speed that a state allows [m/s].
+    pub fn speed(&self, ahead: Ahead) -> f64 {
+        if ahead.strain < self.from {
+            return self.slow;
+        }
+        let by_energy = (2.0 * self.share * ahead.work.max(0.0) / self.inertia).sqrt();
+        let by_rupture = ahead.left * self.length / self.settling;
+        self.fastest.min(by_energy).min(by_rupture).max(self.slow)
+    }
+}
+
+/// The speed of the pull, and where it is going.
+#[derive(Debug, Clone)]
+pub struct Pace {
+    /// Speed now [m/s].
+    pub speed: f64,
+    /// Change of speed per time until the next look [m/s²].
+    pub acceleration: f64,
+    rule: Rule,
+}
+
+impl Pace {
+    /// At its slow speed.
+    pub fn new(rule: Rule) -> Self {
+        Self { speed: rule.slow, acceleration: 0.0, rule }
+    }
+
+    /// Goes on by `time` [s].
+    pub fn advance(&mut self, time: f64) {
+        self.speed += self.acceleration * time;
+    }
+
+    /// Heads for the speed that is right now, to be reached by the next look in `interval` [s].
+    fn look(&mut self, ahead: Ahead, interval: f64) {
+        let wanted = (self.rule.speed(ahead) - self.speed) / interval;
+        self.acceleration = wanted.clamp(-self.rule.acceleration, self.rule.acceleration);
+    }
+}
+
+/// Σ m s² over the particles, `share` of their z their share s of the pull's speed [kg].
+pub fn inertia(state: &State, share: impl Fn(f64) -> f64) -> f64 {
+    (0..state.len()).map(|p| state.mass[p] * share(state.x.z[p]).powi(2)).sum()
+}
+
+impl Engine {
+    /// Decides how fast to pull until the next look, `steps` from now.
+    pub(super) fn choose_pace(&mut self, steps: u64) {
+        if self.holds.pace.is_none() {
+            return;
+        }
+        let ahead = Ahead { work: self.holds.work, strain: self.strain(), left: self.strain_left() };
+        if let Some(pace) = &mut self.holds.pace {
+            pace.look(ahead, steps as f64 * self.next_dt);
+        }
+    }
+
+    /// Strain until the bond nearest to its limit reaches it, if it goes on at its mean rate so far [-]. None is left once
+    /// a bond has broken: what then comes next is the work of waves and of neighbours that take over load, and broken
+    /// wires do not flow with the others.
+    fn strain_left(&self) -> f64 {
+        let Some(bonds) = self.bonds.as_ref().filter(|_| self.plan.rupture) else { return f64::INFINITY };
+        if self.rupture_count > 0 {
+            return 0.0;
+        }
+        let whole = (0..self.state.len()).filter(|slot| self.state.whole[*slot]);
+        let most = whole.map(|slot| bonds.utilisation(slot, &self.state)).fold(0.0, f64::max);
+        self.strain() * (1.0 - most).max(0.0) / most
+    }
+
+    /// Speed of the upper grip along z now, of a pull at constant or adaptive speed [m/s]; 0 of any other drive.
+    pub fn pull_speed(&self) -> f64 {
+        let drive = self.spec.grip.as_ref().map(|grip| grip.drive);
+        match (&self.holds.pace, drive) {
+            (Some(pace), _) => pace.speed,
+            (None, Some(DriveSpec::Speed(speed))) => speed,
+            _ => 0.0,
+        }
+    }
+
+    /// Time that an adaptive pull is expected to take from here to `strain` [s], by the law of the bonds alone: each wire
+    /// strained as the body, ruptures where the criterion puts them. `None` of any other drive.
+    pub fn adaptive_time(&self, strain: f64) -> Option<f64> {
+        let rule = &self.holds.pace.as_ref()?.rule;
+        let begin = self.strain();
+        let part = (strain - begin) / f64::from(PARTS);
+        let volume = self.assembly.area * rule.length;
+        let mut work = self.holds.work;
+        let mut time = 0.0;
+        for k in 0..PARTS {
+            let middle = begin + (f64::from(k) + 0.5) * part;
+            let left = (self.rupture_strain() - middle).max(0.0);
+            time += (part * rule.length).abs() / rule.speed(Ahead { work, strain: middle, left });
+            work += self.nominal_stress(middle) * part * volume;
+        }
+        Some(time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rule() -> Rule {
+        Rule {
+            slow: 5.0,
+            from: 0.01,
+            fastest: 20.0,
+            share: 0.02,
+            inertia: 2e-3,
+            length: 0.1,
+            settling: 5e-4,
+            acceleration: 1e5,
+        }
+    }
+
+    #[test]
+    fn the_start_and_the_last_strain_before_a_rupture_are_slow() {
+        let speed = |work, left| rule().speed(Ahead { work, strain: 0.02, left });
+        assert_eq!(speed(0.0, 1.0), 5.0, "nothing is stored yet");
+        assert_eq!(speed(10.0, 0.0), 5.0, "a rupture is there");
+        assert_eq!(speed(1e3, f64::INFINITY), 20.0);
+        // Half m s² v² = 2 % of 5 J; and 5 % of 0.1 m in 0.5 ms.
+        assert_eq!(speed(5.0, 1.0), 10.0);
+        assert_eq!(speed(1e3, 0.05), 10.0);
+        assert_eq!(rule().speed(Ahead { work: 1e3, strain: 0.0099, left: 1.0 }), 5.0, "layers may still close");
+    }
+
+    #[test]
+    fn speed_changes_steadily_and_never_faster_than_allowed() {
+        let mut pace = Pace::new(rule());
+        let (fast, interval) = (Ahead { work: 1e3, strain: 0.1, left: 1.0 }, 4e-6);
+        let mut before = pace.speed;
+        for _ in 0..100 {
+            pace.look(fast, interval);
+            (0..64).for_each(|_| pace.advance(interval / 64.0));
+            assert!(pace.speed >= before && pace.speed - before <= 1e5 * interval * (1.0 + 1e-9));
+            before = pace.speed;
+        }
+        assert!((pace.speed - 20.0).abs() < 1e-9, "{}", pace.speed);
+        pace.look(Ahead { left: 0.0, ..fast }, interval);
+        assert_eq!(pace.acceleration, -1e5);
+    }
+}
