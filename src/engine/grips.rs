@@ -3,12 +3,15 @@
 use super::neighbours::Stretch;
 use super::pace::{self, Pace, Rule};
 use super::state::State;
+use super::straight::{Straight, runs};
 use crate::base::error::{Error, Result};
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
 use crate::strand::assembly::Assembly;
 use glam::{DMat2, DVec2, DVec3};
+use pulp::Arch;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// Time over which a jaw's clamp pressure rises [s]; short against a pull, long against a wire's ringing.
 const CLAMP_RISE: f64 = 50e-6;
@@ -28,6 +31,8 @@ enum Kind {
 #[derive(Debug, Clone)]
 struct Group {
     particles: Vec<u32>,
+    /// The same as runs of neighbours.
+    runs: Vec<Range<usize>>,
     kind: Kind,
     /// Whether the drive moves this group.
     driven: bool,
@@ -91,8 +96,9 @@ impl Holds {
                 BodyPart::End => body.end - 1..body.end,
                 BodyPart::All => body,
             };
-            let particles = particles.map(|p| p as u32).collect();
-            holds.groups.push(Group { particles, kind: Kind::Components(hold.clone()), driven: false });
+            let particles: Vec<u32> = particles.map(|p| p as u32).collect();
+            let kind = Kind::Components(hold.clone());
+            holds.groups.push(Group { runs: runs(&particles), particles, kind, driven: false });
         }
         holds.mark(state);
         holds.start_velocities(state);
@@ -138,7 +144,7 @@ impl Holds {
                     Kind::Jaw { clamp: pressure * TAU * radius * grip.length / particles.len() as f64 }
                 }
             };
-            self.groups.push(Group { particles, kind, driven });
+            self.groups.push(Group { runs: runs(&particles), particles, kind, driven });
         }
         self.free_length = faces[1] - faces[0];
         Ok(())
@@ -203,7 +209,7 @@ impl Holds {
     }
 
     /// Overrides the kicked velocities of held particles; `kicked` is the time that the kick spanned [s].
-    pub fn apply(&mut self, state: &mut State, kicked: f64) {
+    pub fn apply(&mut self, state: &mut State, kicked: f64, arch: Arch) {
         let dt = state.dt;
         let mut rise = 0.0;
         if let Some(pace) = &mut self.pace {
@@ -225,6 +231,7 @@ impl Holds {
         let groups = std::mem::take(&mut self.groups);
         for group in &groups {
             match &group.kind {
+                Kind::Rigid if !group.driven || self.spin == 0.0 => self.straight(group, state, rise, kicked, arch),
                 Kind::Rigid => self.rigid(group, state, rise, kicked, None),
                 Kind::Jaw { clamp } => {
                     let on = smooth(state.time / CLAMP_RISE) * clamp;
@@ -269,6 +276,20 @@ impl Holds {
             inertia += state.mass[p] * arm.length_squared() + state.inertia[p];
         }
         if inertia > 0.0 { torque / inertia } else { 0.0 }
+    }
+
+    /// A grip that moves along z without turning; see [`Self::rigid`].
+    fn straight(&mut self, group: &Group, state: &mut State, rise: f64, kicked: f64, arch: Arch) {
+        let speed = if group.driven { rise / state.dt } else { 0.0 };
+        let axis = self.axis.to_array();
+        let effort = arch.dispatch(Straight { runs: &group.runs, state, speed, kicked, axis });
+        self.work += effort.work;
+        if group.driven {
+            self.reaction.force[1] = effort.force - self.acceleration() * effort.mass;
+            self.reaction.torque = effort.torque;
+        } else {
+            self.reaction.force[0] = -effort.force;
+        }
     }
 
     /// A grip that moves along and about z; under `clamp` its particles are free along the radius.

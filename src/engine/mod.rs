@@ -17,6 +17,7 @@ pub mod pair;
 pub mod rupture;
 pub mod spheres;
 pub mod state;
+pub mod straight;
 pub mod time_step;
 pub mod view;
 pub mod watch;
@@ -176,7 +177,7 @@ impl Engine {
         let turn = self.plan.rotations;
         integrate::kick(&mut self.state, kicked, turn, self.arch);
         self.state.dt = self.next_dt;
-        self.holds.apply(&mut self.state, kicked);
+        self.holds.apply(&mut self.state, kicked, self.arch);
         let stretch = self.holds.stretch;
         let reference = self.contacts.as_ref().and_then(|c| c.neighbours.reference(&stretch));
         let drifted = integrate::drift(&mut self.state, reference.as_ref(), self.arch);

@@ -6,8 +6,9 @@
 //! scaled by stiffness; for a uniform chain it is exact, 4k/m. Leapfrog with forces that lag by half a step in velocity
 //! is stable to Δt = (2/ω)(√(1+ξ²) − ξ).
 
-use super::state::State;
+use super::state::{CHUNK, State};
 use crate::law::bond::BondStiffness;
+use rayon::prelude::*;
 
 /// One bond or contact as the bound sees it.
 #[derive(Debug, Clone, Copy)]
@@ -79,6 +80,32 @@ pub struct Stiffness {
     viscous: Vec<[f64; 2]>,
 }
 
+/// What limits the step.
+#[derive(Default, Clone, Copy)]
+struct Worst<'a> {
+    /// Greatest eigenvalue of stiffness over mass [1/s²], with its mode and element.
+    stiffest: Option<(f64, &'static str, &'a Element)>,
+    /// Greatest eigenvalue of damping over mass [1/s], bounded element by element like the stiffness.
+    damping: f64,
+    /// Least step that resolves a contact [s].
+    shortest: Option<(f64, &'a Element)>,
+}
+
+impl Worst<'_> {
+    /// The worse of two, where the first comes before the second in the order of elements.
+    fn with(self, other: Self) -> Self {
+        let stiffest = match (self.stiffest, other.stiffest) {
+            (Some(a), Some(b)) => Some(if b.0 > a.0 { b } else { a }),
+            (a, b) => a.or(b),
+        };
+        let shortest = match (self.shortest, other.shortest) {
+            (Some(a), Some(b)) => Some(if b.0 < a.0 { b } else { a }),
+            (a, b) => a.or(b),
+        };
+        Self { stiffest, damping: self.damping.max(other.damping), shortest }
+    }
+}
+
 impl Stiffness {
     /// Forgets all elements.
     pub fn clear(&mut self) {
@@ -124,7 +151,7 @@ impl Stiffness {
 
     /// The bound for what was added; a contact is stepped at least as finely as Δt √(k/m*) = `resolution` [-]. Particles
     /// that are wholly held do not move and do not count.
-    pub fn bound(&mut self, state: &State, resolution: f64, held: impl Fn(usize) -> bool) -> Bound {
+    pub fn bound(&mut self, state: &State, resolution: f64, held: impl Fn(usize) -> bool + Sync) -> Bound {
         let n = state.len();
         self.translation.clear();
         self.translation.resize(n, 0.0);
@@ -141,32 +168,41 @@ impl Stiffness {
                 self.viscous[node][1] += e.viscous[1] * e.weight[k];
             }
         }
-        let mut worst = 0.0;
-        // Greatest eigenvalue of damping over mass [1/s], bounded element by element like the stiffness.
-        let mut damping = 0.0f64;
+        let found = self.elements.par_chunks(CHUNK).map(|some| self.worst(some, state, resolution, &held));
+        let found = found.reduce(Worst::default, Worst::with);
         let mut bound = Bound { step: f64::INFINITY, mode: "nothing", ..Default::default() };
-        for e in &self.elements {
-            let (value, mode) = self.element(e, state, &held);
-            damping = damping.max(self.damping(e, state, &held));
-            if value > worst {
-                worst = value;
-                bound = Bound { particle: e.nodes[0] as usize, bond: e.bond, mode, ..bound };
+        if let Some((eigenvalue, mode, e)) = found.stiffest {
+            let omega = eigenvalue.sqrt();
+            let xi = 0.5 * found.damping / omega;
+            let step = 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi);
+            bound = Bound { step, particle: e.nodes[0] as usize, bond: e.bond, mode };
+        }
+        match found.shortest {
+            Some((meeting, e)) if meeting < bound.step => {
+                Bound { step: meeting, particle: e.nodes[0] as usize, bond: false, mode: "duration" }
             }
+            _ => bound,
         }
-        if worst > 0.0 {
-            let omega = worst.sqrt();
-            let xi = 0.5 * damping / omega;
-            bound.step = 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi);
-        }
-        for e in self.elements.iter().filter(|e| !e.bond) {
+    }
+
+    /// What limits the step among some elements; the first of equals.
+    fn worst<'a>(
+        &self,
+        elements: &'a [Element],
+        state: &State,
+        resolution: f64,
+        held: &impl Fn(usize) -> bool,
+    ) -> Worst<'a> {
+        let mut worst = Worst::default();
+        for e in elements {
+            let (eigenvalue, mode) = self.element(e, state, held);
+            let stiffest = (eigenvalue > 0.0).then_some((eigenvalue, mode, e));
             // A pair of held particles never moves.
-            let frequency = e.pair_frequency(state, &held);
-            let meeting = resolution / frequency;
-            if frequency > 0.0 && meeting < bound.step {
-                bound = Bound { step: meeting, particle: e.nodes[0] as usize, bond: false, mode: "duration" };
-            }
+            let frequency = if e.bond { 0.0 } else { e.pair_frequency(state, held) };
+            let shortest = (frequency > 0.0).then_some((resolution / frequency, e));
+            worst = worst.with(Worst { stiffest, damping: self.damping(e, state, held), shortest });
         }
-        bound
+        worst
     }
 
     /// Largest eigenvalue of damping over mass that one element can have [1/s], with shares as for stiffness.

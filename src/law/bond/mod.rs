@@ -237,7 +237,7 @@ impl<R: Real> Section<R> {
         let twelve = bend * 12.0 * inverse_length;
         BondStiffness {
             axial: self.area * moduli.young * inverse_length,
-            shear: twelve * rigid * inverse_length / (rigid + twelve),
+            shear: twelve * rigid * inverse_length * (rigid + twelve).inverse(),
             bend,
             twist: self.polar() * moduli.shear * inverse_length,
         }

@@ -79,7 +79,7 @@ impl<R: Real> Trial<R> {
         let fall = n2 * (h + self.axial_rate) + t2 * (h + self.twist_rate) + v2 * (h + self.shear_rate);
         let size2 = n2 + t2 + v2;
         let size = size2 * size2.inverse_sqrt();
-        let start = ((size - 1.0) * size2 / fall).greater(zero);
+        let start = ((size - 1.0) * size2 * fall.inverse()).greater(zero);
         let mut z = self.within_range(h, zero, start);
         let mut open = wanted;
         for round in 0..=60 {
@@ -96,8 +96,8 @@ impl<R: Real> Trial<R> {
                 + fall_of(point.twist, self.twist_rate, point.soft[1], h)
                 + fall_of(point.shear, self.shear_rate, point.soft[2], h);
             let bent = point.bend.above(zero);
-            let slope = slope * -2.0 - R::choose(bent, self.bend * h + self.bend_rate, zero);
-            let next = self.within_range(h, z, (z - f / slope).greater(zero));
+            let falls = slope * 2.0 + R::choose(bent, self.bend * h + self.bend_rate, zero);
+            let next = self.within_range(h, z, (z + f * falls.inverse()).greater(zero));
             z = R::choose(open, next, z);
         }
         self.end(z, &self.at(h, z))

@@ -73,7 +73,11 @@ impl Thornton {
     #[inline(always)]
     fn curve_from<R: Real>(&self, overlap: R, force: R, a2: R, inverse_a: R) -> ThorntonState<R> {
         let recovery = force * inverse_a * (0.75 / self.effective_modulus);
-        ThorntonState { greatest_overlap: overlap, dent_radius: a2 / recovery, residual_overlap: overlap - recovery }
+        ThorntonState {
+            greatest_overlap: overlap,
+            dent_radius: a2 * recovery.inverse(),
+            residual_overlap: overlap - recovery,
+        }
     }
 
     /// Energy that unloading from δ_m, with the force F_m there, gives back: (2/5) F_m (δ_m − δ_p) [J].
