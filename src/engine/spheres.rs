@@ -1,5 +1,6 @@
 //! Contact stage for spheres: every particle is a ball of its wire's diameter.
 
+use super::bytes::{Bytes, NUMBER, VECTOR, behind};
 use super::contacts::Contacts;
 use super::neighbours::PairList;
 use super::pair::{History, Laws, Meeting, elastic_energy, foreseen_stiffness, part, touch};
@@ -196,6 +197,18 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             let mass = state.mass[i] * state.mass[j] / (state.mass[i] + state.mass[j]);
             let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
             out.contact([c.i, c.j, 0], [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], viscosity);
+        }
+    }
+
+    fn bytes(&self, particles: usize) -> Bytes {
+        let (contact, action) = (size_of_val(&self.contacts[..]), size_of_val(&self.actions[..]));
+        let lists = behind(&self.of_particle) + behind(&self.start) + behind(&self.partial);
+        // x, v, ω, radius and inverse mass in; force and torque out.
+        let per_particle = 3 * VECTOR + 2 * NUMBER + 2 * VECTOR;
+        Bytes {
+            kept: behind(&self.contacts) + behind(&self.old) + behind(&self.actions) + lists,
+            // Records in and out, actions out and, through the list of each particle, in twice.
+            moved: 2 * contact + 3 * action + size_of_val(&self.of_particle[..]) + particles * per_particle,
         }
     }
 }

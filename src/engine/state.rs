@@ -93,9 +93,9 @@ pub struct State {
     pub force: Vectors,
     /// Torques about the centres [N m].
     pub torque: Vectors,
-    /// Forces from contacts [N].
+    /// Forces from contacts [N]; empty while there is no contact stage.
     pub contact_force: Vectors,
-    /// Torques from contacts [N m].
+    /// Torques from contacts [N m]; empty while there is no contact stage.
     pub contact_torque: Vectors,
     /// What bonds do.
     pub bond: BondActions,
@@ -135,8 +135,8 @@ impl State {
             w: a.spin.clone(),
             force: Vectors::zeros(n),
             torque: Vectors::zeros(n),
-            contact_force: Vectors::zeros(n),
-            contact_torque: Vectors::zeros(n),
+            contact_force: Vectors::default(),
+            contact_torque: Vectors::default(),
             bond: BondActions::new(n, turn),
             whole: (0..n).map(|i| a.is_bond(i)).collect(),
             radius: a.radius.clone(),
@@ -151,6 +151,12 @@ impl State {
             time: 0.0,
             dt: 0.0,
         }
+    }
+
+    /// Makes room for what contacts do.
+    pub fn meet_contacts(&mut self) {
+        self.contact_force = Vectors::zeros(self.len());
+        self.contact_torque = Vectors::zeros(self.len());
     }
 
     /// Number of particles.
