@@ -140,23 +140,33 @@ impl WithSimd for Chains {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let start: [f64; CHAINS] = std::array::from_fn(|k| black_box(1.0 + k as f64));
-        let mut chains = start.map(|v| Lanes::<S>::splat(simd, v));
+        // No closures from here on: they would not be compiled for the registers that `simd` stands for.
+        let mut chains = [Lanes::<S>::splat(simd, start[0]); CHAINS];
+        for (chain, start) in chains.iter_mut().zip(start) {
+            *chain = Lanes::<S>::splat(simd, start);
+        }
         let factor = Lanes::<S>::splat(simd, black_box(0.999));
         let summand = Lanes::<S>::splat(simd, black_box(0.001));
         match self.kind {
             Kind::MultiplyAdd => {
                 for _ in 0..self.rounds {
-                    chains = chains.map(|c| c * factor + summand);
+                    for c in &mut chains {
+                        *c = *c * factor + summand;
+                    }
                 }
             }
             Kind::Divide => {
                 for _ in 0..self.rounds {
-                    chains = chains.map(|c| factor / c);
+                    for c in &mut chains {
+                        *c = factor / *c;
+                    }
                 }
             }
             Kind::Root => {
                 for _ in 0..self.rounds {
-                    chains = chains.map(|c| c.sqrt());
+                    for c in &mut chains {
+                        *c = c.sqrt();
+                    }
                 }
             }
         }

@@ -19,6 +19,11 @@ impl Vectors {
         Self { x: vec![0.0; n], y: vec![0.0; n], z: vec![0.0; n] }
     }
 
+    /// None yet, with room for `n`.
+    pub fn with_capacity(n: usize) -> Self {
+        Self { x: Vec::with_capacity(n), y: Vec::with_capacity(n), z: Vec::with_capacity(n) }
+    }
+
     /// Number of vectors.
     pub fn len(&self) -> usize {
         self.x.len()
