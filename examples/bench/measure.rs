@@ -58,6 +58,15 @@ pub struct Stages<T> {
     pub time_step: T,
 }
 
+impl Row {
+    /// Share of its cores that the run really got [-]: others may use the machine. Waiting threads spin, so that an
+    /// undisturbed run is busy on all of them.
+    pub fn got(&self) -> f64 {
+        let share = self.cpu_ms_per_step / (self.ms_per_step * self.threads as f64);
+        if share.is_finite() { share.min(1.0) } else { 1.0 }
+    }
+}
+
 impl<T: Copy> Stages<T> {
     /// Every stage with its name.
     pub fn named(&self) -> [(&'static str, T); 5] {
@@ -126,7 +135,7 @@ pub fn load(args: &Args, factor: f64) -> Result<Scene> {
 /// All rows of one length.
 pub fn rows(args: &Args, factor: f64) -> Result<Vec<Row>> {
     let scene = load(args, factor)?;
-    let (mut engine, pull) = in_pool(None, || pulled(args, &scene))??;
+    let (mut engine, pull) = in_pool(args.threads.iter().copied().max(), || pulled(args, &scene))??;
     let mut measured = Vec::new();
     for threads in &args.threads {
         measured.push(in_pool(Some(*threads), || time(args, &mut engine))??);

@@ -11,44 +11,53 @@ pub fn print(rows: &[Row]) {
 }
 
 fn times(rows: &[Row]) {
-    println!("Time per step [ms], best of the repeats; time per particle-step over that of the first length");
-    print!("length threads particles contacts  ms/step  processor  M p-steps/s  relative");
+    println!(
+        "Time per step [ms], best of the repeats; time per particle-step over that of the first length. Processor: of"
+    );
+    println!("all threads, and per particle-step over that of the first; it says more where others use the machine");
+    print!("length threads particles contacts  ms/step  M p-steps/s  relative  processor  relative");
     rows.first().into_iter().flat_map(|r| r.stages.named()).for_each(|(name, _)| print!("  {name:>10}"));
     println!();
     for r in rows {
         print!(
-            "{:>5}× {:>7} {:>9} {:>8.0} {:>8.3}  {:>9.3}  {:>11.1}  {:>7.2}×",
+            "{:>5}× {:>7} {:>9} {:>8.0} {:>8.3}  {:>11.1}  {:>7.2}×  {:>9.3}  {:>7.2}×",
             r.length_factor,
             r.threads,
             r.particles,
             r.contacts,
             r.ms_per_step,
-            r.cpu_ms_per_step,
             r.particle_steps_per_s * 1e-6,
-            relative(rows, r),
+            relative(rows, r, |r| r.ms_per_step),
+            r.cpu_ms_per_step,
+            relative(rows, r, |r| r.cpu_ms_per_step),
         );
         r.stages.named().iter().for_each(|(_, ms)| print!("  {ms:>10.4}"));
         println!();
     }
 }
 
-/// Time per particle-step over that of the first length on as many threads [-].
-pub fn relative(rows: &[Row], row: &Row) -> f64 {
+/// A time per particle-step over that of the first length on as many threads [-].
+fn relative(rows: &[Row], row: &Row, ms: impl Fn(&Row) -> f64) -> f64 {
     let first = rows.iter().find(|r| r.threads == row.threads).unwrap_or(row);
-    first.particle_steps_per_s / row.particle_steps_per_s
+    let each = |r: &Row| ms(r) / r.particles as f64;
+    each(row) / each(first)
 }
 
 fn roofline(rows: &[Row]) {
     println!("\nDistance to what the machine can do, per step: bytes over its bandwidth on as much memory, operations");
-    println!("(bonds counted by running them, the rest by hand) over its throughput in the widest registers, unfused");
     println!(
-        "length threads stage            MB  M flop   M div  M sqrt   ms  limits: bandwidth  arithmetic   reached"
+        "(bonds counted by running them as they yield, the rest by hand) over its throughput in the widest registers,"
+    );
+    println!("unfused; ms without the time that other programs took");
+    println!(
+        "length threads stage            MB  M flop   M div  M sqrt       ms  limits: bandwidth  arithmetic   reached"
     );
     for r in rows {
         let limits = r.limits.named();
         for ((name, ms), (_, l)) in r.stages.named().into_iter().zip(limits).filter(|(_, (_, l))| l.bytes > 0) {
+            let ms = ms * r.got();
             println!(
-                "{:>5}× {:>7} {name:<10} {:>8.2} {:>7.2} {:>7.3} {:>7.3} {ms:>8.4} {:>13.4} {:>11.4} {:>7.0} %",
+                "{:>5}× {:>7} {name:<10} {:>8.2} {:>7.2} {:>7.3} {:>7.3} {ms:>8.4} {:>18.4} {:>11.4} {:>7.0} %",
                 r.length_factor,
                 r.threads,
                 l.bytes as f64 * 1e-6,
