@@ -30,8 +30,8 @@ pub struct Row {
     pub candidates: f64,
     /// The best of the repeats, by wall time.
     pub ms_per_step: f64,
-    /// Processor time of all threads.
-    pub cpu_ms_per_step: f64,
+    /// Processor time of all threads; none where the system does not tell.
+    pub cpu_ms_per_step: Option<f64>,
     pub particle_steps_per_s: f64,
     /// Milliseconds per step.
     pub stages: Stages<f64>,
@@ -40,12 +40,12 @@ pub struct Row {
     /// Rates of the machine behind that.
     pub machine: Machine,
     pub searches_per_1000_steps: f64,
-    /// The way to the strain at which is measured.
-    pub pull: Pull,
+    /// The way to the strain at which is measured, if there was one.
+    pub pull: Option<Pull>,
     /// Memory kept per particle, by stage [bytes].
     pub bytes_per_particle: Vec<(String, usize)>,
     /// Greatest resident memory over the number of particles [bytes]; the program itself included.
-    pub peak_bytes_per_particle: f64,
+    pub peak_bytes_per_particle: Option<f64>,
 }
 
 /// Something for each stage.
@@ -62,8 +62,7 @@ impl Row {
     /// Share of its cores that the run really got [-]: others may use the machine. Waiting threads spin, so that an
     /// undisturbed run is busy on all of them.
     pub fn got(&self) -> f64 {
-        let share = self.cpu_ms_per_step / (self.ms_per_step * self.threads as f64);
-        if share.is_finite() { share.min(1.0) } else { 1.0 }
+        self.cpu_ms_per_step.map_or(1.0, |cpu| (cpu / (self.ms_per_step * self.threads as f64)).min(1.0))
     }
 }
 
@@ -140,7 +139,7 @@ pub fn rows(args: &Args, factor: f64) -> Result<Vec<Row>> {
     for threads in &args.threads {
         measured.push(in_pool(Some(*threads), || time(args, &mut engine))??);
     }
-    let peak = memory::peak().map_or(f64::NAN, |bytes| bytes as f64);
+    let peak = memory::peak();
     let bytes = engine.bytes();
     // The machine comes last: what it needs for that must not count as the engine's peak.
     let rows = args.threads.iter().zip(measured).map(|(threads, timed)| {
@@ -151,7 +150,7 @@ pub fn rows(args: &Args, factor: f64) -> Result<Vec<Row>> {
 }
 
 /// An engine in full contact, and what its way there was like.
-fn pulled(args: &Args, scene: &Scene) -> Result<(Engine, Pull)> {
+fn pulled(args: &Args, scene: &Scene) -> Result<(Engine, Option<Pull>)> {
     let mut engine = Engine::new(&scene.spec, assemble(scene)?)?;
     let (clock, mut seen) = (Instant::now(), Seen::default());
     while engine.strain() < args.strain / 100.0 {
@@ -160,20 +159,20 @@ fn pulled(args: &Args, scene: &Scene) -> Result<(Engine, Pull)> {
             seen.look(&engine);
         }
     }
-    let pull = Pull {
+    let pull = (engine.steps() > 0).then(|| Pull {
         steps: engine.steps(),
         searches: engine.contact_counts().0,
         strain: engine.strain(),
         search_share: engine.timings().neighbours.as_secs_f64() / clock.elapsed().as_secs_f64(),
-        candidates_per_contact: seen.candidates / seen.contacts,
-    };
+        candidates_per_contact: seen.candidates / seen.contacts.max(1.0),
+    });
     Ok((engine, pull))
 }
 
 /// The best of the repeats, and means over all of them.
 struct Timed {
     seconds: f64,
-    cpu: f64,
+    cpu: Option<f64>,
     stages: Timings,
     searches: u64,
     steps: u64,
@@ -182,17 +181,17 @@ struct Timed {
 
 fn time(args: &Args, engine: &mut Engine) -> Result<Timed> {
     let first = engine.contact_counts().0;
-    let mut best: Option<(f64, f64, Timings)> = None;
+    let mut best: Option<(f64, Option<f64>, Timings)> = None;
     let mut seen = Seen::default();
     for _ in 0..args.repeats {
-        let (mut wall, mut cpu, before) = (Duration::ZERO, 0.0, *engine.timings());
+        let (mut wall, mut cpu, before) = (Duration::ZERO, Some(0.0), *engine.timings());
         let mut left = args.steps;
         while left > 0 {
             let some = left.min(LOOK);
             let (clock, busy) = (Instant::now(), cpu_time());
             (0..some).try_for_each(|_| engine.step())?;
             wall += clock.elapsed();
-            cpu += cpu_time().zip(busy).map_or(f64::NAN, |(after, before)| after - before);
+            cpu = cpu_time().zip(busy).zip(cpu).map(|((after, before), sum)| sum + after - before);
             left -= some;
             seen.look(engine);
         }
@@ -215,8 +214,8 @@ fn row(
     timed: &Timed,
     bytes: &StageBytes,
     machine: &Machine,
-    pull: Pull,
-    peak: f64,
+    pull: Option<Pull>,
+    peak: Option<u64>,
 ) -> Row {
     let particles = engine.assembly().len();
     let (candidates, contacts) = (timed.seen.candidates / timed.seen.looks, timed.seen.contacts / timed.seen.looks);
@@ -232,7 +231,7 @@ fn row(
         contacts,
         candidates,
         ms_per_step: timed.seconds * 1e3 * per_step,
-        cpu_ms_per_step: timed.cpu * 1e3 * per_step,
+        cpu_ms_per_step: timed.cpu.map(|seconds| seconds * 1e3 * per_step),
         particle_steps_per_s: particles as f64 / (timed.seconds * per_step),
         stages: Stages {
             integrate: ms(t.integrate),
@@ -246,6 +245,6 @@ fn row(
         searches_per_1000_steps: timed.searches as f64 * 1e3 / timed.steps as f64,
         pull,
         bytes_per_particle: bytes.stages().map(|(name, b)| (name.to_string(), b.kept / particles)).to_vec(),
-        peak_bytes_per_particle: peak / particles as f64,
+        peak_bytes_per_particle: peak.map(|bytes| bytes as f64 / particles as f64),
     }
 }

@@ -48,7 +48,8 @@ fn pair(args: &Args, title: &str, name: &str, set: &[&str]) -> Result<()> {
     let step =
         [&set, &general].into_iter().map(|set| Ok(engine(name, set)?.time_step())).collect::<Result<Vec<f64>>>()?;
     let fixed = format!("time.step={} s", 0.5 * step.into_iter().fold(f64::INFINITY, f64::min));
-    let [special, general] = [&set, &general].map(|set| run(args, name, &[&set[..], &[fixed.clone()]].concat()));
+    let [special, general] =
+        [&set, &general].map(|set| run(args, name, &[&set[..], std::slice::from_ref(&fixed)].concat()));
     let (special, general) = (special?, general?);
     println!("\n{title}: {} particles", special.engine.assembly().len());
     println!("  {}", line(&special));

@@ -28,8 +28,8 @@ fn times(rows: &[Row]) {
             r.ms_per_step,
             r.particle_steps_per_s * 1e-6,
             relative(rows, r, |r| r.ms_per_step),
-            r.cpu_ms_per_step,
-            relative(rows, r, |r| r.cpu_ms_per_step),
+            r.cpu_ms_per_step.unwrap_or(f64::NAN),
+            relative(rows, r, |r| r.cpu_ms_per_step.unwrap_or(f64::NAN)),
         );
         r.stages.named().iter().for_each(|(_, ms)| print!("  {ms:>10.4}"));
         println!();
@@ -77,18 +77,22 @@ fn roofline(rows: &[Row]) {
 
 fn neighbours(rows: &[Row]) {
     println!("\nNeighbour search: at most 3 % of the time and 1.6 candidates per closed contact are wanted");
-    println!(
-        "length threads  per 1000 steps  % of time  candidates/contact   on the way: steps  searches  per % strain  % of time  candidates/contact"
-    );
+    println!("length threads  per 1000 steps  % of time  candidates/contact");
     for r in rows {
-        let p = &r.pull;
         println!(
-            "{:>5}× {:>7}  {:>14.1}  {:>9.2}  {:>18.2}   {:>17}  {:>8}  {:>12.2}  {:>9.2}  {:>18.2}",
+            "{:>5}× {:>7}  {:>14.1}  {:>9.2}  {:>18.2}",
             r.length_factor,
             r.threads,
             r.searches_per_1000_steps,
             1e2 * r.stages.neighbours / r.ms_per_step,
             r.candidates / r.contacts,
+        );
+    }
+    println!("on the way there:   steps  searches  per % of strain  % of time  candidates/contact");
+    for (r, p) in rows.iter().filter_map(|r| Some((r, r.pull?))) {
+        println!(
+            "{:>5}× {:>18}  {:>8}  {:>15.2}  {:>9.2}  {:>18.2}",
+            r.length_factor,
             p.steps,
             p.searches,
             p.searches as f64 / (1e2 * p.strain),
@@ -113,7 +117,7 @@ fn memory(rows: &[Row]) {
             "{:>5}× {:>9} particles: peak {:.0}, kept by the engine {kept}: {}",
             r.length_factor,
             r.particles,
-            r.peak_bytes_per_particle,
+            r.peak_bytes_per_particle.unwrap_or(f64::NAN),
             by_stage.join(", ")
         );
     }
