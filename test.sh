@@ -10,7 +10,7 @@ get_browser || printf '\nNo Chromium is here and none can be installed; tests of
 get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that need it will be SKIPPED.\n'
 
 say "Shell syntax"
-for script in demo.sh test.sh .ci/run .ci/prepare.sh; do
+for script in demo.sh test.sh .ci/run .ci/prepare.sh examples/peers/compare.sh; do
     bash -n "$script"
 done
 

@@ -358,3 +358,20 @@ fn the_jaw_scene_differs_from_the_main_one_in_its_grip_alone() {
     (jaw.name, jaw.about) = (main.name.clone(), main.about.clone());
     assert_eq!(jaw, main);
 }
+
+/// The strand on which other engines are timed must stay what it is there: any change makes old figures incomparable.
+#[test]
+fn the_peers_strand_is_the_one_that_was_timed() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/peers/strand.toml");
+    let scene = load(file.to_str().unwrap(), &[]).unwrap_or_else(|error| panic!("{error:?}"));
+    let spec = &scene.spec;
+    assert_eq!((&spec.bond.law, &spec.bond.rupture, spec.time.step), (&BondLawSpec::Elastic, &None, Some(2e-8)));
+    let plan = strandsnap::scene::plan::Plan::new(spec);
+    assert!(plan.bonds && plan.rotations && !plan.rupture, "{plan}");
+    let assembly = strandsnap::strand::build(spec).unwrap_or_else(|error| panic!("{error:?}"));
+    assert_eq!((assembly.wires.len(), assembly.len(), assembly.bond_count()), (34, 10618, 10584));
+    let engine = strandsnap::engine::Engine::new(spec, assembly).unwrap_or_else(|error| panic!("{error:?}"));
+    // Closed contacts that LAMMPS counts too, beside those within a grip.
+    assert_eq!(engine.contact_counts().2, 1520);
+    assert!(engine.time_step_bound() > 2e-8, "{}", engine.time_step_bound());
+}

@@ -24,6 +24,11 @@ impl Vectors {
         [&self.x, &self.y, &self.z]
     }
 
+    /// None yet, with room for `n`.
+    pub fn with_capacity(n: usize) -> Self {
+        Self { x: Vec::with_capacity(n), y: Vec::with_capacity(n), z: Vec::with_capacity(n) }
+    }
+
     /// Number of vectors.
     pub fn len(&self) -> usize {
         self.x.len()

@@ -8,6 +8,9 @@
 //! Everything that a bond remembers lies in blocks of [`BLOCK`] slots, field after field: one stream of memory, from
 //! which a register takes a field of a whole block.
 
+pub mod trial;
+
+use super::bytes::{Bytes, NUMBER, VECTOR, behind};
 use super::rupture::{Criterion, RuptureCheck};
 use super::state::{BondActions, CHUNK, Partial, State};
 use super::time_step::Stiffness;
@@ -39,6 +42,8 @@ pub trait Bonds: Send {
     fn plastic_strain(&self, slot: usize) -> f64;
     /// Share of its rupture limit that a bond has reached [-]: it breaks at 1. 0 without a rupture criterion.
     fn utilisation(&self, slot: usize, state: &State) -> f64;
+    /// Memory of the stage.
+    fn bytes(&self) -> Bytes;
 }
 
 /// Bonds with law `L`; `TURN` says whether particles turn.
@@ -258,6 +263,22 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     fn utilisation(&self, slot: usize, state: &State) -> f64 {
         let Some(check) = &self.rupture else { return 0.0 };
         check.utilisation(slot, state, self.plastic_strain(slot), &self.force(slot), &self.section(slot))
+    }
+
+    fn bytes(&self) -> Bytes {
+        let slots = self.records.len() / Self::FIELDS;
+        let limits = self.rupture.as_ref().map_or(0, RuptureCheck::bytes);
+        let checked = self.rupture.as_ref().and_then(RuptureCheck::plastic_limit).map_or(0, |_| NUMBER);
+        let nodes = if TURN { 3 * VECTOR } else { 2 * VECTOR };
+        // Shapes and flags are only read, the rest of a record is written back.
+        let written = Self::SHAPE * NUMBER;
+        let actions = BondActions::fields_of(TURN) * NUMBER;
+        Bytes {
+            kept: behind(&self.records) + behind(&self.viscosity) + behind(&self.partial) + behind(&self.due) + limits,
+            moved: size_of_val(&self.records[..])
+                + size_of_val(&self.viscosity[..])
+                + slots * (written + nodes + actions + checked),
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 //! force. A contact walks along the other wire from segment to segment as the particle slides, and keeps its history.
 //! A free sphere against a wire, or two free spheres, carry the whole force.
 
+use super::bytes::{Bytes, NUMBER, VECTOR, behind};
 use super::contacts::{Contacts, closing};
 use super::neighbours::{PairList, apart};
 use super::pair::{History, Laws, Meeting, PairForce, elastic_energy, foreseen_stiffness, leave, meet, normal_energy};
@@ -331,6 +332,17 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
             let weight = [1.0, 1.0 - c.t, c.t];
             let arm = [state.radius[i], radius, radius];
             out.contact([c.i, c.j, next as u32], weight, k.map(|k| k * c.share), arm, viscosity);
+        }
+    }
+
+    fn bytes(&self, particles: usize) -> Bytes {
+        let lists = behind(&self.chains.wire_of) + behind(&self.directed) + behind(&self.partial);
+        // x, v, ω, radius and mass in; force and torque cleared, and added to.
+        let per_particle = 3 * VECTOR + 2 * NUMBER + 6 * VECTOR;
+        Bytes {
+            kept: behind(&self.contacts) + behind(&self.old) + lists,
+            // Records in and out, and in again to be added up.
+            moved: 3 * size_of_val(&self.contacts[..]) + particles * per_particle,
         }
     }
 }

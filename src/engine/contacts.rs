@@ -1,5 +1,6 @@
 //! What the engine asks of contacts, whatever their laws and shape, and the one place where these are chosen.
 
+use super::bytes::Bytes;
 use super::capsules::CapsuleContacts;
 use super::neighbours::PairList;
 use super::pair::Laws;
@@ -36,6 +37,8 @@ pub trait Contacts: Send {
     fn candidates(&self) -> usize;
     /// Stiffnesses of touching pairs for the bound on the time step, as they can become within `horizon` [s].
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
+    /// Memory of the stage, among `particles` particles.
+    fn bytes(&self, particles: usize) -> Bytes;
 }
 
 /// By how much the gap of two bodies may close while no particle moves further than 1 [-]: 2 for the way of both, the

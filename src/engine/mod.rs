@@ -5,6 +5,7 @@
 //! monomorphic over their laws. [`crate::scene::plan::Plan`] decides which stages there are.
 
 pub mod bonds;
+pub mod bytes;
 pub mod capsules;
 pub mod contacts;
 pub mod crossing;
@@ -75,6 +76,30 @@ pub struct Timings {
     pub contacts: Duration,
     /// Bound on the time step.
     pub time_step: Duration,
+}
+
+impl Timings {
+    /// Every stage with its name.
+    pub fn stages(&self) -> [(&'static str, Duration); 5] {
+        [
+            ("motion", self.integrate),
+            ("bonds", self.bonds),
+            ("contacts", self.contacts),
+            ("neighbours", self.neighbours),
+            ("time step", self.time_step),
+        ]
+    }
+
+    /// What has been spent since `earlier`.
+    pub fn since(&self, earlier: &Self) -> Self {
+        Self {
+            integrate: self.integrate - earlier.integrate,
+            neighbours: self.neighbours - earlier.neighbours,
+            bonds: self.bonds - earlier.bonds,
+            contacts: self.contacts - earlier.contacts,
+            time_step: self.time_step - earlier.time_step,
+        }
+    }
 }
 
 /// Contacts with their neighbour search.
@@ -153,6 +178,7 @@ impl Engine {
     fn add_contacts(&mut self) {
         let Some(contact) = &self.spec.contact else { return };
         let diameter = 2.0 * self.assembly.radius.iter().copied().fold(0.0, f64::max);
+        self.state.meet_contacts();
         self.contacts = Some(ContactPart {
             stage: contacts::build(contact, &self.spec.material, &self.assembly),
             neighbours: Neighbours::new(&self.assembly, contact.skin * diameter, contact.shape),

@@ -3,6 +3,7 @@
 //! The whole strand stretches by a third, so displacements are measured against the affine stretch of the gauge: a
 //! pair stays covered while 2 max|u − u_affine| + Δε (reach + skin) < skin.
 
+use super::bytes::{behind, behind_all};
 use super::state::{CHUNK, State};
 use crate::base::lanes::{Lanes, Real};
 use crate::base::vectors::Vectors;
@@ -191,6 +192,13 @@ impl Neighbours {
             Shape::Capsule => reach.hypot(0.5 * grown.min(MOST_STRETCH * self.rest)) - reach,
             Shape::Sphere => (SQRT_HALF * self.longest.min(MOST_STRETCH * self.rest) - reach).max(0.0),
         }
+    }
+
+    /// Memory that it keeps [bytes].
+    pub fn bytes(&self) -> usize {
+        let found: usize = self.found.iter().map(behind).sum();
+        let cells = behind(&self.cells.start) + behind(&self.cells.order) + behind(&self.cells.of_particle);
+        behind(&self.wire_of) + behind_all(&self.reference) + behind(&self.list.pairs) + found + cells
     }
 
     /// The list, and the positions, of the last search.

@@ -1,6 +1,7 @@
 //! Rupture stage: which bonds have reached their limit. A pass of its own after the bonds, so that criteria and laws
 //! do not multiply.
 
+use super::bytes::behind;
 use super::state::State;
 use super::view::RuptureCause;
 use crate::base::random::uniform;
@@ -66,6 +67,11 @@ impl RuptureCheck {
             (demand.value >= demand.limit).then_some((slot, demand.cause))
         };
         (0..whole.len()).filter(|s| whole[*s]).filter_map(reached).collect()
+    }
+
+    /// Memory that it keeps [bytes].
+    pub fn bytes(&self) -> usize {
+        behind(&self.factor) + behind(&self.rest_length) + behind(&self.plastic_limit)
     }
 
     /// Share of its limit that a bond has reached [-]; it breaks at 1.

@@ -12,6 +12,7 @@
 mod kernel;
 mod second;
 
+use super::bytes::{Bytes, NUMBER, VECTOR, behind};
 use super::contacts::{Contacts, closing};
 use super::neighbours::PairList;
 use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
@@ -337,6 +338,19 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
             let nodes = [i as u32, j as u32, 0];
             out.contact(nodes, [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], viscosity);
+        }
+    }
+
+    fn bytes(&self, particles: usize) -> Bytes {
+        let store = |s: &Store| behind(&s.blocks) + behind(&s.records) + behind(&s.constants.rows);
+        let lists = behind(&self.keys) + behind(&self.starts) + behind(&self.partial) + self.places.bytes();
+        let (records, actions) = (size_of_val(&self.now.records[..]), size_of_val(&self.actions[..]));
+        // x, v, ω, radius and thinning in; forces and torques of first sides cleared, and added to.
+        let per_particle = 3 * VECTOR + 2 * NUMBER + 6 * VECTOR;
+        Bytes {
+            kept: store(&self.now) + store(&self.old) + behind(&self.actions) + lists,
+            // Records in and out; actions out, and in again where forces are added up.
+            moved: 2 * records + 2 * actions + size_of_val(&self.now.blocks[..]) + particles * per_particle,
         }
     }
 }

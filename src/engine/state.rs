@@ -91,7 +91,8 @@ pub struct State {
     pub force: Vectors,
     /// Torques about the centres [N m].
     pub torque: Vectors,
-    /// Forces from contacts on particles that are the first of their pair, and from capsules on all [N].
+    /// Forces from contacts on particles that are the first of their pair, and from capsules on all [N]; empty while
+    /// there is no contact stage.
     pub contact_force: Vectors,
     /// The same for torques [N m].
     pub contact_torque: Vectors,
@@ -137,8 +138,8 @@ impl State {
             w: a.spin.clone(),
             force: Vectors::zeros(n),
             torque: Vectors::zeros(n),
-            contact_force: Vectors::zeros(n),
-            contact_torque: Vectors::zeros(n),
+            contact_force: Vectors::default(),
+            contact_torque: Vectors::default(),
             bond: BondActions::new(n, turn),
             whole: (0..n).map(|i| a.is_bond(i)).collect(),
             radius: a.radius.clone(),
@@ -163,6 +164,12 @@ impl State {
         let seen = Seen { x, v, w, radius: &self.radius, thinned: &self.thinned, dt: self.dt, travel: self.travel };
         let (f, t) = (&mut self.contact_force, &mut self.contact_torque);
         (seen, ContactSides { force: [&mut f.x, &mut f.y, &mut f.z], torque: [&mut t.x, &mut t.y, &mut t.z] })
+    }
+
+    /// Makes room for what contacts do.
+    pub fn meet_contacts(&mut self) {
+        self.contact_force = Vectors::zeros(self.len());
+        self.contact_torque = Vectors::zeros(self.len());
     }
 
     /// Number of particles.

@@ -6,6 +6,7 @@
 //! scaled by stiffness; for a uniform chain it is exact, 4k/m. Leapfrog with forces that lag by half a step in velocity
 //! is stable to Δt = (2/ω)(√(1+ξ²) − ξ).
 
+use super::bytes::behind;
 use super::state::{CHUNK, State};
 use crate::law::bond::BondStiffness;
 use rayon::prelude::*;
@@ -107,6 +108,11 @@ impl Worst<'_> {
 }
 
 impl Stiffness {
+    /// Memory that it keeps [bytes].
+    pub fn bytes(&self) -> usize {
+        behind(&self.elements) + behind(&self.translation) + behind(&self.rotation) + behind(&self.viscous)
+    }
+
     /// Forgets all elements.
     pub fn clear(&mut self) {
         self.elements.clear();

@@ -2,6 +2,7 @@
 
 use crate::base::error::Result;
 use crate::engine::Engine;
+use crate::engine::bytes::StageBytes;
 use crate::scene::spec::{DriveSpec, Spec};
 use crate::strand::assembly::Assembly;
 use std::fmt;
@@ -33,8 +34,12 @@ pub struct Estimate {
     pub steps: Option<f64>,
     /// Wall time of a step, measured [s].
     pub step_wall: f64,
+    /// Where it goes, by stage [s].
+    pub stage_wall: [(&'static str, f64); 5],
     /// Number of steps that it was measured over.
     pub measured: u64,
+    /// Memory by stage.
+    pub bytes: StageBytes,
 }
 
 /// Sets a run up, tries a few steps and extrapolates. Call it inside a rayon pool to choose the threads.
@@ -46,6 +51,7 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
     let mut engine = Engine::new(spec, assembly)?;
     let first_time_step = engine.time_step();
     let duration = duration(spec, &engine);
+    let before = *engine.timings();
     let begin = Instant::now();
     let mut measured = 0;
     while measured == 0 || (measured < TRIAL_STEPS && begin.elapsed() < TRIAL_TIME) {
@@ -66,7 +72,9 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
         duration,
         steps: [of_time, of_steps].into_iter().flatten().reduce(f64::min),
         step_wall,
+        stage_wall: engine.timings().since(&before).stages().map(|(name, t)| (name, t.as_secs_f64() / measured as f64)),
         measured,
+        bytes: engine.bytes(),
     })
 }
 
@@ -107,10 +115,17 @@ impl fmt::Display for Estimate {
                     self.step_wall * 1e3,
                     self.measured
                 )?;
-                write!(f, "wall time: about {}, more as contacts form; output not included", span(wall))
+                writeln!(f, "wall time: about {}, more as contacts form; output not included", span(wall))?;
             }
-            None => write!(f, "steps: unknown, because the scene ends at no strain, time or number of steps"),
+            None => writeln!(f, "steps: unknown, because the scene ends at no strain, time or number of steps")?,
         }
+        let shares = self.stage_wall.iter().filter(|(_, wall)| *wall > 0.0);
+        let times: Vec<String> = shares.map(|(name, wall)| format!("{name} {:.4} ms", wall * 1e3)).collect();
+        writeln!(f, "by stage: {}", times.join(", "))?;
+        let each = |bytes: usize| bytes / self.particles;
+        let kept = self.bytes.stages().into_iter().filter(|(_, bytes)| each(bytes.kept) > 0);
+        let kept: Vec<String> = kept.map(|(name, bytes)| format!("{name} {}", each(bytes.kept))).collect();
+        write!(f, "memory: {} bytes per particle: {}", each(self.bytes.kept()), kept.join(", "))
     }
 }
 

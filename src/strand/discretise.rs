@@ -122,18 +122,19 @@ fn check_overlaps(spec: &Spec, strung: &[Strung], layers: &[Layer]) -> Result<()
 }
 
 fn assemble(spec: &Spec, layers: Vec<Layer>, strung: &[Strung]) -> Assembly {
+    let n = strung.iter().map(|wire| wire.chain.points.len()).sum::<usize>() + spec.spheres.len();
     let mut assembly = Assembly {
         layers,
         wires: Vec::with_capacity(strung.len()),
         wire_particles: 0,
-        position: Vectors::default(),
-        velocity: Vectors::default(),
-        spin: Vectors::default(),
-        radius: Vec::new(),
-        mass: Vec::new(),
-        inertia: Vec::new(),
-        rest_length: Vec::new(),
-        wire_of: Vec::new(),
+        position: Vectors::with_capacity(n),
+        velocity: Vectors::with_capacity(n),
+        spin: Vectors::with_capacity(n),
+        radius: Vec::with_capacity(n),
+        mass: Vec::with_capacity(n),
+        inertia: Vec::with_capacity(n),
+        rest_length: Vec::with_capacity(n),
+        wire_of: Vec::with_capacity(n),
         length: 0.0,
         area: 0.0,
     };

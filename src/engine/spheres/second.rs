@@ -2,6 +2,7 @@
 
 use super::Block;
 use crate::base::lanes::{BLOCK, Lanes, Real};
+use crate::engine::bytes::behind;
 use pulp::Simd;
 
 /// Where the second sides of blocks lie among blocks of particles: a block of contacts begins anywhere in j, so it
@@ -22,6 +23,11 @@ struct Entry {
 }
 
 impl Places {
+    /// Memory behind it [bytes].
+    pub fn bytes(&self) -> usize {
+        behind(&self.start) + behind(&self.entries)
+    }
+
     /// Finds the entries of `n` particles, those of each in the order of blocks.
     pub fn index(&mut self, blocks: &[Block], n: usize) {
         let count = n.div_ceil(BLOCK);
@@ -81,15 +87,10 @@ impl SecondSides<'_> {
             // The actions begin with a block to spare.
             let row = (1 + *block as usize * rows) * BLOCK + lane;
             let from = row.wrapping_add_signed(*shift as isize);
-            for k in 0..3 {
+            for (k, sum) in sum.iter_mut().take(rows).enumerate() {
                 let part = Lanes::load(simd, self.actions, from + k * BLOCK);
-                sum[k] -= Lanes::choose(within, part, place.like(0.0));
-            }
-            if self.turn {
-                for k in 3..6 {
-                    let part = Lanes::load(simd, self.actions, from + k * BLOCK);
-                    sum[k] += Lanes::choose(within, part, place.like(0.0));
-                }
+                let part = Lanes::choose(within, part, place.like(0.0));
+                *sum += if k < 3 { -part } else { part };
             }
         }
     }
