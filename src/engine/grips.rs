@@ -241,21 +241,21 @@ impl Holds {
             }
         }
         self.groups = groups;
-        if self.acceleration() != 0.0 {
+        if self.change() != 0.0 {
             self.hurry(state, kicked);
         }
         self.stretch.displacement += rise;
     }
 
-    /// Acceleration of an adaptive pull [m/s²].
-    fn acceleration(&self) -> f64 {
-        self.pace.as_ref().map_or(0.0, |pace| pace.acceleration)
+    /// Change of speed of an adaptive pull in this step [m/s].
+    fn change(&self) -> f64 {
+        self.pace.as_ref().map_or(0.0, |pace| pace.change)
     }
 
     /// Speeds up or slows down the affine field of an adaptive pull. Held particles are left alone: their grip has moved
     /// them.
     fn hurry(&mut self, state: &mut State, kicked: f64) {
-        let change = self.acceleration() * kicked;
+        let change = self.change();
         for p in (0..state.len()).filter(|p| state.fixed[*p] == 0) {
             let push = self.share(state.x.z[p]) * change;
             let kick = state.force.z[p] * kicked / state.mass[p];
@@ -299,7 +299,7 @@ impl Holds {
         // The chord of the exact rotation, so that particles stay on their circle.
         let chord = (DMat2::from_angle(spin * dt) - DMat2::IDENTITY) * (1.0 / dt);
         // What it takes to speed up the held particles themselves loads the drive, not the body.
-        let acceleration = if group.driven { self.acceleration() } else { 0.0 };
+        let acceleration = if group.driven { self.change() / kicked } else { 0.0 };
         let mut sum = DVec3::ZERO;
         let mut torque = 0.0;
         for p in &group.particles {

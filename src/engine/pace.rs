@@ -86,26 +86,33 @@ impl Rule {
 pub struct Pace {
     /// Speed now [m/s].
     pub speed: f64,
-    /// Change of speed per time until the next look [m/s²].
-    pub acceleration: f64,
+    /// Its change in the last step [m/s].
+    pub change: f64,
+    /// Speed that it heads for [m/s].
+    target: f64,
+    /// How fast it does [m/s²].
+    acceleration: f64,
     rule: Rule,
 }
 
 impl Pace {
     /// At its slow speed.
     pub fn new(rule: Rule) -> Self {
-        Self { speed: rule.slow, acceleration: 0.0, rule }
+        Self { speed: rule.slow, change: 0.0, target: rule.slow, acceleration: 0.0, rule }
     }
 
     /// Goes on by `time` [s].
     pub fn advance(&mut self, time: f64) {
-        self.speed += self.acceleration * time;
+        let (left, most) = (self.target - self.speed, self.acceleration * time);
+        self.change = left.clamp(-most, most);
+        // It stops at its target to the bit, so that a steady pull has nothing to change.
+        self.speed = if left.abs() <= most { self.target } else { self.speed + self.change };
     }
 
-    /// Heads for the speed that is right now, to be reached by the next look in `interval` [s].
+    /// Heads for the speed that is right now, to be reached by the next look in `interval` [s] if it can be.
     fn look(&mut self, ahead: Ahead, interval: f64) {
-        let wanted = (self.rule.speed(ahead) - self.speed) / interval;
-        self.acceleration = wanted.clamp(-self.rule.acceleration, self.rule.acceleration);
+        self.target = self.rule.speed(ahead);
+        self.acceleration = ((self.target - self.speed).abs() / interval).min(self.rule.acceleration);
     }
 }
 
@@ -208,8 +215,9 @@ mod tests {
             assert!(pace.speed >= before && pace.speed - before <= 1e5 * interval * (1.0 + 1e-9));
             before = pace.speed;
         }
-        assert!((pace.speed - 20.0).abs() < 1e-9, "{}", pace.speed);
+        assert_eq!(pace.speed, 20.0);
         pace.look(Ahead { left: 0.0, ..fast }, interval);
-        assert_eq!(pace.acceleration, -1e5);
+        pace.advance(interval);
+        assert!((pace.change + 1e5 * interval).abs() < 1e-12, "{}", pace.change);
     }
 }
