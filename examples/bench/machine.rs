@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
-use strandsnap::base::lanes::{Lanes, Real};
+use strandsnap::base::lanes::{BLOCK, Lanes, Real};
 use strandsnap::run::cost::cpu_time;
 
 /// Memory of the far triad [bytes]: more than caches hold.
@@ -15,7 +15,7 @@ const FAR: usize = 768 << 20;
 /// A rate is the best of as many goes as this time has room for.
 const TIME: Duration = Duration::from_millis(60);
 /// Independent chains, enough to hide the latency of any operation.
-const CHAINS: usize = 10;
+const CHAINS: usize = 8;
 /// Operations per chain and go.
 const ROUNDS: usize = 20_000;
 
@@ -26,7 +26,7 @@ pub struct Machine {
     pub far: f64,
     /// The same over as much memory as the engine works on [bytes/s].
     pub near: f64,
-    /// Additions and multiplications, unfused, in the widest registers [1/s].
+    /// Additions, multiplications, or both in one, in the widest registers [1/s].
     pub simple: f64,
     /// Divisions [1/s].
     pub divisions: f64,
@@ -111,8 +111,7 @@ fn arithmetic(threads: usize, kind: Kind) -> f64 {
             });
         });
     });
-    let each = if matches!(kind, Kind::MultiplyAdd) { 2 } else { 1 };
-    (threads * CHAINS * ROUNDS * lanes * each) as f64 / best
+    (threads * CHAINS * ROUNDS * lanes) as f64 / best
 }
 
 /// Best time of some goes on `threads` threads [s]: on the processor, so that programs beside this one count less; on
@@ -154,7 +153,7 @@ impl WithSimd for Chains {
             Kind::MultiplyAdd => {
                 for _ in 0..self.rounds {
                     for c in &mut chains {
-                        *c = *c * factor + summand;
+                        *c = c.mul_add(factor, summand);
                     }
                 }
             }
@@ -173,7 +172,7 @@ impl WithSimd for Chains {
                 }
             }
         }
-        let mut numbers = [0.0; 8];
+        let mut numbers = [0.0; BLOCK];
         let mut sum = 0.0;
         for chain in chains {
             chain.store(&mut numbers, 0);

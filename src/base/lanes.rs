@@ -35,8 +35,7 @@ pub trait Real:
 
     /// `value`, as many times as there are numbers in `self`.
     fn like(self, value: f64) -> Self;
-    /// `self` × `factor` + `addend`, rounded once. Where the instruction set at hand has no such instruction, a library
-    /// function gives the same bits, slowly.
+    /// `self` × `factor` + `addend`, rounded once: by a library function, slowly, where there is no such instruction.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
@@ -69,8 +68,7 @@ pub trait Real:
 
     /// 1/`self` to 3e-16 relative, for positive normal numbers up to 1e300.
     ///
-    /// Newton's rounds keep two units of the processor busy for half as long as a division does its one, and other work
-    /// fits between them.
+    /// Newton's rounds take less than a division does, and other work fits between them.
     #[inline(always)]
     fn inverse(self) -> Self {
         let (minus, one) = (-self, self.like(1.0));

@@ -285,7 +285,8 @@ impl Holds {
         let effort = arch.dispatch(Straight { runs: &group.runs, state, speed, kicked, axis });
         self.work += effort.work;
         if group.driven {
-            self.reaction.force[1] = effort.force - self.acceleration() * effort.mass;
+            // What it takes to speed up the held particles themselves loads the drive, not the body.
+            self.reaction.force[1] = effort.force - self.change() / kicked * effort.mass;
             self.reaction.torque = effort.torque;
         } else {
             self.reaction.force[0] = -effort.force;

@@ -91,11 +91,11 @@ pub struct State {
     pub force: Vectors,
     /// Torques about the centres [N m].
     pub torque: Vectors,
-    /// Forces from contacts on particles that are the first of their pair, and from capsules on all [N]; empty while
-    /// there is no contact stage.
-    pub contact_force: Vectors,
+    /// Forces from contacts that the contact stage has added up itself [N]: spheres leave the second sides of pairs to
+    /// the gathering of all forces. Empty while there is no contact stage.
+    pub(super) contact_force: Vectors,
     /// The same for torques [N m].
-    pub contact_torque: Vectors,
+    pub(super) contact_torque: Vectors,
     /// What bonds do.
     pub bond: BondActions,
     /// Whether each bond slot holds.
@@ -156,6 +156,12 @@ impl State {
             dt: 0.0,
             travel: 0.0,
         }
+    }
+
+    /// Force of all contacts on particle `p` [N]: the whole force less what the bonds do.
+    pub fn force_from_contacts(&self, p: usize) -> DVec3 {
+        let before = if p > 0 { self.bond.pull(p - 1) } else { DVec3::ZERO };
+        self.force.get(p) - (self.bond.pull(p) - before)
     }
 
     /// What contacts read, and what they write.

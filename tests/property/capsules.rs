@@ -36,7 +36,7 @@ step = "1e-7 s"
 /// Contact force on a wire [N] away from its ends: those are round, and what slides over them is pushed along.
 fn force_on(engine: &Engine, wire: usize) -> DVec3 {
     let particles = engine.assembly().wires[wire].particles();
-    (particles.start + 2..particles.end - 2).map(|p| engine.state().contact_force.get(p)).sum()
+    (particles.start + 2..particles.end - 2).map(|p| engine.state().force_from_contacts(p)).sum()
 }
 
 /// Forces on the sliding wire over two particle spacings.
@@ -114,10 +114,10 @@ step = "2e-7 s"
         });
         let sphere = engine.assembly().len() - 1;
         let (mut size, mut turn, mut most) = (0.0f64, 0.0f64, 0.0f64);
-        let mut last = engine.state().contact_force.get(sphere);
+        let mut last = engine.state().force_from_contacts(sphere);
         for _ in 0..14_000 {
             engine.step().unwrap();
-            let f = engine.state().contact_force.get(sphere);
+            let f = engine.state().force_from_contacts(sphere);
             size = size.max((f.length() - last.length()).abs());
             if f.length() > 0.0 && last.length() > 0.0 {
                 turn = turn.max(f.angle_between(last));
@@ -162,11 +162,11 @@ time = "1 ms"
     let across: f64 = large * small / (large + small);
     let expected = 4.0 / 3.0 * modulus * (large * across).sqrt().sqrt() * 2e-6f64.powf(1.5);
     let sphere = engine.assembly().len() - 1;
-    let force = engine.state().contact_force.get(sphere);
+    let force = engine.state().force_from_contacts(sphere);
     assert!((force.x / expected - 1.0).abs() < 1e-9, "{force} {expected}");
     assert_eq!((force.y, force.z), (0.0, 0.0));
     // Between the particles at 2.0 and 2.4 mm, three quarters to the nearer.
-    let shares: Vec<f64> = (0..sphere).map(|p| -engine.state().contact_force.get(p).x / expected).collect();
+    let shares: Vec<f64> = (0..sphere).map(|p| -engine.state().force_from_contacts(p).x / expected).collect();
     assert!((shares[5] - 0.75).abs() < 1e-9 && (shares[6] - 0.25).abs() < 1e-9, "{shares:?}");
 }
 

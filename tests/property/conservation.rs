@@ -40,7 +40,7 @@ fn momentum_is_conserved_to_rounding() {
         let energy = engine.energy();
         let ruptures = engine.take_ruptures().len();
         println!("{shape}: {ruptures} ruptures, {most} contacts, {energy:?}");
-        assert!(most > 20 && energy.friction > 0.0 && energy.plastic_bonds > 0.0 && ruptures > 1);
+        assert!(most > 10 && energy.friction > 0.0 && energy.plastic_bonds > 0.0 && ruptures > 1);
         // 3000 steps of a few hundred sums with 1e-16 each; errors add up like a random walk, far below 1e-12.
         let linear = (after.0 - before.0).length() / scale;
         let angular = (after.1 - before.1).length() / (scale * reach);

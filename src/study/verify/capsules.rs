@@ -55,7 +55,7 @@ fn drag(lab: &Lab, options: &[String]) -> Result<Drag> {
             return;
         }
         let s = engine.state();
-        drag.last = second.particles().map(|p| s.contact_force.z[p]).sum::<f64>() / load;
+        drag.last = second.particles().map(|p| s.force_from_contacts(p).z).sum::<f64>() / load;
         drag.greatest = drag.greatest.max(drag.last.abs());
         let beside = s.x.z[middle].rem_euclid(spacing);
         if beside < 0.5 * spacing && engine.time() < 4.0 * settled {
@@ -116,7 +116,7 @@ fn sphere_on_wire(lab: &Lab) -> Result<Vec<Finding>> {
         let mut trial = lab.trial_of(spec)?;
         trial.run(|_| {})?;
         let s = trial.engine.state();
-        let force = s.contact_force.x[s.len() - 1];
+        let force = s.force_from_contacts(s.len() - 1).x;
         let spent = trial.finish();
         let what = "force at the geometric mean of the radii of curvature";
         own.push(Finding::new(what, "N", force, pair.force(depth), spent).within(1e-9));
