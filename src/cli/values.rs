@@ -1,6 +1,7 @@
 //! How single arguments are written.
 
 use clap::Args;
+use std::time::Duration;
 
 /// The scene and changes to it: what every command that loads a scene takes.
 #[derive(Debug, Args)]
@@ -45,6 +46,21 @@ pub fn strain_range(text: &str) -> Result<[f64; 2], String> {
     if range[0] <= range[1] { Ok(range) } else { Err(wrong()) }
 }
 
+/// A span of time, written as `90s`, `20m` or `2h`.
+pub fn duration(text: &str) -> Result<Duration, String> {
+    let wrong = || "write a time with its unit, such as 90s, 20m or 2h".to_string();
+    let text = text.trim();
+    let unit = text.chars().last().ok_or_else(wrong)?;
+    let seconds = match unit {
+        's' => 1.0,
+        'm' => 60.0,
+        'h' => 3600.0,
+        _ => return Err(wrong()),
+    };
+    let number: f64 = text[..text.len() - 1].trim().parse().map_err(|_| wrong())?;
+    Duration::try_from_secs_f64(number * seconds).map_err(|_| wrong())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -54,6 +70,16 @@ mod tests {
         assert_eq!(size("1280x720"), Ok([1280, 720]));
         for wrong in ["1280", "0x720", "ax2", "1280x", "-1x5"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn durations() {
+        for (text, seconds) in [("90s", 90), ("20m", 1200), ("0.5 h", 1800)] {
+            assert_eq!(duration(text), Ok(Duration::from_secs(seconds)));
+        }
+        for wrong in ["20", "", "m", "-3s", "1d", "3µ"] {
+            assert!(duration(wrong).is_err(), "{wrong}");
         }
     }
 

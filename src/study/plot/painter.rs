@@ -2,7 +2,7 @@
 
 use super::axis::{Span, can_show};
 use super::draw::FONT;
-use super::{Figure, Limit, Mark, Series};
+use super::{Figure, Legend, Limit, Mark, Series};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -15,6 +15,9 @@ const TITLE: f64 = 17.0;
 const MARKER: f64 = 4.5;
 const LINE: f64 = 1.8;
 const GAP: f64 = 5.0;
+/// Width of a line behind everything, radius of the ring around a point that stands out [px].
+const BROAD: f64 = 7.0;
+const RING: f64 = 9.0;
 /// Height of a line of the legend, and width of its sample of a line [px].
 const ROW: f64 = 19.0;
 const SAMPLE: f64 = 28.0;
@@ -23,6 +26,8 @@ const DASH: [f64; 2] = [7.0, 5.0];
 
 const INK: RGBColor = RGBColor(40, 40, 40);
 const GREY: RGBColor = RGBColor(110, 110, 110);
+/// Of lines behind everything.
+const BAND: RGBColor = RGBColor(205, 205, 205);
 const GRID: RGBColor = RGBColor(218, 218, 218);
 const FINE_GRID: RGBColor = RGBColor(240, 240, 240);
 /// Okabe & Ito's palette, which the colour-blind can tell apart.
@@ -71,9 +76,13 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         self.axes()?;
         self.limits()?;
         self.slopes()?;
-        for (index, series) in self.figure.series.iter().enumerate() {
-            self.series(index, series)?;
+        let behind = |series: &Series| series.mark == Mark::Behind;
+        for at_the_back in [true, false] {
+            for (index, series) in self.figure.series.iter().enumerate().filter(|(_, s)| behind(s) == at_the_back) {
+                self.series(index, series)?;
+            }
         }
+        self.highlights()?;
         self.legend()
     }
 
@@ -92,9 +101,10 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
     fn axes(&mut self) -> Drawn<B> {
         let f = self.figure;
         let title = (FONT, TITLE * self.scale).into_font().style(FontStyle::Bold).color(&INK);
+        let beside = if f.legend == Legend::Beside { self.legend_size(&self.entries()).0 } else { 0 };
         let mut chart = ChartBuilder::on(self.area)
             .margin(self.px(10.0))
-            .margin_right(self.px(18.0))
+            .margin_right(self.px(18.0) + beside)
             .caption(&f.title, title)
             .x_label_area_size(self.px(48.0))
             .y_label_area_size(self.px(72.0))
@@ -175,6 +185,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         match series.mark {
             Mark::Line | Mark::LineAndPoints => self.line(points.clone(), style, None)?,
             Mark::Dashed => self.line(points.clone(), style, Some(DASH))?,
+            Mark::Behind => self.line(points.clone(), self.stroke(BAND, BROAD), None)?,
             Mark::Points => {}
         }
         if has_markers(series.mark) {
@@ -221,17 +232,43 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         series.chain(slopes).filter(|entry| !entry.name.is_empty()).collect()
     }
 
+    /// A ring around each point that stands out, and its name at the side where there is more room.
+    fn highlights(&self) -> Drawn<B> {
+        let ring = self.px(RING);
+        for highlight in self.figure.highlights.iter().filter(|h| self.x.shows(h.at[0]) && self.y.shows(h.at[1])) {
+            let at = self.at(highlight.at);
+            self.area.draw(&Circle::new(at, ring, self.stroke(INK, 2.0)))?;
+            let rightwards = self.x.share(highlight.at[0]) < 0.5;
+            let (side, along) = if rightwards { (HPos::Left, ring) } else { (HPos::Right, -ring) };
+            // Above the point unless that is outside of the frame.
+            let above = self.y.share(highlight.at[1]) < 0.85;
+            let (edge, up) = if above { (VPos::Bottom, -ring / 2) } else { (VPos::Top, ring / 2) };
+            let bold = (FONT, TEXT * self.scale).into_font().style(FontStyle::Bold).color(&INK);
+            let style = TextStyle::from(bold).pos(Pos::new(side, edge));
+            self.area.draw(&Text::new(highlight.name.as_str(), (at.0 + along, at.1 + up), style))?;
+        }
+        Ok(())
+    }
+
+    fn legend_size(&self, entries: &[Entry]) -> (i32, i32) {
+        let font = (FONT, TEXT * self.scale).into_font();
+        let width = |e: &Entry| font.box_size(e.name).map_or(0, |(width, _)| width as i32);
+        let widest = entries.iter().map(width).max().unwrap_or(0);
+        let (gap, row, sample) = (self.px(GAP), self.px(ROW), self.px(SAMPLE));
+        (widest + sample + 3 * gap, row * entries.len() as i32 + gap)
+    }
+
     fn legend(&self) -> Drawn<B> {
         let entries = self.entries();
         if entries.is_empty() {
             return Ok(());
         }
-        let font = (FONT, TEXT * self.scale).into_font();
-        let width = |e: &Entry| font.box_size(e.name).map_or(0, |(width, _)| width as i32);
-        let widest = entries.iter().map(width).max().unwrap_or(0);
         let (gap, row, sample) = (self.px(GAP), self.px(ROW), self.px(SAMPLE));
-        let size = (widest + sample + 3 * gap, row * entries.len() as i32 + gap);
-        let (left, top) = self.emptiest_corner(size);
+        let size = self.legend_size(&entries);
+        let (left, top) = match self.figure.legend {
+            Legend::Inside => self.emptiest_corner(size),
+            Legend::Beside => (self.frame[2] + gap, self.frame[1]),
+        };
         let back = Rectangle::new([(left, top), (left + size.0, top + size.1)], WHITE.mix(0.85).filled());
         self.area.draw(&back)?;
         for (k, entry) in entries.iter().enumerate() {
@@ -241,6 +278,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
                 Mark::Line | Mark::LineAndPoints => self.line(ends, self.stroke(entry.colour, LINE), None)?,
                 Mark::Dashed if entry.colour == GREY => self.line(ends, self.stroke(GREY, 1.4), Some(SHORT_DASH))?,
                 Mark::Dashed => self.line(ends, self.stroke(entry.colour, LINE), Some(DASH))?,
+                Mark::Behind => self.line(ends, self.stroke(BAND, BROAD), None)?,
                 Mark::Points => {}
             }
             if has_markers(entry.mark) {
