@@ -4,13 +4,16 @@ use super::Ended;
 use super::interrupt;
 use super::say::{self, say};
 use super::values::{SceneArgs, duration};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
+use crate::scene::quality::Quality;
 use crate::study::accuracy::work::Progress;
-use crate::study::accuracy::{self, Options, Study, Subject, knobs, table};
+use crate::study::accuracy::{self, Options, Study, Subject, knobs, table, verified};
+use crate::study::verify::Case;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+const STOPPING: &str = "\nstopping; finished runs are kept, and the same command goes on with them.";
 /// Parts of the progress bar.
 const PARTS: u64 = 1000;
 
@@ -39,15 +42,63 @@ pub struct Args {
     /// Make the runs again that are kept
     #[arg(long)]
     fresh: bool,
+    /// Fewer levels of a verification case
+    #[arg(long)]
+    quick: bool,
     /// List the knobs with the values that this scene would get, and run nothing
     #[arg(long)]
     list: bool,
 }
 
 pub fn accuracy(args: &Args) -> Result<Ended> {
+    let cases = verified::select(&args.scene.scene);
+    if cases.is_empty() { of_pulled_scene(args) } else { of_cases(args, &cases) }
+}
+
+/// Of verification cases, which vary what they vary.
+fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
+    let name = args.scene.scene.replace('/', "-");
+    let given = [
+        ("--quality", args.scene.quality != Quality::Standard),
+        ("--set", !args.scene.set.is_empty()),
+        ("--seed", args.scene.seed.is_some()),
+        ("--seeds", !args.seeds.is_empty()),
+        ("--vary", !args.vary.is_empty()),
+        ("--budget", args.budget.is_some()),
+    ];
+    if let Some((option, _)) = given.iter().find(|(_, given)| *given) {
+        let names: Vec<&str> = cases.iter().map(|case| case.name).collect();
+        return Err(Error::input(
+            format!("{} means the verification cases {}, which take no {option}", args.scene.scene, names.join(", ")),
+            "leave it out, or study a scene that a grip pulls",
+        ));
+    }
+    if args.list {
+        cases.iter().for_each(|case| say!("{:24}{}", case.name, case.about));
+        return Ok(Ended::Well);
+    }
+    let out = args.out.clone().unwrap_or_else(|| Path::new("out").join("accuracy").join(&name));
+    let stop = interrupt::install_saying(STOPPING)?;
+    let bar = super::cases::bar("accuracy", cases.len());
+    let began = |case: &str| {
+        bar.set_message(case.to_string());
+        bar.inc(1);
+    };
+    let found = verified::study(&name, cases, args.quick, &out, args.fresh, stop, &began);
+    bar.finish_and_clear();
+    let found = found?;
+    let files = found.write(&command(), &out)?;
+    say::print(format_args!("{}", found.table().to_text()));
+    say::print(format_args!("\n{}", found.summary()));
+    say!("{} cases run, {} kept from before. Written:", found.made, found.kept);
+    files.iter().for_each(|file| say!("  {}", file.display()));
+    Ok(if found.interrupted { Ended::Interrupted } else { Ended::Well })
+}
+
+fn of_pulled_scene(args: &Args) -> Result<Ended> {
     let mut options = Options {
         scene: args.scene.scene.clone(),
-        overrides: args.scene.overrides(),
+        overrides: args.scene.overrides()?,
         seeds: args.seeds.clone(),
         vary: knobs::select(&args.vary)?,
         budget: args.budget.map(|budget| budget.as_secs_f64()),
@@ -109,7 +160,11 @@ fn print(study: &Study, files: &[PathBuf]) {
     }
     let left_out = table::left_out(study);
     if !left_out.is_empty() {
-        say!("The budget had no room for: {}.", left_out.join("; "));
+        say!("The budget had no room for:");
+        left_out.iter().for_each(|line| say!("  {line}"));
+    }
+    if let Some(caution) = table::caution(study) {
+        say!("{caution}");
     }
     if study.interrupted {
         say!("Interrupted: the same command goes on with what is missing.");

@@ -77,15 +77,16 @@ fn curve(stress: impl Fn(f64) -> f64, young: f64, last: f64, volume: f64) -> Cur
     for i in 0..ELASTIC_POINTS {
         push(tension_point(0.0, stress(0.0) * i as f64 / ELASTIC_POINTS as f64, young), 0.0);
     }
-    let (mut work, mut before) = (0.0, stress(0.0));
+    // What force times path leaves in plastic strain: s de with e = e^ε − 1 and s = σ e^(−p) is σ e^(σ/E) dε.
+    let density = |p: f64| stress(p) * (stress(p) / young).exp();
+    let step = last / PLASTIC_POINTS as f64;
+    let mut work = 0.0;
     for i in 0..=PLASTIC_POINTS {
-        let p = last * i as f64 / PLASTIC_POINTS as f64;
-        let now = stress(p);
+        let p = step * i as f64;
         if i > 0 {
-            work += 0.5 * (before + now) * last / PLASTIC_POINTS as f64 * volume;
+            work += 0.5 * (density(p - step) + density(p)) * step * volume;
         }
-        before = now;
-        push(tension_point(p, now, young), work);
+        push(tension_point(p, stress(p), young), work);
     }
     curve
 }
@@ -175,8 +176,9 @@ mod tests {
         assert!((truth.curve.end() - strain).abs() < 1e-12);
         let integral = (100.0 + 177.9) * p - 177.9 / 12.0 * (1.0 - (-12.0 * p).exp()) + 0.5 * 543.6 * p * p;
         let volume = std::f64::consts::PI * 0.195e-3_f64.powi(2) * 0.1;
-        let work = truth.curve.plastic_work_j.last().unwrap();
-        assert!((work / (integral * 1e6 * volume) - 1.0).abs() < 5e-3, "{work}");
+        let work = truth.curve.plastic_work_j.last().unwrap() / (integral * 1e6 * volume);
+        // Elastic stretch lengthens the path by σ/E, 0.2 to 0.4 %; the free length may be half a bond off the gauge.
+        assert!((work - 1.003).abs() < 4e-3, "{work}");
     }
 
     #[test]

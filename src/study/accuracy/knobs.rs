@@ -332,7 +332,7 @@ fn recording(spec: &Spec) -> Ladders {
     };
     let written = |snapshots: usize| {
         let mut level = word("output.snapshots", &snapshots.to_string(), 1.1);
-        level.value.shown = format!("{rows} rows, {snapshots} snapshots written");
+        level.value.shown = format!("{snapshots} snapshots written");
         level.writes = true;
         level
     };

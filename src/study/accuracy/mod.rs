@@ -19,6 +19,7 @@ pub mod richardson;
 pub mod rows;
 pub mod stat;
 pub mod table;
+pub mod verified;
 pub mod work;
 
 use crate::base::error::{Error, Result};

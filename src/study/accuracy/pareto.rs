@@ -14,9 +14,30 @@ pub fn front(points: &[[f64; 2]]) -> Vec<usize> {
     order
 }
 
+/// The front as a staircase: below and left of it nothing was found. It begins at the greatest error and ends at the
+/// greatest cost among the points.
+pub fn staircase(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let corners: Vec<[f64; 2]> = front(points).into_iter().map(|i| points[i]).collect();
+    let greatest = |k: usize| points.iter().map(|p| p[k]).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let (Some(first), Some(last)) = (corners.first(), corners.last()) else { return Vec::new() };
+    let mut stairs = vec![[first[0], greatest(1)]];
+    for pair in corners.windows(2) {
+        stairs.extend([pair[0], [pair[1][0], pair[0][1]]]);
+    }
+    stairs.extend([*last, [greatest(0), last[1]]]);
+    stairs
+}
+
 #[cfg(test)]
 mod tests {
-    use super::front;
+    use super::*;
+
+    #[test]
+    fn stairs_run_from_the_greatest_error_to_the_greatest_cost() {
+        let points = [[1.0, 4.0], [2.0, 2.0], [3.0, 5.0], [5.0, 3.0]];
+        assert_eq!(staircase(&points), [[1.0, 5.0], [1.0, 4.0], [2.0, 4.0], [2.0, 2.0], [5.0, 2.0]]);
+        assert!(staircase(&[]).is_empty());
+    }
 
     #[test]
     fn the_front_is_what_nothing_beats() {

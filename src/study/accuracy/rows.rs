@@ -27,6 +27,8 @@ pub struct Turn {
     pub role: Role,
     /// The scene's own value.
     pub default: String,
+    /// The same as a number.
+    pub default_number: Option<f64>,
     /// This row's as a number.
     pub number: Option<f64>,
 }
@@ -76,6 +78,11 @@ impl Row {
             Outcome::Ran { measured, errors } => Some((&**measured, errors.as_ref())),
             _ => None,
         })
+    }
+
+    /// Whether it has nothing to show but that it was not run.
+    pub fn is_missing(&self) -> bool {
+        self.runs.iter().all(|run| matches!(run.outcome, Outcome::LeftOut(_) | Outcome::NotReached))
     }
 
     /// Whether its differences are those of another model, no errors.
@@ -154,6 +161,7 @@ pub fn empty(turned: &[Turned], place: Option<[usize; 2]>) -> Row {
         key: knob.key,
         role: ladder.role,
         default: ladder.base.shown.clone(),
+        default_number: ladder.base.number,
         number: value.number,
     };
     Row { knob: Some(turn), value: value.shown.clone(), runs: Vec::new() }

@@ -66,7 +66,7 @@ pub fn histories_and_checks(study: &Study) -> Table {
         "plastic work [%]",
         "worst layer [%]",
         "first break",
-        "order of breaks τ [-]",
+        "break order τ [-]",
         "energy residual [%]",
         "kinetic/internal [-]",
         "grip mismatch [%]",
@@ -88,7 +88,9 @@ pub fn histories_and_checks(study: &Study) -> Table {
 
 fn table(title: &str, heads: &[&str], study: &Study, cells: impl Fn(&Row) -> Vec<String>) -> Table {
     let mut last = None;
-    let rows = study.rows.iter().map(|row| {
+    // What was not run is told below the tables.
+    let shown = || study.rows.iter().filter(|row| !row.is_missing());
+    let rows = shown().map(|row| {
         let (knob, value) = match &row.knob {
             None => ("the scene as it stands".into(), String::new()),
             Some(knob) if last == Some(knob.name) => (String::new(), row.value.clone()),
@@ -97,7 +99,7 @@ fn table(title: &str, heads: &[&str], study: &Study, cells: impl Fn(&Row) -> Vec
         last = row.knob.as_ref().map(|knob| knob.name);
         [knob, value].into_iter().chain(cells(row)).collect()
     });
-    let default = study.rows.iter().position(|row| row.knob.is_none());
+    let default = shown().position(|row| row.knob.is_none());
     Table {
         title: title.into(),
         heads: heads.iter().map(|head| head.to_string()).collect(),
@@ -156,8 +158,15 @@ fn first_break(row: &Row) -> String {
 impl Table {
     /// Text to the left, numbers to the right, a note at the end.
     pub fn to_text(&self) -> String {
+        // Units stand below what they belong to, which keeps columns narrow.
+        let split = |head: &String| match head.split_once(" [") {
+            Some((what, unit)) => [what.to_string(), format!("[{unit}")],
+            None => [head.clone(), String::new()],
+        };
+        let heads: Vec<[String; 2]> = self.heads.iter().map(split).collect();
+        let [whats, units] = [0, 1].map(|k| heads.iter().map(|head| head[k].clone()).collect::<Vec<_>>());
         let width = |k: usize| {
-            let cells = self.rows.iter().map(|row| &row[k]).chain([&self.heads[k]]);
+            let cells = self.rows.iter().map(|row| &row[k]).chain(&heads[k]);
             cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
         };
         let widths: Vec<usize> = (0..self.heads.len()).map(width).collect();
@@ -170,7 +179,7 @@ impl Table {
         };
         let rule = "-".repeat(widths.iter().sum::<usize>() + 2 * (widths.len() - 1));
         let rows: String = self.rows.iter().map(|row| line(row)).collect();
-        format!("{}\n{}{rule}\n{rows}", self.title, line(&self.heads))
+        format!("{}\n{}{}{rule}\n{rows}", self.title, line(&whats), line(&units))
     }
 }
 
@@ -241,6 +250,9 @@ fn along(all: &[(u64, Along)]) -> Vec<String> {
         let quantity = |name: &str, k: usize| {
             let correction = signed(stat(&|along| along.correction_percent[k]));
             let sure = mean(stat(&|along| along.uncertainty_percent[k]), 3);
+            if correction == "0.000" && sure == "0.000" {
+                return format!("{name} unchanged");
+            }
             format!("{name} {correction} % (uncertain by {sure} %, {})", orders(k))
         };
         format!("towards the limit in {knob}: {}, {}", quantity("strength", 0), quantity("elongation", 1))
@@ -248,19 +260,46 @@ fn along(all: &[(u64, Along)]) -> Vec<String> {
     knobs.iter().map(line).collect()
 }
 
-/// What the budget had no room for, with what it would have taken.
+/// What was not run because the budget had no room for it, knob by knob, with what it would have taken.
 pub fn left_out(study: &Study) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut by_knob: Vec<(&str, Vec<String>, f64)> = Vec::new();
     for row in &study.rows {
+        let knob = row.knob.as_ref().map_or("", |knob| knob.name);
         for run in &row.runs {
             let Outcome::LeftOut(seconds) = run.outcome else { continue };
-            let knob = row.knob.as_ref().map_or("", |knob| knob.name);
-            let seed = if study.seeds.len() > 1 { format!(", seed {}", run.seed) } else { String::new() };
-            lines.push(format!("{knob} {}{seed} (about {seconds:.0} s)", row.value));
+            let seed = if study.seeds.len() > 1 { format!(" (seed {})", run.seed) } else { String::new() };
+            let value = format!("{}{seed}", row.value);
+            match by_knob.last_mut().filter(|(last, ..)| *last == knob) {
+                Some((_, values, sum)) => {
+                    values.push(value);
+                    *sum += seconds;
+                }
+                None => by_knob.push((knob, vec![value], seconds)),
+            }
         }
     }
-    lines
+    let line =
+        |(knob, values, sum): (&str, Vec<String>, f64)| format!("{knob}: {} (about {sum:.0} s)", values.join(" | "));
+    by_knob.into_iter().map(line).collect()
 }
+
+/// What must be known of the run times; `None` when there is nothing.
+pub fn caution(study: &Study) -> Option<String> {
+    let starved = |run: &Measured| study.threads == 1 && run.cpu_s.is_some_and(|cpu| cpu < LEAST_SHARE * run.wall_s);
+    let runs = || study.rows.iter().flat_map(|row| row.ran().map(|(run, _)| run));
+    let count = runs().filter(|run| starved(run)).count();
+    (count > 0).then(|| {
+        format!(
+            "The machine was busy: {count} of {} runs got less than {:.0} % of a core, so their run times say little; \
+             the plot shows processor time.",
+            runs().count(),
+            100.0 * LEAST_SHARE
+        )
+    })
+}
+
+/// Processor time over run time on one thread below which the machine was busy with something else [-].
+const LEAST_SHARE: f64 = 0.9;
 
 impl Study {
     /// Names of the layers, inside out.

@@ -232,22 +232,46 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         series.chain(slopes).filter(|entry| !entry.name.is_empty()).collect()
     }
 
-    /// A ring around each point that stands out, and its name at the side where there is more room.
+    /// A ring around each point that stands out, and its name where it hides least.
     fn highlights(&self) -> Drawn<B> {
         let ring = self.px(RING);
         for highlight in self.figure.highlights.iter().filter(|h| self.x.shows(h.at[0]) && self.y.shows(h.at[1])) {
             let at = self.at(highlight.at);
             self.area.draw(&Circle::new(at, ring, self.stroke(INK, 2.0)))?;
-            let rightwards = self.x.share(highlight.at[0]) < 0.5;
-            let (side, along) = if rightwards { (HPos::Left, ring) } else { (HPos::Right, -ring) };
-            // Above the point unless that is outside of the frame.
-            let above = self.y.share(highlight.at[1]) < 0.85;
-            let (edge, up) = if above { (VPos::Bottom, -ring / 2) } else { (VPos::Top, ring / 2) };
-            let bold = (FONT, TEXT * self.scale).into_font().style(FontStyle::Bold).color(&INK);
-            let style = TextStyle::from(bold).pos(Pos::new(side, edge));
-            self.area.draw(&Text::new(highlight.name.as_str(), (at.0 + along, at.1 + up), style))?;
+            let font = (FONT, TEXT * self.scale).into_font().style(FontStyle::Bold);
+            let (width, height) = font.box_size(&highlight.name).unwrap_or((0, 0));
+            let size = (width as i32, height as i32);
+            let (left, top) = self.place_beside(at, size);
+            // A line from the ring to the nearest edge of the text.
+            let to = (at.0.clamp(left, left + size.0), at.1.clamp(top, top + size.1));
+            let [dx, dy] = [to.0 - at.0, to.1 - at.1].map(f64::from);
+            let share = f64::from(ring) / dx.hypot(dy).max(1.0);
+            let from = (at.0 + (share * dx).round() as i32, at.1 + (share * dy).round() as i32);
+            self.line(vec![from, to], self.stroke(INK, 1.0), None)?;
+            self.area.draw(&Text::new(highlight.name.as_str(), (left, top), font.color(&INK)))?;
         }
         Ok(())
+    }
+
+    /// Upper left of a text of this size near `at`, within the frame, where it hides the fewest points.
+    fn place_beside(&self, at: Pixel, size: (i32, i32)) -> Pixel {
+        let [left, top, right, bottom] = self.frame;
+        let near = [2.0, 3.5, 5.0, 8.0].map(|rings| self.px(rings * RING));
+        let xs = |gap: i32| [at.0 + gap, at.0 - gap - size.0, at.0 - size.0 / 2];
+        let ys = |gap: i32| [at.1 - gap - size.1, at.1 + gap];
+        let places = near.iter().flat_map(|gap| ys(*gap).into_iter().flat_map(|y| xs(*gap).map(|x| (x, y))));
+        let inside = |(x, y): &Pixel| left <= *x && x + size.0 <= right && top <= *y && y + size.1 <= bottom;
+        places.filter(inside).min_by_key(|place| self.hidden(*place, size)).unwrap_or((at.0, at.1 - size.1))
+    }
+
+    /// Points that a box with this upper left and size hides, those included that its edge cuts.
+    fn hidden(&self, place: Pixel, size: (i32, i32)) -> usize {
+        let edge = self.px(MARKER);
+        let inside = |p: Pixel| {
+            (place.0 - edge..place.0 + size.0 + edge).contains(&p.0)
+                && (place.1 - edge..place.1 + size.1 + edge).contains(&p.1)
+        };
+        self.figure.series.iter().flat_map(|s| self.shown(s)).filter(|(_, p)| inside(self.at(*p))).count()
     }
 
     fn legend_size(&self, entries: &[Entry]) -> (i32, i32) {
@@ -296,13 +320,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         let gap = 2 * self.px(GAP);
         let (xs, ys) = ([right - gap - size.0, left + gap], [top + gap, bottom - gap - size.1]);
         let corners = ys.iter().flat_map(|y| xs.iter().map(move |x| (*x, *y)));
-        let hidden = |corner: &Pixel| {
-            let inside =
-                |p: Pixel| (corner.0..corner.0 + size.0).contains(&p.0) && (corner.1..corner.1 + size.1).contains(&p.1);
-            let all = self.figure.series.iter().flat_map(|s| self.shown(s));
-            all.filter(|(_, p)| inside(self.at(*p))).count()
-        };
-        corners.min_by_key(hidden).expect("a frame has corners")
+        corners.min_by_key(|corner| self.hidden(*corner, size)).expect("a frame has corners")
     }
 }
 
