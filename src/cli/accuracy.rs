@@ -5,12 +5,13 @@ use super::interrupt;
 use super::say::{self, say};
 use super::values::{SceneArgs, duration};
 use crate::base::error::{Error, Result};
+use crate::run::folder;
 use crate::scene::quality::Quality;
 use crate::study::accuracy::work::Progress;
 use crate::study::accuracy::{self, Options, Study, Subject, knobs, table, verified};
 use crate::study::verify::Case;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 const STOPPING: &str = "\nstopping; finished runs are kept, and the same command goes on with them.";
@@ -77,7 +78,7 @@ fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
         cases.iter().for_each(|case| say!("{:24}{}", case.name, case.about));
         return Ok(Ended::Well);
     }
-    let out = args.out.clone().unwrap_or_else(|| Path::new("out").join("accuracy").join(&name));
+    let out = args.out.clone().unwrap_or_else(|| folder::accuracy(&name));
     let stop = interrupt::install_saying(STOPPING)?;
     let bar = super::cases::bar("accuracy", cases.len());
     let began = |case: &str| {
@@ -112,8 +113,7 @@ fn of_pulled_scene(args: &Args) -> Result<Ended> {
         say::print(format_args!("{}", table::list(&subject)));
         return Ok(Ended::Well);
     }
-    let default = || Path::new("out").join("accuracy").join(&subject.scene.spec.name);
-    options.out = args.out.clone().unwrap_or_else(default);
+    options.out = args.out.clone().unwrap_or_else(|| folder::accuracy(&subject.scene.spec.name));
     subject.notes.iter().for_each(|note| eprintln!("note: {note}"));
     let stop =
         interrupt::install_saying("\nstopping; finished runs are kept, and the same command goes on with them.")?;

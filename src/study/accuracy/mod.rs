@@ -23,6 +23,7 @@ pub mod verified;
 pub mod work;
 
 use crate::base::error::{Error, Result};
+use crate::run::folder::ACCURACY_STUDY;
 use crate::scene::plan::Plan;
 use crate::scene::spec::{DriveSpec, Spec};
 use crate::scene::{self, Scene};
@@ -216,7 +217,7 @@ pub fn study(
 /// # Errors
 /// When the folder cannot be written.
 pub fn write(study: &Study, command: &str, folder: &Path) -> Result<Vec<PathBuf>> {
-    let (csv, json) = (folder.join("accuracy.csv"), folder.join("accuracy.json"));
+    let (csv, json) = (folder.join("accuracy.csv"), folder.join(ACCURACY_STUDY));
     csv::write(study, &csv)?;
     json::write(study, command, &json)?;
     let plots = plots::write(study, folder)?;

@@ -70,8 +70,11 @@ pub enum Became {
 struct Shared {
     next: usize,
     became: Vec<Became>,
-    /// Wall time of the scene as it stands [s], summed, and runs of it.
-    base: (f64, usize),
+    /// Wall time [s] and work of the runs that estimates go by: those made now, and before there are any, the kept ones
+    /// of the scene as it stands.
+    pace: (f64, f64),
+    /// Runs made now.
+    made: usize,
     finished: usize,
     /// Work of what is over, and of everything that is or will be made.
     done: f64,
@@ -80,8 +83,25 @@ struct Shared {
 }
 
 impl Shared {
-    fn base_wall(&self) -> Option<f64> {
-        (self.base.1 > 0).then(|| self.base.0 / self.base.1 as f64)
+    /// Wall time of a run like that of the scene as it stands [s].
+    fn wall_per_work(&self) -> Option<f64> {
+        (self.pace.1 > 0.0).then(|| self.pace.0 / self.pace.1)
+    }
+}
+
+impl Shared {
+    /// Takes a run into the estimates. A busy machine shows in what is made now, so that counts more than what is kept.
+    fn pace(&mut self, wall_s: f64, item: &Item, kept: bool) {
+        if kept && (self.made > 0 || item.place.is_some()) {
+            return;
+        }
+        if !kept {
+            if self.made == 0 {
+                self.pace = (0.0, 0.0);
+            }
+            self.made += 1;
+        }
+        self.pace = (self.pace.0 + wall_s, self.pace.1 + item.work);
     }
 }
 
@@ -95,7 +115,8 @@ impl Workshop<'_> {
         let shared = Mutex::new(Shared {
             next: 0,
             became: vec![Became::NotReached; items.len()],
-            base: (0.0, 0),
+            pace: (0.0, 0.0),
+            made: 0,
             finished: 0,
             done: 0.0,
             all,
@@ -127,7 +148,7 @@ impl Workshop<'_> {
                 now.next - 1
             };
             self.say(&items[index].name, items.len(), &lock());
-            let estimate = lock().base_wall().map(|wall| wall * items[index].work);
+            let estimate = lock().wall_per_work().map(|wall| wall * items[index].work);
             let made = self.one(&items[index], estimate);
             let mut now = lock();
             match made {
@@ -143,8 +164,8 @@ impl Workshop<'_> {
         match &became {
             Became::Done { record, kept } => {
                 now.finished += 1;
-                if let (None, Found::Ran(measured)) = (item.place, &record.found) {
-                    now.base = (now.base.0 + measured.wall_s, now.base.1 + 1);
+                if let Found::Ran(measured) = &record.found {
+                    now.pace(measured.wall_s, item, *kept);
                 }
                 // Kept runs say nothing of the time that is left.
                 if *kept { now.all -= item.work } else { now.done += item.work }
@@ -155,7 +176,7 @@ impl Workshop<'_> {
     }
 
     fn say(&self, name: &str, of: usize, now: &Shared) {
-        let wall = now.base_wall();
+        let wall = now.wall_per_work();
         let share = if now.all > 0.0 { now.done / now.all } else { 1.0 };
         let work = (now.all - now.done).max(0.0) / self.jobs as f64;
         let within = |left: f64| match self.budget {

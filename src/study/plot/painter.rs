@@ -15,8 +15,9 @@ const TITLE: f64 = 17.0;
 const MARKER: f64 = 4.5;
 const LINE: f64 = 1.8;
 const GAP: f64 = 5.0;
-/// Width of a line behind everything, radius of the ring around a point that stands out [px].
+/// Widths of a line behind everything and of an error bar, radius of the ring around a point that stands out [px].
 const BROAD: f64 = 7.0;
+const BAR: f64 = 1.0;
 const RING: f64 = 9.0;
 /// Height of a line of the legend, and width of its sample of a line [px].
 const ROW: f64 = 19.0;
@@ -192,7 +193,8 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
             for ((i, point), at) in shown.iter().zip(points) {
                 if let Some(half) = series.errors.get(*i) {
                     let [low, high] = [point[1] - half, point[1] + half].map(|y| y.clamp(self.y.low(), self.y.high()));
-                    self.line(vec![self.at([point[0], low]), self.at([point[0], high])], style, None)?;
+                    let bar = vec![self.at([point[0], low]), self.at([point[0], high])];
+                    self.line(bar, self.stroke(colour, BAR), None)?;
                 }
                 self.marker(index, at, colour)?;
             }
@@ -238,6 +240,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         for highlight in self.figure.highlights.iter().filter(|h| self.x.shows(h.at[0]) && self.y.shows(h.at[1])) {
             let at = self.at(highlight.at);
             self.area.draw(&Circle::new(at, ring, self.stroke(INK, 2.0)))?;
+            self.area.draw(&Circle::new(at, self.px(MARKER), INK.filled()))?;
             let font = (FONT, TEXT * self.scale).into_font().style(FontStyle::Bold);
             let (width, height) = font.box_size(&highlight.name).unwrap_or((0, 0));
             let size = (width as i32, height as i32);
@@ -248,6 +251,8 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
             let share = f64::from(ring) / dx.hypot(dy).max(1.0);
             let from = (at.0 + (share * dx).round() as i32, at.1 + (share * dy).round() as i32);
             self.line(vec![from, to], self.stroke(INK, 1.0), None)?;
+            let ground = [(left - 2, top - 2), (left + size.0 + 2, top + size.1 + 2)];
+            self.area.draw(&Rectangle::new(ground, WHITE.mix(0.85).filled()))?;
             self.area.draw(&Text::new(highlight.name.as_str(), (left, top), font.color(&INK)))?;
         }
         Ok(())
