@@ -155,6 +155,7 @@ fn print(study: &Study, files: &[PathBuf]) {
     say::print(format_args!("{}", table::costs_and_errors(study).to_text()));
     say::print(format_args!("\n{}", table::histories_and_checks(study).to_text()));
     say::print(format_args!("\n{}", table::reference(&study.reference, study.seeds.len())));
+    table::failed(study).iter().for_each(|line| say!("{line}"));
     for (knob, reason) in &study.absent {
         say!("{knob} was not turned: {reason}.");
     }

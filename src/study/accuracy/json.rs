@@ -111,12 +111,24 @@ pub fn write(study: &Study, command: &str, path: &Path) -> Result<()> {
         rows: study.rows.iter().map(row).collect(),
         left_out: table::left_out(study),
         absent: study.absent.iter().map(|(knob, reason)| Absent { knob, reason }).collect(),
-        summary: table::reference(reference, study.seeds.len()),
+        summary: summary(study),
         tables: [table::costs_and_errors(study), table::histories_and_checks(study)],
     };
     let text = serde_json::to_string_pretty(&document)
         .map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
     write_whole(path, &(text + "\n"))
+}
+
+/// What stands below the tables.
+fn summary(study: &Study) -> String {
+    let mut lines = vec![table::reference(&study.reference, study.seeds.len()).trim_end().to_string()];
+    lines.extend(table::failed(study));
+    let left_out = table::left_out(study);
+    if !left_out.is_empty() {
+        lines.push(format!("The budget had no room for {}.", left_out.join("; ")));
+    }
+    lines.extend(table::caution(study));
+    lines.join("\n")
 }
 
 fn row(row: &Row) -> RowOut<'_> {

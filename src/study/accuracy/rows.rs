@@ -95,9 +95,9 @@ impl Row {
         let runs = self.runs.len();
         let mut notes = Vec::new();
         let told = |count: usize, what: String| if runs > 1 { format!("{count} of {runs} {what}") } else { what };
-        let causes: Vec<&String> = self.runs.iter().filter_map(Run::cause).collect();
-        if let Some(cause) = causes.first() {
-            notes.push(told(causes.len(), format!("failed: {cause}")));
+        let failed = self.runs.iter().filter(|run| run.cause().is_some()).count();
+        if failed > 0 {
+            notes.push(told(failed, "failed, see below".into()));
         }
         let out = self.runs.iter().filter(|run| matches!(run.outcome, Outcome::LeftOut(_))).count();
         if out > 0 {

@@ -283,6 +283,18 @@ pub fn left_out(study: &Study) -> Vec<String> {
     by_knob.into_iter().map(line).collect()
 }
 
+/// What failed, with its cause.
+pub fn failed(study: &Study) -> Vec<String> {
+    let of_row = |row: &Row| {
+        let knob = row.knob.as_ref().map_or("the scene as it stands", |knob| knob.name).to_string();
+        let value = row.value.clone();
+        let failed: Vec<(u64, String)> =
+            row.runs.iter().filter_map(|run| Some((run.seed, run.cause()?.clone()))).collect();
+        failed.into_iter().map(move |(seed, cause)| format!("{knob} {value} failed: {cause} (seed {seed})"))
+    };
+    study.rows.iter().flat_map(of_row).collect()
+}
+
 /// What must be known of the run times; `None` when there is nothing.
 pub fn caution(study: &Study) -> Option<String> {
     let starved = |run: &Measured| study.threads == 1 && run.cpu_s.is_some_and(|cpu| cpu < LEAST_SHARE * run.wall_s);
