@@ -118,6 +118,7 @@ fn what_cannot_be_studied_is_refused_and_nothing_is_written() {
         (&["accuracy", "ka4", "--jobs", "2", "--threads", "2"], "cannot be used with"),
         (&["accuracy", "ka4", "--quality", "fien"], "fine"),
         (&["accuracy", "hertz", "--vary", "speed"], "take no --vary"),
+        (&["accuracy", "ka4", "--quick"], "--quick is for verification cases"),
     ] {
         let output = strandsnap(folder.path(), args);
         assert_eq!(output.status.code(), Some(2), "{args:?}");

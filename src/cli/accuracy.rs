@@ -97,6 +97,10 @@ fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
 }
 
 fn of_pulled_scene(args: &Args) -> Result<Ended> {
+    if args.quick {
+        let help = "say how much time there is with --budget, or turn fewer knobs with --vary";
+        return Err(Error::input("--quick is for verification cases", help));
+    }
     let mut options = Options {
         scene: args.scene.scene.clone(),
         overrides: args.scene.overrides()?,

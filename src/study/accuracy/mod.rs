@@ -34,7 +34,7 @@ use knobs::{Knob, Role};
 use measured::Measured;
 use reference::{Along, Refined, Series};
 use rows::{Outcome, Row, Run};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -68,7 +68,7 @@ pub struct Study {
     pub scene: String,
     /// Seeds that were run.
     pub seeds: Vec<u64>,
-    /// Threads of the engine in each run, and runs side by side.
+    /// Threads of the engine in each run.
     pub threads: usize,
     /// Runs side by side.
     pub jobs: usize,
@@ -139,6 +139,8 @@ impl Subject {
         let (turned, absent) = agenda::turn(&options.vary, &scene.spec);
         let mut notes = Vec::new();
         let mut seeds = if options.seeds.is_empty() { vec![scene.spec.seed] } else { options.seeds.clone() };
+        let mut seen = BTreeSet::new();
+        seeds.retain(|seed| seen.insert(*seed));
         if seeds.len() > 1 && !Plan::new(&scene.spec).scatter {
             notes.push("every bond is as strong as the other in this scene, so one seed is enough".into());
             seeds.truncate(1);

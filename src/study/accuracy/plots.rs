@@ -53,8 +53,14 @@ fn figure(study: &Study, quantity: &str, which: usize, error: fn(&Errors) -> f64
         let points: Vec<([f64; 2], f64)> = rows.iter().filter_map(|row| point(study, row, error)).collect();
         let joined = rows.iter().any(|row| row.knob.as_ref().is_some_and(|k| matches!(k.role, Role::Refines)));
         let other = rows.iter().any(|row| row.is_other_model());
+        // One without points keeps its place, so that colours stay with their knobs, but not its line in the legend.
+        let name = match (points.is_empty(), other) {
+            (true, _) => String::new(),
+            (_, true) => format!("{knob} (other model)"),
+            (_, false) => knob.to_string(),
+        };
         let mut series = Series::new(
-            if other { format!("{knob} (other model)") } else { knob.to_string() },
+            name,
             if joined { Mark::LineAndPoints } else { Mark::Points },
             points.iter().map(|(at, _)| *at).collect(),
         );
