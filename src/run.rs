@@ -68,18 +68,29 @@ pub struct RunOptions {
 /// Bad input (scene, geometry, output folder), something missing on the machine (adapter, viewer), trouble in the
 /// simulation, or a file that cannot be written.
 pub fn run(scene: &Scene, options: &RunOptions, stop: &AtomicBool) -> Result<RunSummary> {
+    in_pool(options.threads, || run_watched(scene, options, Vec::new(), stop))?
+}
+
+/// [`run`] in the present thread pool, shown to `watchers` too.
+///
+/// # Errors
+/// As for [`run`], and what a watcher answers.
+pub fn run_watched(
+    scene: &Scene,
+    options: &RunOptions,
+    watchers: Vec<&mut dyn Observer>,
+    stop: &AtomicBool,
+) -> Result<RunSummary> {
     let clock = Clock::start();
     let folder = OutFolder::check(&options.out, options.overwrite)?;
     outputs::check(options)?;
     let assembly = assemble(scene)?;
-    in_pool(options.threads, || {
-        let bonds = assembly.bond_count();
-        let engine = Engine::new(&scene.spec, assembly)?;
-        folder.open()?;
-        write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
-        let written = outputs::open(options, &scene.spec, &folder)?;
-        drive_and_summarise(Job { scene, options, folder: &folder, clock, bonds }, engine, written, stop)
-    })?
+    let bonds = assembly.bond_count();
+    let engine = Engine::new(&scene.spec, assembly)?;
+    folder.open()?;
+    write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
+    let written = outputs::open(options, &scene.spec, &folder)?;
+    drive_and_summarise(Job { scene, options, folder: &folder, clock, bonds }, engine, written, watchers, stop)
 }
 
 /// The wires, particles and bonds of a scene.
@@ -88,6 +99,23 @@ pub fn run(scene: &Scene, options: &RunOptions, stop: &AtomicBool) -> Result<Run
 /// Geometry that cannot be, at the line of the scene that asks for it.
 pub fn assemble(scene: &Scene) -> Result<Assembly> {
     discretise::build(&scene.spec).map_err(|e| scene.source.error(&e.key, e.message, e.help))
+}
+
+/// Runs a scene to its end and writes nothing: shown to `watchers`, and summarised. Call it inside a rayon pool to choose
+/// the threads. `stop` ends it early, with a summary that says so.
+///
+/// # Errors
+/// Geometry that cannot be, what [`Engine::new`] refuses, trouble in the simulation, and what a watcher answers.
+pub fn summarise(scene: &Scene, watchers: Vec<&mut dyn Observer>, stop: &AtomicBool) -> Result<RunSummary> {
+    let clock = Clock::start();
+    let assembly = assemble(scene)?;
+    let bonds = assembly.bond_count();
+    let mut summariser = Summariser::new();
+    let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser];
+    observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
+    let outcome = simulate(&scene.spec, assembly, &mut observers, stop)?;
+    let closing = closing(&clock, &outcome, None, None);
+    Ok(summariser.summary(&scene.spec, bonds, closing))
 }
 
 /// Calls `work` with a given number of threads behind every parallel loop in it.
@@ -174,6 +202,7 @@ fn drive_and_summarise(
     job: Job,
     engine: Engine,
     mut written: outputs::Written,
+    watchers: Vec<&mut dyn Observer>,
     stop: &AtomicBool,
 ) -> Result<RunSummary> {
     let spec = &job.scene.spec;
@@ -183,21 +212,26 @@ fn drive_and_summarise(
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(progress.as_mut().map(|o| o as &mut dyn Observer));
+    observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
     let (outcome, trouble) = drive::drive(engine, spec, &mut observers, stop)?;
     let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
-    let cost = job.clock.cost(&outcome, frames);
-    let closing = Closing {
-        because: outcome.reason.to_string(),
-        trouble: trouble.as_ref().map(Error::to_string),
-        quasi_static: outcome.quasi_static,
-        findings: outcome.findings,
-        cost,
-    };
+    let closing = closing(&job.clock, &outcome, trouble.as_ref(), frames);
     let summary = summariser.summary(spec, job.bonds, closing);
     let kept = write_summary(&job.folder.file(folder::SUMMARY), &summary);
     match trouble {
         Some(error) => Err(with_place(error, &job.options.out, summary.warnings.len() - 1)),
         None => kept.map(|()| summary),
+    }
+}
+
+/// How a run ended, for its summary.
+fn closing(clock: &Clock, outcome: &Outcome, trouble: Option<&Error>, frames: Option<Timings>) -> Closing {
+    Closing {
+        because: outcome.reason.to_string(),
+        trouble: trouble.map(Error::to_string),
+        quasi_static: outcome.quasi_static,
+        findings: outcome.findings.clone(),
+        cost: clock.cost(outcome, frames),
     }
 }
 

@@ -338,7 +338,7 @@ fn browser(test: &str) -> Option<Browser> {
 
 /// Writes a page and opens it; it must have drawn all its charts without a complaint.
 fn shown(browser: &mut Browser, folder: &TempDir, scheme: &str) -> PathBuf {
-    let written = page::write(folder.path(), None, true).unwrap();
+    let written = page::write(folder.path(), None, None, true).unwrap();
     browser.open(&written.path, scheme);
     let trouble = browser.value("document.getElementById('trouble').textContent");
     assert!(browser.value("document.documentElement.dataset.troubles ?? null").is_null(), "{trouble}");

@@ -36,7 +36,7 @@ pub fn run(args: &Args) -> Result<()> {
     println!("target: {:.2} MPa at {:.2} %, each within {} %\n", target.strength, target.elongation, args.tolerance);
     println!("run  Q [MPa]  H [MPa]  p_f [%]  strength [MPa]  error [%]  elongation [%]  error [%]");
     let threads = args.threads.map(usize::from);
-    let overrides = args.scene.overrides();
+    let overrides = args.scene.overrides()?;
     let best = in_pool(threads, || calibrate(&args.scene.scene, &overrides, &target, stop, &mut print_trial))??;
     println!("\nThe scene that reproduces the test:");
     for option in best.setting.overrides() {

@@ -5,7 +5,6 @@ use super::values::SceneArgs;
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
 use crate::run;
-use crate::scene;
 use crate::strand::centrelines;
 use std::path::PathBuf;
 
@@ -21,7 +20,7 @@ pub struct Args {
 }
 
 pub fn export(args: &Args) -> Result<()> {
-    let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
+    let scene = args.scene.load()?;
     let assembly = run::assemble(&scene)?;
     if args.file.exists() && !args.overwrite {
         return Err(Error::input(format!("{} exists", args.file.display()), "give --overwrite to replace it"));

@@ -1,5 +1,6 @@
 //! Floor 9: the command line. One file per subcommand; each turns arguments into a call below and prints the answer.
 
+mod accuracy;
 mod animation;
 mod calibrate;
 mod cases;
@@ -52,6 +53,8 @@ enum Command {
     Export(export::Args),
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
+    /// Say what accuracy each second buys: error against run time, knob by knob
+    Accuracy(accuracy::Args),
     /// Compare the engine with closed forms
     Verify(cases::CaseArgs),
     /// Run stiff and extreme cases ("friction-*" takes all that begin so): each must be stable, or be refused or
@@ -91,6 +94,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
+        Command::Accuracy(args) => accuracy::accuracy(&args),
         Command::Stability(args) => stability::stability(&args),
         Command::Render(args) => render::render(args),
         Command::Verify(args) => verify::verify(&args),

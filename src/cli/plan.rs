@@ -4,7 +4,7 @@ use super::say::say;
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run;
-use crate::scene::{self, caution, plan::Plan};
+use crate::scene::{caution, plan::Plan};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -16,8 +16,13 @@ pub struct Args {
 }
 
 pub fn plan(args: &Args) -> Result<()> {
-    let scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
+    let scene = args.scene.load()?;
     say!("{}: {}\n", scene.spec.name, scene.spec.about);
+    let preset = match args.scene.preset()? {
+        set if set.is_empty() => "the scene as it is written".into(),
+        set => set.join(", "),
+    };
+    say!("quality: {} ({preset})\n", args.scene.quality.word());
     say!("{}", Plan::new(&scene.spec));
     caution::cautions(&scene.spec).iter().for_each(|caution| say!("WARNING: {caution}\n"));
     let assembly = run::assemble(&scene)?;

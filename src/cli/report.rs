@@ -12,13 +12,16 @@ pub struct Args {
     /// The page [default: RUN/report.html]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Folder of a study of error against run time to show [default: out/accuracy/NAME, if there is one]
+    #[arg(long, value_name = "DIR")]
+    accuracy: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
     overwrite: bool,
 }
 
 pub fn report(args: &Args) -> Result<()> {
-    let written = page::write(&args.run, args.out.as_deref(), args.overwrite)?;
+    let written = page::write(&args.run, args.out.as_deref(), args.accuracy.as_deref(), args.overwrite)?;
     for note in &written.notes {
         eprintln!("WARNING: {note}");
     }

@@ -9,7 +9,6 @@ use crate::base::error::Result;
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{ANIMATION, FRAMES, RECORDING};
 use crate::run::{self, RunOptions, RunSummary, outputs};
-use crate::scene;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -48,7 +47,7 @@ pub struct Args {
 }
 
 pub fn run(args: Args) -> Result<Ended> {
-    let mut scene = scene::load(&args.scene.scene, &args.scene.overrides())?;
+    let mut scene = args.scene.load()?;
     note_what_was_not_built(&args);
     args.look.apply(&mut scene.spec.output);
     let out = args.out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name));

@@ -4,7 +4,7 @@ use super::say::{self, say};
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run;
-use crate::scene::{self, builtin, caution};
+use crate::scene::{builtin, caution};
 
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
@@ -42,7 +42,7 @@ fn show(name: &str) -> Result<()> {
 }
 
 fn check(args: &SceneArgs) -> Result<()> {
-    let scene = scene::load(&args.scene, &args.overrides())?;
+    let scene = args.load()?;
     let assembly = run::assemble(&scene)?;
     say!(
         "{} is fine: {} wires, {} particles, {} bonds",

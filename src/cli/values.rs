@@ -1,12 +1,20 @@
 //! How single arguments are written.
 
+use crate::base::error::Result;
+use crate::scene::quality::Quality;
+use crate::scene::{self, Scene};
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::time::Duration;
 
 /// The scene and changes to it: what every command that loads a scene takes.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
     /// Built-in scene by name (see `strandsnap scene list`), or the path of a TOML file
     pub scene: String,
+    /// Accuracy against run time: `draft` turns pull speed and time step up, `fine` down
+    #[arg(long, value_name = "QUALITY", value_parser = quality(), default_value = "standard")]
+    pub quality: Quality,
     /// Change a key of the scene, such as --set contact.friction=0.3
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
@@ -16,15 +24,45 @@ pub struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// All changes, in the order in which they win.
-    pub fn overrides(&self) -> Vec<String> {
+    /// All changes, in the order in which they win: the preset, then what was set, then the seed.
+    ///
+    /// # Errors
+    /// A preset of a scene that cannot be read.
+    pub fn overrides(&self) -> Result<Vec<String>> {
         let seed = self.seed.map(|seed| format!("seed={seed}"));
-        self.set.iter().cloned().chain(seed).collect()
+        Ok(self.preset()?.into_iter().chain(self.set.iter().cloned()).chain(seed).collect())
+    }
+
+    /// What the preset sets; nothing at standard quality, which is the scene as it is written.
+    ///
+    /// # Errors
+    /// A scene that cannot be read.
+    pub fn preset(&self) -> Result<Vec<String>> {
+        match self.quality {
+            Quality::Standard => Ok(Vec::new()),
+            quality => Ok(quality.overrides(&scene::load(&self.scene, &[])?.spec)),
+        }
+    }
+
+    /// The scene with all changes.
+    ///
+    /// # Errors
+    /// Whatever is wrong in it or in them.
+    pub fn load(&self) -> Result<Scene> {
+        scene::load(&self.scene, &self.overrides()?)
     }
 }
 
+/// Reads a preset by its name.
+fn quality() -> impl TypedValueParser<Value = Quality> {
+    PossibleValuesParser::new(Quality::ALL.map(Quality::word)).map(|word| {
+        let named = Quality::ALL.into_iter().find(|quality| quality.word() == word);
+        named.expect("the parser lets only their names through")
+    })
+}
+
 /// Pixels, written as `1280x720`.
-pub fn size(text: &str) -> Result<[u32; 2], String> {
+pub fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X', '×']);
     let parsed = sides.and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
     match parsed {
@@ -34,7 +72,7 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
 }
 
 /// A range of strain in per cent, written as `20..26`; either end may be left out. Gives fractions [-].
-pub fn strain_range(text: &str) -> Result<[f64; 2], String> {
+pub fn strain_range(text: &str) -> std::result::Result<[f64; 2], String> {
     let wrong = || "write two strains in per cent, such as 20..26, 20.. or ..26".to_string();
     let (from, to) = text.split_once("..").ok_or_else(wrong)?;
     let end = |side: &str, open: f64| match side.trim().trim_end_matches('%').trim() {
@@ -43,6 +81,21 @@ pub fn strain_range(text: &str) -> Result<[f64; 2], String> {
     };
     let range = [end(from, f64::NEG_INFINITY)?, end(to, f64::INFINITY)?];
     if range[0] <= range[1] { Ok(range) } else { Err(wrong()) }
+}
+
+/// A span of time, written as `90s`, `20m` or `2h`.
+pub fn duration(text: &str) -> std::result::Result<Duration, String> {
+    let wrong = || "write a time with its unit, such as 90s, 20m or 2h".to_string();
+    let text = text.trim();
+    let unit = text.chars().last().ok_or_else(wrong)?;
+    let seconds = match unit {
+        's' => 1.0,
+        'm' => 60.0,
+        'h' => 3600.0,
+        _ => return Err(wrong()),
+    };
+    let number: f64 = text[..text.len() - 1].trim().parse().map_err(|_| wrong())?;
+    Duration::try_from_secs_f64(number * seconds).map_err(|_| wrong())
 }
 
 #[cfg(test)]
@@ -54,6 +107,16 @@ mod tests {
         assert_eq!(size("1280x720"), Ok([1280, 720]));
         for wrong in ["1280", "0x720", "ax2", "1280x", "-1x5"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn durations() {
+        for (text, seconds) in [("90s", 90), ("20m", 1200), ("0.5 h", 1800)] {
+            assert_eq!(duration(text), Ok(Duration::from_secs(seconds)));
+        }
+        for wrong in ["20", "", "m", "-3s", "1d", "3µ"] {
+            assert!(duration(wrong).is_err(), "{wrong}");
         }
     }
 

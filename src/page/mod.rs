@@ -5,6 +5,7 @@
 //! nothing: its own content policy forbids it.
 
 mod abscissa;
+pub mod accuracy;
 mod answer;
 mod breaks;
 mod curve;
@@ -25,7 +26,7 @@ pub use source::Source;
 
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
-use crate::run::folder::REPORT;
+use crate::run::folder::{self, REPORT};
 use maud::Markup;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,7 @@ pub struct Section {
 }
 
 /// The sections, in their order on the page. A new one is a file with such a function, and a row here.
-const SECTIONS: [fn(&Source) -> Result<Section>; 8] = [
+const SECTIONS: [fn(&Source) -> Result<Section>; 9] = [
     answer::section,
     curve::section,
     states::section,
@@ -48,6 +49,7 @@ const SECTIONS: [fn(&Source) -> Result<Section>; 8] = [
     wires::section,
     quasi_static::section,
     energy::section,
+    accuracy::section,
     scene::section,
 ];
 
@@ -64,17 +66,19 @@ pub struct Written {
     pub notes: Vec<String>,
 }
 
-/// Writes the page of the run in folder `run` to `out`, by default `report.html` in that folder.
+/// Writes the page of the run in folder `run` to `out`, by default `report.html` in that folder. `study` is the folder of
+/// a study of error against run time; by default the one of its scene, if there is one.
 ///
 /// # Errors
-/// [`Error::Input`] when the folder holds no run that can be read, or the file exists and `overwrite` is not set;
-/// [`Error::Io`] when the file system refuses.
-pub fn write(run: &Path, out: Option<&Path>, overwrite: bool) -> Result<Written> {
+/// [`Error::Input`] when a folder holds no run or no study that can be read, or the file exists and `overwrite` is not
+/// set; [`Error::Io`] when the file system refuses.
+pub fn write(run: &Path, out: Option<&Path>, study: Option<&Path>, overwrite: bool) -> Result<Written> {
     let path = out.map_or_else(|| run.join(REPORT), Path::to_path_buf);
     // What stands in the way is said before a long run is read.
     source::check(run)?;
     check_target(&path, overwrite)?;
-    let source = Source::read(run)?;
+    let mut source = Source::read(run)?;
+    source.accuracy = read_study(study, &source.info.name)?;
     let text = html(&source)?;
     write_whole(&path, &text)?;
     let frames = [source.pictures_shown(), source.pictures.found];
@@ -88,6 +92,17 @@ pub fn write(run: &Path, out: Option<&Path>, overwrite: bool) -> Result<Written>
 pub fn html(source: &Source) -> Result<String> {
     let sections = SECTIONS.iter().map(|build| build(source)).collect::<Result<Vec<_>>>()?;
     Ok(document::document(source, &sections).into_string())
+}
+
+fn read_study(given: Option<&Path>, scene: &str) -> Result<Option<accuracy::Study>> {
+    let Some(given) = given else { return accuracy::Study::read(&folder::accuracy(scene)) };
+    let missing = || {
+        Error::input(
+            format!("--accuracy {} holds no study", given.display()),
+            "give the folder of a study, such as out/accuracy/ka4; `strandsnap accuracy` makes one",
+        )
+    };
+    accuracy::Study::read(given)?.ok_or_else(missing).map(Some)
 }
 
 fn check_target(path: &Path, overwrite: bool) -> Result<()> {

@@ -1,5 +1,6 @@
 //! Everything that the page is made from, read from a run's folder: also from one whose run did not end.
 
+use super::accuracy;
 use super::picture::Pictures;
 use super::select;
 use crate::base::error::{Error, Result};
@@ -37,6 +38,9 @@ pub struct Source {
     pub states: Vec<State>,
     /// The frames.
     pub pictures: Pictures,
+    /// The study of error against run time that goes with it, if there is one; it has a folder of its own, so reading the
+    /// run does not find it.
+    pub accuracy: Option<accuracy::Study>,
     /// What is wrong with the folder, in sentences.
     pub notes: Vec<String>,
 }
@@ -131,6 +135,7 @@ impl Source {
             ruptures: pass.ruptures,
             states,
             pictures,
+            accuracy: None,
             notes,
         })
     }

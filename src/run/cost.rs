@@ -8,13 +8,30 @@ const LOCK: &str = include_str!("../../Cargo.lock");
 /// Processor time of this process so far, all threads [s]; `None` where the system does not tell.
 #[cfg(unix)]
 pub fn cpu_time() -> Option<f64> {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    clock(rustix::time::ClockId::ProcessCPUTime)
+}
+
+/// Processor time of this thread alone so far [s]; `None` where the system does not tell.
+#[cfg(unix)]
+pub fn thread_cpu_time() -> Option<f64> {
+    clock(rustix::time::ClockId::ThreadCPUTime)
+}
+
+#[cfg(unix)]
+fn clock(id: rustix::time::ClockId) -> Option<f64> {
+    let time = rustix::time::clock_gettime(id);
     Some(time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9)
 }
 
 /// Processor time of this process so far [s]; `None`, because this system does not tell.
 #[cfg(not(unix))]
 pub fn cpu_time() -> Option<f64> {
+    None
+}
+
+/// Processor time of this thread so far [s]; `None`, because this system does not tell.
+#[cfg(not(unix))]
+pub fn thread_cpu_time() -> Option<f64> {
     None
 }
 

@@ -19,6 +19,15 @@ pub const REPORT: &str = "report.html";
 pub const FRAMES: &str = "frames";
 /// Animation of them, where no other name is given.
 pub const ANIMATION: &str = "frames.gif";
+/// A study of error against run time, in a folder of its own.
+pub const ACCURACY_STUDY: &str = "accuracy.json";
+/// Its plot.
+pub const ACCURACY_PLOT: &str = "accuracy.svg";
+
+/// Folder of the study of a scene where no other is given.
+pub fn accuracy(scene: &str) -> PathBuf {
+    Path::new("out").join("accuracy").join(scene)
+}
 
 /// An output folder that may be written.
 #[derive(Debug)]

@@ -10,6 +10,7 @@ pub mod hardening;
 pub mod look;
 mod overrides;
 pub mod plan;
+pub mod quality;
 pub mod raw;
 mod resolve;
 mod resolve_bodies;

@@ -6,8 +6,7 @@
 //! strength σ_y(p_f)e^(−p_f).
 
 use crate::base::error::{Error, Result};
-use crate::observe::summary::{Closing, Cost, RunSummary, Summariser};
-use crate::run::{assemble, simulate};
+use crate::run::{RunSummary, summarise};
 use crate::scene::spec::{BondLawSpec, HardeningSpec, RuptureCriterion};
 use crate::scene::{self, Scene};
 use glam::{DMat2, DVec2};
@@ -168,22 +167,10 @@ fn try_setting(
 ) -> Result<Trial> {
     let all: Vec<String> = overrides.iter().cloned().chain(setting.overrides()).collect();
     let scene = scene::load(name, &all)?;
-    let assembly = assemble(&scene)?;
-    let bonds = assembly.bond_count();
-    let mut summariser = Summariser::new();
-    let outcome = simulate(&scene.spec, assembly, &mut [&mut summariser], stop)?;
+    let summary = summarise(&scene, Vec::new(), stop)?;
     if stop.load(Ordering::Relaxed) {
         return Err(Error::input("interrupted before the calibration was done", "run it again; runs are not kept"));
     }
-    let cost = Cost { steps: outcome.steps, simulated_s: outcome.time, ..Cost::default() };
-    let closing = Closing {
-        because: outcome.reason.to_string(),
-        trouble: None,
-        quasi_static: outcome.quasi_static,
-        findings: outcome.findings,
-        cost,
-    };
-    let summary = summariser.summary(&scene.spec, bonds, closing);
     let measured = summary.tensile_strength_mpa.zip(summary.fracture_elongation_percent);
     let Some((strength, elongation)) = measured else {
         return Err(scene.source.error("grip", "a scene without grips has no strength", "calibrate a pulled strand"));

@@ -58,6 +58,8 @@ pub enum Mark {
     Dashed,
     /// Markers joined by a line.
     LineAndPoints,
+    /// A broad grey line behind everything: what the points add up to.
+    Behind,
 }
 
 /// Points that belong together. Those that are not finite, or not positive on a logarithmic axis, are left out.
@@ -100,6 +102,24 @@ pub enum Limit {
     Y(f64, String),
 }
 
+/// A point that must be found at once: a ring around it, and its name beside it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Highlight {
+    /// (x, y) in the units of the axes.
+    pub at: [f64; 2],
+    /// What it is.
+    pub name: String,
+}
+
+/// Where the legend stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Legend {
+    /// In the corner of the frame where it hides least.
+    Inside,
+    /// To the right of the frame: for many series.
+    Beside,
+}
+
 /// One pair of axes with what they show.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
@@ -115,12 +135,31 @@ pub struct Figure {
     pub slopes: Vec<Slope>,
     /// Lines across.
     pub limits: Vec<Limit>,
+    /// Points that stand out.
+    pub highlights: Vec<Highlight>,
+    /// Where the legend stands.
+    pub legend: Legend,
+    /// Width and height [px of an SVG].
+    pub size: [u32; 2],
 }
+
+/// Size of a figure unless it says otherwise [px of an SVG].
+const SIZE: [u32; 2] = [620, 440];
 
 impl Figure {
     /// Axes that show nothing yet.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        Self { title: title.into(), x, y, series: Vec::new(), slopes: Vec::new(), limits: Vec::new() }
+        Self {
+            title: title.into(),
+            x,
+            y,
+            series: Vec::new(),
+            slopes: Vec::new(),
+            limits: Vec::new(),
+            highlights: Vec::new(),
+            legend: Legend::Inside,
+            size: SIZE,
+        }
     }
 
     /// Writes the figure alone; see [`write()`].
@@ -132,7 +171,7 @@ impl Figure {
     }
 }
 
-/// Writes `figures` side by side in rows of `columns`, as SVG or PNG by the extension of `path`. Folders that are
+/// Writes `figures`, all as large as the largest, side by side in rows of `columns`, as SVG or PNG by the extension of `path`. Folders that are
 /// missing are made.
 ///
 /// # Errors
@@ -192,6 +231,22 @@ mod tests {
         assert!(info.width > info.height);
         let colours: std::collections::HashSet<&[u8]> = pixels.chunks(3).collect();
         assert!(colours.len() > 20, "{}", colours.len());
+    }
+
+    #[test]
+    fn a_legend_beside_the_frame_hides_no_point_and_a_highlight_is_named() {
+        let mut f = figure();
+        f.legend = Legend::Beside;
+        f.size = [900, 500];
+        f.highlights.push(Highlight { at: [0.05, 2.5e-3], name: "default".into() });
+        let text = draw::svg(&[f], 1).unwrap();
+        assert!(text.contains("width=\"900\"") && text.contains("default"));
+        // Both ways, the entries stand right of the frame, whose right edge is where the longest grid lines end.
+        let legend_x = |word: &str| {
+            let tag = text[..text.find(word).unwrap()].rfind("<text x=\"").unwrap() + 9;
+            text[tag..].split('"').next().unwrap().parse::<i32>().unwrap()
+        };
+        assert!(legend_x("cantilever") > 700, "{}", legend_x("cantilever"));
     }
 
     #[test]

@@ -7,8 +7,6 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::sync::Once;
 
-/// Size of one figure [px of an SVG].
-const SIZE: [u32; 2] = [620, 440];
 /// Pixels of a PNG per pixel of an SVG [-].
 const PNG_SCALE: u32 = 2;
 /// Family of all text.
@@ -17,7 +15,7 @@ pub const FONT: &str = "Inter";
 /// The figures as SVG text.
 pub fn svg(figures: &[Figure], columns: usize) -> Result<String> {
     let mut text = String::new();
-    let size = sheet(figures.len(), columns, 1);
+    let size = sheet(figures, columns, 1);
     draw(figures, columns, 1, SVGBackend::with_string(&mut text, size).into_drawing_area())?;
     // Who opens the file may not have our font.
     Ok(text.replace("font-family=\"Inter\"", "font-family=\"Inter, Helvetica, Arial, sans-serif\""))
@@ -25,7 +23,7 @@ pub fn svg(figures: &[Figure], columns: usize) -> Result<String> {
 
 /// The figures as the bytes of a PNG.
 pub fn png(figures: &[Figure], columns: usize) -> Result<Vec<u8>> {
-    let (width, height) = sheet(figures.len(), columns, PNG_SCALE);
+    let (width, height) = sheet(figures, columns, PNG_SCALE);
     let mut pixels = vec![255; (3 * width * height) as usize];
     let backend = BitMapBackend::with_buffer(&mut pixels, (width, height));
     draw(figures, columns, PNG_SCALE, backend.into_drawing_area())?;
@@ -36,10 +34,12 @@ pub fn png(figures: &[Figure], columns: usize) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn sheet(figures: usize, columns: usize, scale: u32) -> (u32, u32) {
-    let columns = columns.clamp(1, figures);
-    let rows = figures.div_ceil(columns);
-    (SIZE[0] * columns as u32 * scale, SIZE[1] * rows as u32 * scale)
+/// Size of the whole sheet.
+fn sheet(figures: &[Figure], columns: usize, scale: u32) -> (u32, u32) {
+    let columns = columns.clamp(1, figures.len());
+    let rows = figures.len().div_ceil(columns);
+    let [width, height] = [0, 1].map(|k| figures.iter().map(|figure| figure.size[k]).max().unwrap_or(0) * scale);
+    (width * columns as u32, height * rows as u32)
 }
 
 fn cannot_draw(cause: impl std::fmt::Display) -> Error {

@@ -2,7 +2,7 @@
 
 use super::axis::{Span, can_show};
 use super::draw::FONT;
-use super::{Figure, Limit, Mark, Series};
+use super::{Figure, Legend, Limit, Mark, Series};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -15,6 +15,10 @@ const TITLE: f64 = 17.0;
 const MARKER: f64 = 4.5;
 const LINE: f64 = 1.8;
 const GAP: f64 = 5.0;
+/// Widths of a line behind everything and of an error bar, radius of the ring around a point that stands out [px].
+const BROAD: f64 = 7.0;
+const BAR: f64 = 1.0;
+const RING: f64 = 9.0;
 /// Height of a line of the legend, and width of its sample of a line [px].
 const ROW: f64 = 19.0;
 const SAMPLE: f64 = 28.0;
@@ -23,6 +27,8 @@ const DASH: [f64; 2] = [7.0, 5.0];
 
 const INK: RGBColor = RGBColor(40, 40, 40);
 const GREY: RGBColor = RGBColor(110, 110, 110);
+/// Of lines behind everything.
+const BAND: RGBColor = RGBColor(205, 205, 205);
 const GRID: RGBColor = RGBColor(218, 218, 218);
 const FINE_GRID: RGBColor = RGBColor(240, 240, 240);
 /// Okabe & Ito's palette, which the colour-blind can tell apart.
@@ -71,9 +77,13 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         self.axes()?;
         self.limits()?;
         self.slopes()?;
-        for (index, series) in self.figure.series.iter().enumerate() {
-            self.series(index, series)?;
+        let behind = |series: &Series| series.mark == Mark::Behind;
+        for at_the_back in [true, false] {
+            for (index, series) in self.figure.series.iter().enumerate().filter(|(_, s)| behind(s) == at_the_back) {
+                self.series(index, series)?;
+            }
         }
+        self.highlights()?;
         self.legend()
     }
 
@@ -92,9 +102,10 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
     fn axes(&mut self) -> Drawn<B> {
         let f = self.figure;
         let title = (FONT, TITLE * self.scale).into_font().style(FontStyle::Bold).color(&INK);
+        let beside = if f.legend == Legend::Beside { self.legend_size(&self.entries()).0 } else { 0 };
         let mut chart = ChartBuilder::on(self.area)
             .margin(self.px(10.0))
-            .margin_right(self.px(18.0))
+            .margin_right(self.px(18.0) + beside)
             .caption(&f.title, title)
             .x_label_area_size(self.px(48.0))
             .y_label_area_size(self.px(72.0))
@@ -175,13 +186,15 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         match series.mark {
             Mark::Line | Mark::LineAndPoints => self.line(points.clone(), style, None)?,
             Mark::Dashed => self.line(points.clone(), style, Some(DASH))?,
+            Mark::Behind => self.line(points.clone(), self.stroke(BAND, BROAD), None)?,
             Mark::Points => {}
         }
         if has_markers(series.mark) {
             for ((i, point), at) in shown.iter().zip(points) {
                 if let Some(half) = series.errors.get(*i) {
                     let [low, high] = [point[1] - half, point[1] + half].map(|y| y.clamp(self.y.low(), self.y.high()));
-                    self.line(vec![self.at([point[0], low]), self.at([point[0], high])], style, None)?;
+                    let bar = vec![self.at([point[0], low]), self.at([point[0], high])];
+                    self.line(bar, self.stroke(colour, BAR), None)?;
                 }
                 self.marker(index, at, colour)?;
             }
@@ -221,17 +234,70 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         series.chain(slopes).filter(|entry| !entry.name.is_empty()).collect()
     }
 
+    /// A ring around each point that stands out, and its name where it hides least.
+    fn highlights(&self) -> Drawn<B> {
+        let ring = self.px(RING);
+        for highlight in self.figure.highlights.iter().filter(|h| self.x.shows(h.at[0]) && self.y.shows(h.at[1])) {
+            let at = self.at(highlight.at);
+            self.area.draw(&Circle::new(at, ring, self.stroke(INK, 2.0)))?;
+            self.area.draw(&Circle::new(at, self.px(MARKER), INK.filled()))?;
+            let font = (FONT, TEXT * self.scale).into_font().style(FontStyle::Bold);
+            let (width, height) = font.box_size(&highlight.name).unwrap_or((0, 0));
+            let size = (width as i32, height as i32);
+            let (left, top) = self.place_beside(at, size);
+            // A line from the ring to the nearest edge of the text.
+            let to = (at.0.clamp(left, left + size.0), at.1.clamp(top, top + size.1));
+            let [dx, dy] = [to.0 - at.0, to.1 - at.1].map(f64::from);
+            let share = f64::from(ring) / dx.hypot(dy).max(1.0);
+            let from = (at.0 + (share * dx).round() as i32, at.1 + (share * dy).round() as i32);
+            self.line(vec![from, to], self.stroke(INK, 1.0), None)?;
+            let ground = [(left - 2, top - 2), (left + size.0 + 2, top + size.1 + 2)];
+            self.area.draw(&Rectangle::new(ground, WHITE.mix(0.85).filled()))?;
+            self.area.draw(&Text::new(highlight.name.as_str(), (left, top), font.color(&INK)))?;
+        }
+        Ok(())
+    }
+
+    /// Upper left of a text of this size near `at`, within the frame, where it hides the fewest points.
+    fn place_beside(&self, at: Pixel, size: (i32, i32)) -> Pixel {
+        let [left, top, right, bottom] = self.frame;
+        let near = [2.0, 3.5, 5.0, 8.0].map(|rings| self.px(rings * RING));
+        let xs = |gap: i32| [at.0 + gap, at.0 - gap - size.0, at.0 - size.0 / 2];
+        let ys = |gap: i32| [at.1 - gap - size.1, at.1 + gap];
+        let places = near.iter().flat_map(|gap| ys(*gap).into_iter().flat_map(|y| xs(*gap).map(|x| (x, y))));
+        let inside = |(x, y): &Pixel| left <= *x && x + size.0 <= right && top <= *y && y + size.1 <= bottom;
+        places.filter(inside).min_by_key(|place| self.hidden(*place, size)).unwrap_or((at.0, at.1 - size.1))
+    }
+
+    /// Points that a box with this upper left and size hides, those included that its edge cuts.
+    fn hidden(&self, place: Pixel, size: (i32, i32)) -> usize {
+        let edge = self.px(MARKER);
+        let inside = |p: Pixel| {
+            (place.0 - edge..place.0 + size.0 + edge).contains(&p.0)
+                && (place.1 - edge..place.1 + size.1 + edge).contains(&p.1)
+        };
+        self.figure.series.iter().flat_map(|s| self.shown(s)).filter(|(_, p)| inside(self.at(*p))).count()
+    }
+
+    fn legend_size(&self, entries: &[Entry]) -> (i32, i32) {
+        let font = (FONT, TEXT * self.scale).into_font();
+        let width = |e: &Entry| font.box_size(e.name).map_or(0, |(width, _)| width as i32);
+        let widest = entries.iter().map(width).max().unwrap_or(0);
+        let (gap, row, sample) = (self.px(GAP), self.px(ROW), self.px(SAMPLE));
+        (widest + sample + 3 * gap, row * entries.len() as i32 + gap)
+    }
+
     fn legend(&self) -> Drawn<B> {
         let entries = self.entries();
         if entries.is_empty() {
             return Ok(());
         }
-        let font = (FONT, TEXT * self.scale).into_font();
-        let width = |e: &Entry| font.box_size(e.name).map_or(0, |(width, _)| width as i32);
-        let widest = entries.iter().map(width).max().unwrap_or(0);
         let (gap, row, sample) = (self.px(GAP), self.px(ROW), self.px(SAMPLE));
-        let size = (widest + sample + 3 * gap, row * entries.len() as i32 + gap);
-        let (left, top) = self.emptiest_corner(size);
+        let size = self.legend_size(&entries);
+        let (left, top) = match self.figure.legend {
+            Legend::Inside => self.emptiest_corner(size),
+            Legend::Beside => (self.frame[2] + gap, self.frame[1]),
+        };
         let back = Rectangle::new([(left, top), (left + size.0, top + size.1)], WHITE.mix(0.85).filled());
         self.area.draw(&back)?;
         for (k, entry) in entries.iter().enumerate() {
@@ -241,6 +307,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
                 Mark::Line | Mark::LineAndPoints => self.line(ends, self.stroke(entry.colour, LINE), None)?,
                 Mark::Dashed if entry.colour == GREY => self.line(ends, self.stroke(GREY, 1.4), Some(SHORT_DASH))?,
                 Mark::Dashed => self.line(ends, self.stroke(entry.colour, LINE), Some(DASH))?,
+                Mark::Behind => self.line(ends, self.stroke(BAND, BROAD), None)?,
                 Mark::Points => {}
             }
             if has_markers(entry.mark) {
@@ -258,13 +325,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         let gap = 2 * self.px(GAP);
         let (xs, ys) = ([right - gap - size.0, left + gap], [top + gap, bottom - gap - size.1]);
         let corners = ys.iter().flat_map(|y| xs.iter().map(move |x| (*x, *y)));
-        let hidden = |corner: &Pixel| {
-            let inside =
-                |p: Pixel| (corner.0..corner.0 + size.0).contains(&p.0) && (corner.1..corner.1 + size.1).contains(&p.1);
-            let all = self.figure.series.iter().flat_map(|s| self.shown(s));
-            all.filter(|(_, p)| inside(self.at(*p))).count()
-        };
-        corners.min_by_key(hidden).expect("a frame has corners")
+        corners.min_by_key(|corner| self.hidden(*corner, size)).expect("a frame has corners")
     }
 }
 

@@ -1,0 +1,171 @@
+//! `accuracy.json`: the study for programs, and the tables for the page.
+
+use super::rows::{Outcome, Row};
+use super::stat::Stat;
+use super::table::{self, Table};
+use super::{Study, reference::Along};
+use crate::base::error::{Error, Result};
+use crate::observe::files::write_whole;
+use serde::Serialize;
+use std::path::Path;
+
+#[derive(Serialize)]
+struct Document<'a> {
+    scene: &'a str,
+    command: &'a str,
+    version: &'static str,
+    seeds: &'a [u64],
+    threads: usize,
+    jobs: usize,
+    interrupted: bool,
+    reference: Reference<'a>,
+    rows: Vec<RowOut<'a>>,
+    left_out: Vec<String>,
+    absent: Vec<Absent<'a>>,
+    /// In words, for the page.
+    summary: String,
+    tables: [Table; 2],
+}
+
+#[derive(Serialize)]
+struct Reference<'a> {
+    kind: &'static str,
+    words: &'a str,
+    strength_mpa: f64,
+    elongation_percent: f64,
+    /// Of strength and elongation; 0 for a closed form.
+    uncertainty_percent: [f64; 2],
+    refinement: Vec<Refinement<'a>>,
+}
+
+#[derive(Serialize)]
+struct Refinement<'a> {
+    seed: u64,
+    #[serde(flatten)]
+    along: &'a Along,
+}
+
+#[derive(Serialize)]
+struct Absent<'a> {
+    knob: &'a str,
+    reason: &'a str,
+}
+
+/// Means over seeds.
+#[derive(Serialize)]
+struct RowOut<'a> {
+    knob: Option<&'a str>,
+    key: Option<&'a str>,
+    value: &'a str,
+    number: Option<f64>,
+    role: Option<&'a str>,
+    default: bool,
+    wall_s: Option<Stat>,
+    cpu_s: Option<Stat>,
+    steps: Option<Stat>,
+    ms_per_step: Option<Stat>,
+    strength_mpa: Option<Stat>,
+    strength_error_percent: Option<Stat>,
+    elongation_percent: Option<Stat>,
+    elongation_error_percent: Option<Stat>,
+    curve_error_percent: Option<Stat>,
+    plastic_work_error_percent: Option<Stat>,
+    order_tau: Option<Stat>,
+    energy_residual_percent: Option<Stat>,
+    kinetic_over_internal: Option<Stat>,
+    grip_mismatch_percent: Option<Stat>,
+    runs: Vec<RunOut<'a>>,
+}
+
+#[derive(Serialize)]
+struct RunOut<'a> {
+    seed: u64,
+    outcome: &'a str,
+    cause: Option<&'a str>,
+    errors: Option<&'a super::errors::Errors>,
+}
+
+/// Writes the study; `command` is what the user typed.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write(study: &Study, command: &str, path: &Path) -> Result<()> {
+    let reference = &study.reference;
+    let exact = reference.closed_form;
+    let document = Document {
+        scene: &study.scene,
+        command,
+        version: env!("CARGO_PKG_VERSION"),
+        seeds: &study.seeds,
+        threads: study.threads,
+        jobs: study.jobs,
+        interrupted: study.interrupted,
+        reference: Reference {
+            kind: if exact { "closed-form" } else { "refinement" },
+            words: &reference.words,
+            strength_mpa: reference.value[0],
+            elongation_percent: reference.value[1],
+            uncertainty_percent: if exact { [0.0; 2] } else { reference.uncertainty_percent },
+            refinement: reference.along.iter().map(|(seed, along)| Refinement { seed: *seed, along }).collect(),
+        },
+        rows: study.rows.iter().map(row).collect(),
+        left_out: table::left_out(study),
+        absent: study.absent.iter().map(|(knob, reason)| Absent { knob, reason }).collect(),
+        summary: summary(study),
+        tables: [table::costs_and_errors(study), table::histories_and_checks(study)],
+    };
+    let text = serde_json::to_string_pretty(&document)
+        .map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
+    write_whole(path, &(text + "\n"))
+}
+
+/// What stands below the tables.
+fn summary(study: &Study) -> String {
+    let mut lines = vec![table::reference(&study.reference, study.seeds.len()).trim_end().to_string()];
+    lines.extend(table::failed(study));
+    let left_out = table::left_out(study);
+    if !left_out.is_empty() {
+        lines.push(format!("The budget had no room for {}.", left_out.join("; ")));
+    }
+    lines.extend(table::caution(study));
+    lines.join("\n")
+}
+
+fn row(row: &Row) -> RowOut<'_> {
+    let knob = row.knob.as_ref();
+    RowOut {
+        knob: knob.map(|knob| knob.name),
+        key: knob.map(|knob| knob.key),
+        value: &row.value,
+        number: knob.and_then(|knob| knob.number),
+        role: knob.map(|knob| knob.role.word()),
+        default: knob.is_none(),
+        wall_s: row.of_runs(|run| Some(run.wall_s)),
+        cpu_s: row.of_runs(|run| run.cpu_s),
+        steps: row.of_runs(|run| Some(run.steps as f64)),
+        ms_per_step: row.of_runs(|run| run.ms_per_step),
+        strength_mpa: row.of_runs(|run| Some(run.strength_mpa)),
+        strength_error_percent: row.of_errors(|errors| Some(errors.strength_percent)),
+        elongation_percent: row.of_runs(|run| Some(run.elongation_percent)),
+        elongation_error_percent: row.of_errors(|errors| Some(errors.elongation_percent)),
+        curve_error_percent: row.of_errors(|errors| errors.curve_percent),
+        plastic_work_error_percent: row.of_errors(|errors| errors.plastic_work_percent),
+        order_tau: row.of_errors(|errors| errors.order_tau),
+        energy_residual_percent: row.of_runs(|run| run.energy_residual_percent),
+        kinetic_over_internal: row.of_runs(|run| run.kinetic_over_internal),
+        grip_mismatch_percent: row.of_runs(|run| run.grip_mismatch_percent),
+        runs: row
+            .runs
+            .iter()
+            .map(|run| RunOut {
+                seed: run.seed,
+                outcome: run.word(),
+                cause: run.cause().map(String::as_str),
+                errors: match &run.outcome {
+                    Outcome::Ran { errors, .. } => errors.as_ref(),
+                    _ => None,
+                },
+            })
+            .collect(),
+    }
+}

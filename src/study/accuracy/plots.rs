@@ -1,0 +1,114 @@
+//! Error over run time, knob by knob, with the front of what cannot be had both faster and more exact.
+
+use super::Study;
+use super::errors::Errors;
+use super::knobs::Role;
+use super::pareto::staircase;
+use super::rows::Row;
+use super::stat::Stat;
+use crate::base::error::Result;
+use crate::study::plot::{self, Axis, Figure, Highlight, Legend, Limit, Mark, Series};
+use std::path::{Path, PathBuf};
+
+/// Of each figure [px of an SVG].
+const SIZE: [u32; 2] = [900, 520];
+
+/// Writes `accuracy.svg` and `accuracy.png` into `folder`. Gives the files.
+///
+/// # Errors
+/// When the folder cannot be written.
+pub fn write(study: &Study, folder: &Path) -> Result<Vec<PathBuf>> {
+    let figures = [
+        figure(study, "strength", 0, |errors| errors.strength_percent),
+        figure(study, "elongation", 1, |errors| errors.elongation_percent),
+    ];
+    let files: Vec<PathBuf> = ["svg", "png"].iter().map(|end| folder.join(format!("accuracy.{end}"))).collect();
+    files.iter().try_for_each(|path| plot::write(&figures, 1, path))?;
+    Ok(files)
+}
+
+/// A row as it is drawn: time [s], size of the error and half the height of its bar [%].
+fn point(study: &Study, row: &Row, error: fn(&Errors) -> f64) -> Option<([f64; 2], f64)> {
+    let time = row.of_runs(|run| if on_one_core(study) { run.cpu_s } else { Some(run.wall_s) })?;
+    let Stat { mean, interval_95, .. } = row.of_errors(|errors| Some(error(errors)))?;
+    Some(([time.mean, mean.abs()], interval_95.unwrap_or(0.0)))
+}
+
+/// Whether processor time is shown: on one thread it is the run time on an idle machine, whatever else this one did.
+fn on_one_core(study: &Study) -> bool {
+    study.threads == 1 && study.rows.iter().all(|row| row.ran().all(|(run, _)| run.cpu_s.is_some()))
+}
+
+fn figure(study: &Study, quantity: &str, which: usize, error: fn(&Errors) -> f64) -> Figure {
+    let time = match on_one_core(study) {
+        true => "processor time on one core [s]".to_string(),
+        false => format!("run time on {} threads [s]", study.threads),
+    };
+    let title = format!("{}: error of {quantity} against run time", study.scene);
+    let mut figure = Figure::new(title, Axis::log(time), Axis::log(format!("|error of {quantity}| [%]")));
+    figure.size = SIZE;
+    figure.legend = Legend::Beside;
+    for knob in study.knobs() {
+        let rows = study.path(knob);
+        let points: Vec<([f64; 2], f64)> = rows.iter().filter_map(|row| point(study, row, error)).collect();
+        let joined = rows.iter().any(|row| row.knob.as_ref().is_some_and(|k| matches!(k.role, Role::Refines)));
+        let other = rows.iter().any(|row| row.is_other_model());
+        // One without points keeps its place, so that colours stay with their knobs, but not its line in the legend.
+        let name = match (points.is_empty(), other) {
+            (true, _) => String::new(),
+            (_, true) => format!("{knob} (other model)"),
+            (_, false) => knob.to_string(),
+        };
+        let mut series = Series::new(
+            name,
+            if joined { Mark::LineAndPoints } else { Mark::Points },
+            points.iter().map(|(at, _)| *at).collect(),
+        );
+        if study.seeds.len() > 1 {
+            series.errors = points.iter().map(|(_, half)| *half).collect();
+        }
+        figure.series.push(series);
+    }
+    figure.series.extend(front_of(study, error));
+    if let Some((at, _)) = study.rows.iter().find(|row| row.knob.is_none()).and_then(|row| point(study, row, error)) {
+        figure.series.push(Series::new("", Mark::Points, vec![at]));
+        figure.highlights.push(Highlight { at, name: "the scene as it stands".into() });
+    }
+    let sure = study.reference.uncertainty_percent[which];
+    if !study.reference.closed_form && sure > 0.0 {
+        figure.limits.push(Limit::Y(sure, "uncertainty of the reference".into()));
+    }
+    figure
+}
+
+/// Other models have no error, so they do not compete.
+fn front_of(study: &Study, error: fn(&Errors) -> f64) -> Option<Series> {
+    let rows = study.rows.iter().filter(|row| !row.is_other_model());
+    let points: Vec<[f64; 2]> = rows.filter_map(|row| point(study, row, error)).map(|(at, _)| at).collect();
+    let line = staircase(&points);
+    (!line.is_empty()).then(|| Series::new("best found (Pareto front)", Mark::Behind, line))
+}
+
+impl Study {
+    /// Names of the knobs that were turned, in the order of the rows.
+    fn knobs(&self) -> Vec<&'static str> {
+        let mut names: Vec<&str> = self.rows.iter().filter_map(|row| row.knob.as_ref()).map(|knob| knob.name).collect();
+        names.dedup();
+        names
+    }
+
+    /// The rows of a knob; where it refines, by rising value, the scene as it stands in its place among them.
+    fn path(&self, knob: &str) -> Vec<&Row> {
+        let mut rows: Vec<&Row> =
+            self.rows.iter().filter(|row| row.knob.as_ref().is_some_and(|k| k.name == knob)).collect();
+        let turn = rows.first().and_then(|row| row.knob.as_ref());
+        if let (Some(Role::Refines), Some(own)) =
+            (turn.map(|turn| turn.role), turn.and_then(|turn| turn.default_number))
+        {
+            let number = |row: &&Row| row.knob.as_ref().and_then(|k| k.number).unwrap_or(own);
+            rows.extend(self.rows.iter().filter(|row| row.knob.is_none()));
+            rows.sort_by(|a, b| number(a).total_cmp(&number(b)));
+        }
+        rows
+    }
+}

@@ -1,0 +1,322 @@
+//! The study as people read it: two tables and what stands around them.
+
+use super::errors::Errors;
+use super::measured::Measured;
+use super::reference::Along;
+use super::rows::{Outcome, Row};
+use super::stat::Stat;
+use super::{Reference, Study, Subject};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A table for people, as it stands on the screen and on the page.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Table {
+    /// Its heading.
+    pub title: String,
+    /// Heads of the columns, with units.
+    pub heads: Vec<String>,
+    /// Cells, row by row.
+    pub rows: Vec<Vec<String>>,
+    /// Which of the rows is the scene as it stands.
+    pub default: Option<usize>,
+}
+
+/// Columns of text at the left: knob and value.
+const LEFT: usize = 2;
+
+/// What was asked of each row, and what it costs.
+pub fn costs_and_errors(study: &Study) -> Table {
+    let heads = [
+        "knob (scene has)",
+        "value",
+        "run time [s]",
+        "CPU [s]",
+        "steps",
+        "ms/step",
+        "strength [MPa]",
+        "error [%]",
+        "elongation [%]",
+        "error [%]",
+        "curve [%]",
+        "note",
+    ];
+    let cells = |row: &Row| {
+        vec![
+            mean(row.of_runs(|run| Some(run.wall_s)), 2),
+            mean(row.of_runs(|run| run.cpu_s), 2),
+            mean(row.of_runs(|run| Some(run.steps as f64)), 0),
+            mean(row.of_runs(|run| run.ms_per_step), 3),
+            mean(row.of_runs(|run| Some(run.strength_mpa)), 2),
+            signed(row.of_errors(|errors| Some(errors.strength_percent))),
+            mean(row.of_runs(|run| Some(run.elongation_percent)), 3),
+            signed(row.of_errors(|errors| Some(errors.elongation_percent))),
+            unsigned(row.of_errors(|errors| errors.curve_percent)),
+            row.note(),
+        ]
+    };
+    table("Error against run time", &heads, study, cells)
+}
+
+/// What else went otherwise, and whether the run may be believed.
+pub fn histories_and_checks(study: &Study) -> Table {
+    let heads = [
+        "knob (scene has)",
+        "value",
+        "plastic work [%]",
+        "worst layer [%]",
+        "first break",
+        "break order τ [-]",
+        "energy residual [%]",
+        "kinetic/internal [-]",
+        "grip mismatch [%]",
+    ];
+    let layers = study.layers();
+    let cells = |row: &Row| {
+        vec![
+            signed(row.of_errors(|errors| errors.plastic_work_percent)),
+            worst_layer(row, &layers),
+            first_break(row),
+            mean(row.of_errors(|errors| errors.order_tau), 2),
+            signed(row.of_runs(|run| run.energy_residual_percent)),
+            mean(row.of_runs(|run| run.kinetic_over_internal), 4),
+            mean(row.of_runs(|run| run.grip_mismatch_percent), 2),
+        ]
+    };
+    table("What else differs from the reference, and whether loading was quasi-static", &heads, study, cells)
+}
+
+fn table(title: &str, heads: &[&str], study: &Study, cells: impl Fn(&Row) -> Vec<String>) -> Table {
+    let mut last = None;
+    // What was not run is told below the tables.
+    let shown = || study.rows.iter().filter(|row| !row.is_missing());
+    let rows = shown().map(|row| {
+        let (knob, value) = match &row.knob {
+            None => ("the scene as it stands".into(), String::new()),
+            Some(knob) if last == Some(knob.name) => (String::new(), row.value.clone()),
+            Some(knob) => (format!("{} ({})", knob.name, knob.default), row.value.clone()),
+        };
+        last = row.knob.as_ref().map(|knob| knob.name);
+        [knob, value].into_iter().chain(cells(row)).collect()
+    });
+    let default = shown().position(|row| row.knob.is_none());
+    Table {
+        title: title.into(),
+        heads: heads.iter().map(|head| head.to_string()).collect(),
+        rows: rows.collect(),
+        default,
+    }
+}
+
+fn mean(stat: Option<Stat>, decimals: usize) -> String {
+    stat.map_or(String::new(), |stat| format!("{:.decimals$}", stat.mean))
+}
+
+/// An error with its sign, and its interval over seeds.
+fn signed(stat: Option<Stat>) -> String {
+    stat.map_or(String::new(), |stat| with_interval(format!("{:+.3}", stat.mean), stat))
+}
+
+fn unsigned(stat: Option<Stat>) -> String {
+    stat.map_or(String::new(), |stat| with_interval(format!("{:.3}", stat.mean), stat))
+}
+
+fn with_interval(mean: String, stat: Stat) -> String {
+    // Errors that round to nothing have no sign.
+    let mean = if mean == "+0.000" || mean == "-0.000" { "0.000".into() } else { mean };
+    stat.interval_95.map_or(mean.clone(), |half| format!("{mean} ± {half:.3}"))
+}
+
+/// The layer whose mean error over seeds is greatest.
+fn worst_layer(row: &Row, layers: &[String]) -> String {
+    let of_layer = |k: usize| row.of_errors(|errors| errors.layers_percent.get(k).copied().flatten());
+    let known = (0..layers.len()).filter_map(|k| Some((k, of_layer(k)?)));
+    let worst = known.max_by(|a, b| a.1.mean.total_cmp(&b.1.mean));
+    worst.map_or(String::new(), |(k, stat)| format!("{:.3} {}", stat.mean, layers[k]))
+}
+
+fn first_break(row: &Row) -> String {
+    let known: Vec<&Errors> =
+        row.ran().filter_map(|(_, errors)| errors).filter(|errors| errors.same_first_wire.is_some()).collect();
+    match &known[..] {
+        [] => String::new(),
+        [one] => {
+            let place = one.first_break_off_mm.map_or(String::new(), |off| match format!("{off:+.1}").as_str() {
+                "+0.0" | "-0.0" => ", same place".into(),
+                off => format!(", {off} mm"),
+            });
+            let wire = if one.same_first_wire == Some(true) { "same wire" } else { "other wire" };
+            format!("{wire}{place}")
+        }
+        several => {
+            let same = several.iter().filter(|errors| errors.same_first_wire == Some(true)).count();
+            format!("{same} of {} same wire", several.len())
+        }
+    }
+}
+
+impl Table {
+    /// Text to the left, numbers to the right, a note at the end.
+    pub fn to_text(&self) -> String {
+        // Units stand below what they belong to, which keeps columns narrow.
+        let split = |head: &String| match head.split_once(" [") {
+            Some((what, unit)) => [what.to_string(), format!("[{unit}")],
+            None => [head.clone(), String::new()],
+        };
+        let heads: Vec<[String; 2]> = self.heads.iter().map(split).collect();
+        let [whats, units] = [0, 1].map(|k| heads.iter().map(|head| head[k].clone()).collect::<Vec<_>>());
+        let width = |k: usize| {
+            let cells = self.rows.iter().map(|row| &row[k]).chain(&heads[k]);
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.heads.len()).map(width).collect();
+        let line = |cells: &[String]| {
+            let padded = cells.iter().enumerate().map(|(k, cell)| {
+                let pad = " ".repeat(widths[k] - cell.chars().count());
+                if k < LEFT || self.heads[k] == "note" { format!("{cell}{pad}") } else { format!("{pad}{cell}") }
+            });
+            padded.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
+        };
+        let rule = "-".repeat(widths.iter().sum::<usize>() + 2 * (widths.len() - 1));
+        let rows: String = self.rows.iter().map(|row| line(row)).collect();
+        format!("{}\n{}{}{rule}\n{rows}", self.title, line(&whats), line(&units))
+    }
+}
+
+/// The knobs of a scene, what each trades and its values, and the knobs that it has not.
+pub fn list(subject: &Subject) -> String {
+    let mut text = String::new();
+    for turned in &subject.turned {
+        let ladder = &turned.ladder;
+        let values: Vec<&str> = ladder.levels.iter().map(|level| level.value.shown.as_str()).collect();
+        let _ = writeln!(text, "{:16}{}", turned.knob.name, turned.knob.trades);
+        let _ = writeln!(text, "{:16}{}: {}", "", turned.knob.key, ladder.role.word());
+        let _ = writeln!(text, "{:16}{} as the scene stands; would try {}", "", ladder.base.shown, values.join(" | "));
+    }
+    for (knob, reason) in &subject.absent {
+        let _ = writeln!(text, "{knob:16}not here: {reason}");
+    }
+    text
+}
+
+/// What the runs are compared with.
+pub fn reference(reference: &Reference, seeds: usize) -> String {
+    let Reference { words, value, refined, uncertainty_percent: sure, closed_form, .. } = reference;
+    let mean = if seeds > 1 { format!(", mean of {seeds} seeds") } else { String::new() };
+    let mut text = format!("Reference: {words}.\n");
+    if *closed_form {
+        let _ = writeln!(text, "  strength {:.3} MPa, elongation {:.4} %{mean}, exact", value[0], value[1]);
+        let off = [0, 1].map(|k| 100.0 * (refined[k] / value[k] - 1.0));
+        if !reference.along.is_empty() {
+            let _ = writeln!(
+                text,
+                "  refinement alone would have given {:.3} MPa ({:+.3} % off, {:.3} % believed) and {:.4} % ({:+.3} % off, \
+                 {:.3} % believed)",
+                refined[0], off[0], sure[0], refined[1], off[1], sure[1]
+            );
+        }
+    } else {
+        let _ = writeln!(
+            text,
+            "  strength {:.3} MPa ± {:.3} %, elongation {:.4} % ± {:.3} %{mean}",
+            value[0], sure[0], value[1], sure[1]
+        );
+    }
+    for line in along(&reference.along) {
+        let _ = writeln!(text, "  {line}");
+    }
+    text
+}
+
+/// What refinement along each knob adds, mean over seeds.
+fn along(all: &[(u64, Along)]) -> Vec<String> {
+    let mut knobs: Vec<&str> = Vec::new();
+    for (_, along) in all {
+        if !knobs.contains(&along.knob) {
+            knobs.push(along.knob);
+        }
+    }
+    let line = |knob: &&str| {
+        let here = || all.iter().map(|(_, along)| along).filter(|along| along.knob == *knob);
+        let stat = |value: &dyn Fn(&Along) -> f64| Stat::of(&here().map(value).collect::<Vec<_>>());
+        let orders = |k: usize| {
+            let known: Vec<f64> = here().filter_map(|along| along.order[k]).collect();
+            match Stat::of(&known) {
+                Some(order) if known.len() == here().count() => format!("order {:.2}", order.mean),
+                Some(order) => format!("order {:.2} in {} of {} seeds", order.mean, known.len(), here().count()),
+                None => "no order observed".into(),
+            }
+        };
+        let quantity = |name: &str, k: usize| {
+            let correction = signed(stat(&|along| along.correction_percent[k]));
+            let sure = mean(stat(&|along| along.uncertainty_percent[k]), 3);
+            if correction == "0.000" && sure == "0.000" {
+                return format!("{name} unchanged");
+            }
+            format!("{name} {correction} % (uncertain by {sure} %, {})", orders(k))
+        };
+        format!("towards the limit in {knob}: {}, {}", quantity("strength", 0), quantity("elongation", 1))
+    };
+    knobs.iter().map(line).collect()
+}
+
+/// What was not run because the budget had no room for it, knob by knob, with what it would have taken.
+pub fn left_out(study: &Study) -> Vec<String> {
+    let mut by_knob: Vec<(&str, Vec<String>, f64)> = Vec::new();
+    for row in &study.rows {
+        let knob = row.knob.as_ref().map_or("", |knob| knob.name);
+        for run in &row.runs {
+            let Outcome::LeftOut(seconds) = run.outcome else { continue };
+            let seed = if study.seeds.len() > 1 { format!(" (seed {})", run.seed) } else { String::new() };
+            let value = format!("{}{seed}", row.value);
+            match by_knob.last_mut().filter(|(last, ..)| *last == knob) {
+                Some((_, values, sum)) => {
+                    values.push(value);
+                    *sum += seconds;
+                }
+                None => by_knob.push((knob, vec![value], seconds)),
+            }
+        }
+    }
+    let line =
+        |(knob, values, sum): (&str, Vec<String>, f64)| format!("{knob}: {} (about {sum:.0} s)", values.join(" | "));
+    by_knob.into_iter().map(line).collect()
+}
+
+/// What failed, with its cause.
+pub fn failed(study: &Study) -> Vec<String> {
+    let of_row = |row: &Row| {
+        let knob = row.knob.as_ref().map_or("the scene as it stands", |knob| knob.name).to_string();
+        let value = row.value.clone();
+        let failed: Vec<(u64, String)> =
+            row.runs.iter().filter_map(|run| Some((run.seed, run.cause()?.clone()))).collect();
+        failed.into_iter().map(move |(seed, cause)| format!("{knob} {value} failed: {cause} (seed {seed})"))
+    };
+    study.rows.iter().flat_map(of_row).collect()
+}
+
+/// What must be known of the run times; `None` when there is nothing.
+pub fn caution(study: &Study) -> Option<String> {
+    let starved = |run: &Measured| study.threads == 1 && run.cpu_s.is_some_and(|cpu| cpu < LEAST_SHARE * run.wall_s);
+    let runs = || study.rows.iter().flat_map(|row| row.ran().map(|(run, _)| run));
+    let count = runs().filter(|run| starved(run)).count();
+    (count > 0).then(|| {
+        format!(
+            "The machine was busy: {count} of {} runs got less than {:.0} % of a core, so their run times say little; \
+             the plot shows processor time.",
+            runs().count(),
+            100.0 * LEAST_SHARE
+        )
+    })
+}
+
+/// Processor time over run time on one thread below which the machine was busy with something else [-].
+const LEAST_SHARE: f64 = 0.9;
+
+impl Study {
+    /// Names of the layers, inside out.
+    pub fn layers(&self) -> Vec<String> {
+        let first: Option<&Measured> = self.rows.iter().flat_map(|row| row.ran().map(|(run, _)| run)).next();
+        first.map_or(Vec::new(), |run| run.layers.clone())
+    }
+}
