@@ -2,7 +2,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::scene::plan::{ContactPlan, Plan};
-use crate::scene::spec::{ContactSpec, DriveSpec, Shape, Spec, TangentialSpec};
+use crate::scene::spec::{AdaptiveSpec, ContactSpec, DriveSpec, Shape, Spec, TangentialSpec};
 use crate::scene::suggest::nearest;
 
 /// Something that can be turned.
@@ -92,6 +92,18 @@ pub const KNOBS: &[Knob] = &[
         key: "grip.speed",
         trades: "pull speed: inertia of the strand against simulated time",
         ladder: speed,
+    },
+    Knob {
+        name: "adaptive",
+        key: "grip.adaptive",
+        trades: "faster pull between the closing of layers and the first rupture: simulated time against inertia",
+        ladder: adaptive,
+    },
+    Knob {
+        name: "resolution",
+        key: "time.contact_resolution",
+        trades: "how finely a contact is stepped at the least: course of impacts against steps",
+        ladder: resolution,
     },
     Knob {
         name: "spacing",
@@ -208,6 +220,44 @@ fn speed(spec: &Spec) -> Ladders {
         }
         _ => Err("no grip pulls at a constant speed".into()),
     }
+}
+
+/// The pull speeds up over nine tenths of the way or so.
+fn adaptive(spec: &Spec) -> Ladders {
+    let grip = spec.grip.as_ref().filter(|_| Plan::new(spec).rupture);
+    let Some((now, grip)) = grip.and_then(|grip| match grip.drive {
+        DriveSpec::Speed(now) if now > 0.0 => Some((now, grip)),
+        _ => None,
+    }) else {
+        return Err("no grip pulls at a steady speed until something breaks".into());
+    };
+    let keys = |fastest: f64| {
+        let with = |a: &AdaptiveSpec| {
+            let (from, kinetic) = (number_with(tidy(100.0 * a.from), "%"), tidy(a.kinetic));
+            format!("from = \"{from}\", kinetic = {kinetic}, passages = {}, ", tidy(a.passages))
+        };
+        let others = grip.adaptive.as_ref().map_or("from = \"5 %\", ".into(), with);
+        format!("grip.adaptive={{ {others}fastest = \"{} m/s\" }}", tidy(fastest))
+    };
+    let own = grip.adaptive.as_ref().map_or(now, |a| a.fastest);
+    let levels = [2.0, 4.0].map(|factor| factor * own).into_iter().map(|fastest| Level {
+        value: Value { number: None, shown: format!("up to {} m/s", tidy(fastest)) },
+        set: vec![keys(fastest)],
+        work: own / fastest + 0.2,
+        writes: false,
+    });
+    let base = grip.adaptive.as_ref().map_or("constant".into(), |a| format!("up to {} m/s", tidy(a.fastest)));
+    Ok(Ladder { role: Role::Neutral, base: Value { number: None, shown: base }, levels: levels.collect() })
+}
+
+fn resolution(spec: &Spec) -> Ladders {
+    touching(spec).ok_or(NO_CONTACTS)?;
+    if spec.time.step.is_some() {
+        return Err("the scene fixes its time step (time.step)".into());
+    }
+    let now = spec.time.contact_resolution;
+    let levels = [0.5, 2.0, 4.0].map(|f| level("time.contact_resolution", now * f, "", (1.0 / f).max(0.9))).to_vec();
+    Ok(Ladder { role: Role::Neutral, base: base(now, ""), levels })
 }
 
 /// Steps and particles both go with the inverse of the spacing.
