@@ -8,16 +8,15 @@ use std::fmt;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 use strandsnap::base::lanes::{BLOCK, Lanes, Real};
-use strandsnap::run::cost::cpu_time;
 
 /// Memory of the far triad [bytes]: more than caches hold.
 const FAR: usize = 768 << 20;
 /// A rate is the best of as many goes as this time has room for.
-const TIME: Duration = Duration::from_millis(60);
+const TIME: Duration = Duration::from_millis(200);
 /// Independent chains, enough to hide the latency of any operation.
 const CHAINS: usize = 8;
 /// Operations per chain and go.
-const ROUNDS: usize = 20_000;
+const ROUNDS: usize = 200_000;
 
 /// Rates of all threads together.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -78,7 +77,7 @@ fn triad(threads: usize, bytes: usize) -> f64 {
     // A go takes long against starting the threads.
     let passes = ((32 << 20) / (3 * size_of::<f64>() * each)).max(1);
     let mut arrays: Vec<[Vec<f64>; 3]> = (0..threads).map(|_| [0.0, 1.0, 2.0].map(|v| vec![v; each])).collect();
-    let best = best(threads, || {
+    let best = best(|| {
         std::thread::scope(|scope| {
             for [a, b, c] in &mut arrays {
                 scope.spawn(move || {
@@ -104,7 +103,7 @@ enum Kind {
 fn arithmetic(threads: usize, kind: Kind) -> f64 {
     let arch = Arch::new();
     let lanes = arch.dispatch(Chains { kind, rounds: 0 }).0;
-    let best = best(threads, || {
+    let best = best(|| {
         std::thread::scope(|scope| {
             (0..threads).for_each(|_| {
                 scope.spawn(|| black_box(arch.dispatch(Chains { kind, rounds: ROUNDS })));
@@ -114,16 +113,15 @@ fn arithmetic(threads: usize, kind: Kind) -> f64 {
     (threads * CHAINS * ROUNDS * lanes) as f64 / best
 }
 
-/// Best time of some goes on `threads` threads [s]: on the processor, so that programs beside this one count less; on
-/// the wall where the system does not tell.
-fn best(threads: usize, mut go: impl FnMut()) -> f64 {
+/// Best time of some goes [s]. By the wall: the clock of the processor comes in steps on some machines. Goes are so short
+/// that programs beside this one leave some of them alone.
+fn best(mut go: impl FnMut()) -> f64 {
     go();
     let (begin, mut best) = (Instant::now(), f64::INFINITY);
     while begin.elapsed() < TIME || best == f64::INFINITY {
-        let (clock, busy) = (Instant::now(), cpu_time());
+        let clock = Instant::now();
         go();
-        let on_processor = cpu_time().zip(busy).map(|(after, before)| (after - before) / threads as f64);
-        best = best.min(on_processor.unwrap_or_else(|| clock.elapsed().as_secs_f64()));
+        best = best.min(clock.elapsed().as_secs_f64());
     }
     best
 }
@@ -175,8 +173,9 @@ impl WithSimd for Chains {
         let mut numbers = [0.0; BLOCK];
         let mut sum = 0.0;
         for chain in chains {
+            // All of them, or the compiler would leave out what nobody asks for.
             chain.store(&mut numbers, 0);
-            sum += numbers[0];
+            sum += numbers.iter().sum::<f64>();
         }
         (Lanes::<S>::LEN, sum)
     }

@@ -329,9 +329,8 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for CapsuleContacts<N, T> {
             let overlap = state.radius[i] + radius - c.history.offset - distance;
             let Some(k) = foreseen_stiffness(&self.laws, &c.history, overlap, approach, horizon) else { continue };
             let viscosity = viscous_coefficient(self.laws.damping, mass_of(state, &c), k[0]) * c.share;
-            let weight = [1.0, 1.0 - c.t, c.t];
-            let arm = [state.radius[i], radius, radius];
-            out.contact([c.i, c.j, next as u32], weight, k.map(|k| k * c.share), arm, viscosity);
+            let arm = [state.radius[i], radius];
+            out.contact([c.i, c.j, next as u32], c.t, k.map(|k| k * c.share), arm, viscosity);
         }
     }
 

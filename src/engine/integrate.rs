@@ -1,6 +1,5 @@
 //! Leapfrog: forces gathered per particle in a fixed order, velocities kicked, positions drifted.
 
-use super::neighbours::Reference;
 use super::spheres::SecondSides;
 use super::state::{BondActions, CHUNK, State};
 use crate::base::lanes::{BLOCK, Lanes, Real};
@@ -222,25 +221,9 @@ impl WithSimd for Kick<'_> {
     }
 }
 
-/// What a drift saw.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drifted {
-    /// Greatest squared displacement of the step [m²]; NaN when a position is not a number.
-    pub largest2: f64,
-    /// Greatest squared distance from the affine stretch since the last neighbour search [m²].
-    pub residual2: f64,
-}
-
-impl Drifted {
-    const NOTHING: Self = Self { largest2: 0.0, residual2: 0.0 };
-
-    fn with(self, other: Self) -> Self {
-        Self { largest2: larger(self.largest2, other.largest2), residual2: larger(self.residual2, other.residual2) }
-    }
-}
-
-/// Positions over `state.dt`.
-pub fn drift(state: &mut State, neighbours: Option<&Reference>, arch: Arch) -> Drifted {
+/// Positions over `state.dt`; returns the greatest squared displacement of the step [m²], NaN when a position is not a
+/// number.
+pub fn drift(state: &mut State, arch: Arch) -> f64 {
     let dt = state.dt;
     let (v, x) = (&state.v, &mut state.x);
     (x.x.par_chunks_mut(CHUNK), x.y.par_chunks_mut(CHUNK), x.z.par_chunks_mut(CHUNK))
@@ -250,45 +233,36 @@ pub fn drift(state: &mut State, neighbours: Option<&Reference>, arch: Arch) -> D
         .map(|(chunk, (x, y, z))| {
             let here = chunk * CHUNK..chunk * CHUNK + x.len();
             let v = v.rows().map(|row| &row[here.clone()]);
-            arch.dispatch(Drift { first: here.start, x: [x, y, z], v, dt, neighbours })
+            arch.dispatch(Drift { x: [x, y, z], v, dt })
         })
-        .reduce(|| Drifted::NOTHING, Drifted::with)
+        .reduce(|| 0.0, larger)
 }
 
 /// Positions of one chunk.
 struct Drift<'a> {
-    first: usize,
     x: [&'a mut [f64]; 3],
     v: [&'a [f64]; 3],
     dt: f64,
-    neighbours: Option<&'a Reference<'a>>,
 }
 
 impl WithSimd for Drift<'_> {
-    type Output = Drifted;
+    type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Drifted {
-        let Drift { first, x, v, dt, neighbours } = self;
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Drift { x, v, dt } = self;
         let zero = Lanes::splat(simd, 0.0);
-        let (mut largest2, mut residual2) = (zero, zero);
+        let mut largest2 = zero;
         for k in (0..x[0].len()).step_by(Lanes::<S>::LEN) {
-            let (mut step2, mut here) = (zero, [zero; 3]);
+            let mut step2 = zero;
             for axis in 0..3 {
                 let step = Lanes::load_up_to_end(simd, v[axis], k) * dt;
                 step2 += step * step;
-                here[axis] = Lanes::load_up_to_end(simd, x[axis], k) + step;
-                here[axis].store_up_to_end(x[axis], k);
+                (Lanes::load_up_to_end(simd, x[axis], k) + step).store_up_to_end(x[axis], k);
             }
             largest2 = worse(largest2, step2);
-            if let Some(reference) = neighbours {
-                let mut residual = reference.residual2(simd, first + k, here);
-                // Past the end there is no particle.
-                (x[0].len().saturating_sub(k)..Lanes::<S>::LEN).for_each(|lane| residual.put(lane, 0.0));
-                residual2 = worse(residual2, residual);
-            }
         }
-        Drifted { largest2: largest(largest2), residual2: largest(residual2) }
+        largest(largest2)
     }
 }
 

@@ -11,6 +11,7 @@ pub mod contacts;
 pub mod crossing;
 pub mod grips;
 pub mod integrate;
+mod kinds;
 pub mod measure;
 pub mod neighbours;
 pub mod pace;
@@ -204,20 +205,18 @@ impl Engine {
         integrate::kick(&mut self.state, kicked, turn, self.arch);
         self.state.dt = self.next_dt;
         self.holds.apply(&mut self.state, kicked, self.arch);
-        let stretch = self.holds.stretch;
-        let reference = self.contacts.as_ref().and_then(|c| c.neighbours.reference(&stretch));
-        let drifted = integrate::drift(&mut self.state, reference.as_ref(), self.arch);
+        let largest2 = integrate::drift(&mut self.state, self.arch);
         self.state.step += 1;
         self.state.time += self.state.dt;
         self.measures.grip(&self.holds.reaction, self.state.dt);
         self.timings.integrate += began.elapsed();
-        self.state.travel += drifted.largest2.sqrt();
+        self.state.travel += largest2.sqrt();
         let limit = RUNAWAY * self.least_radius;
-        if drifted.largest2.is_nan() || drifted.largest2 > limit * limit {
+        if largest2.is_nan() || largest2 > limit * limit {
             return Err(self.runaway(limit));
         }
         if let Some(c) = &mut self.contacts {
-            c.stale |= c.neighbours.stale(drifted.residual2, &stretch);
+            c.stale |= c.neighbours.stale(&self.state, &self.holds.stretch);
         }
         self.forces()
     }

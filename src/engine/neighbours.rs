@@ -5,12 +5,10 @@
 
 use super::bytes::{behind, behind_all};
 use super::state::{CHUNK, State};
-use crate::base::lanes::{Lanes, Real};
 use crate::base::vectors::Vectors;
 use crate::scene::spec::Shape;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
-use pulp::Simd;
 use rayon::prelude::*;
 
 /// The search follows bonds up to this multiple of the longest stress-free length [-]: one bond that necks without end
@@ -32,28 +30,6 @@ pub struct Stretch {
     pub gauge: [f64; 2],
     /// Displacement of the upper grip since the start [m].
     pub displacement: f64,
-}
-
-/// Positions at the last search and the affine stretch since.
-pub struct Reference<'a> {
-    position: &'a Vectors,
-    low: f64,
-    inverse_length: f64,
-    moved: f64,
-}
-
-impl Reference<'_> {
-    /// Squared distance of particles from where the stretch would have them [m²]; they are those from `first` on, at
-    /// `here`. Past the last particle it means nothing.
-    #[inline(always)]
-    pub fn residual2<S: Simd>(&self, simd: S, first: usize, here: [Lanes<S>; 3]) -> Lanes<S> {
-        let load = |row: &[f64]| Lanes::load_up_to_end(simd, row, first);
-        let (x, y, z) = (load(&self.position.x), load(&self.position.y), load(&self.position.z));
-        let share = (z - self.low) * self.inverse_length;
-        let share = share.greater(share.like(0.0)).lesser(share.like(1.0));
-        let (dx, dy, dz) = (here[0] - x, here[1] - y, here[2] - z - share * self.moved);
-        dx * dx + dy * dy + dz * dz
-    }
 }
 
 /// Candidate search with its skin.
@@ -78,6 +54,8 @@ pub struct Neighbours {
     list: PairList,
     found: Vec<Vec<(u32, u32)>>,
     cells: Cells,
+    /// No pair can come within reach unseen until [`State::travel`] has reached this [m].
+    safe_until: f64,
     /// Number of searches so far.
     pub rebuilds: u64,
 }
@@ -120,37 +98,50 @@ impl Neighbours {
             list: PairList::default(),
             found: Vec::new(),
             cells: Cells::default(),
+            safe_until: 0.0,
             rebuilds: 0,
         }
     }
 
-    /// Whether a pair may have come within reach unseen. `largest2` is the greatest squared distance from
-    /// [`Reference::residual2`].
-    pub fn stale(&self, largest2: f64, now: &Stretch) -> bool {
+    /// Whether a pair may have come within reach unseen. Particles are looked at only once [`State::travel`] allows that
+    /// one has: a search lasts for hundreds of steps.
+    pub fn stale(&mut self, state: &State, now: &Stretch) -> bool {
         if self.rebuilds == 0 {
             return true;
         }
+        if state.travel < self.safe_until {
+            return false;
+        }
         let length = self.stretch.gauge[1] + self.stretch.displacement - self.stretch.gauge[0];
         let strain = if length > 0.0 { ((now.displacement - self.stretch.displacement) / length).abs() } else { 0.0 };
-        2.0 * largest2.sqrt() + strain * (2.0 * self.largest + self.margin + self.skin) >= self.skin
+        let reach = 2.0 * self.largest + self.margin + self.skin;
+        let left = self.skin - 2.0 * self.residual(state, now) - strain * reach;
+        // While no particle goes further than 1, held ones included, a residual grows by 2 and the strain by 1/length.
+        let closing = 4.0 + if length > 0.0 { reach / length } else { 0.0 };
+        self.safe_until = state.travel + left / closing;
+        left <= 0.0
     }
 
-    /// Where the affine stretch since the last search would have every particle; `None` before the first search.
-    pub fn reference(&self, now: &Stretch) -> Option<Reference<'_>> {
-        if self.rebuilds == 0 {
-            return None;
-        }
+    /// Greatest distance of a particle from where the affine stretch since the last search would have it [m].
+    fn residual(&self, state: &State, now: &Stretch) -> f64 {
         let [low, high] = self.stretch.gauge;
         let length = high + self.stretch.displacement - low;
         let moved = now.displacement - self.stretch.displacement;
         let (inverse_length, moved) = if length > 0.0 { (1.0 / length, moved) } else { (0.0, 0.0) };
-        Some(Reference { position: &self.reference, low, inverse_length, moved })
+        let square = |p: usize| {
+            let before = self.reference.get(p);
+            let affine = moved * ((before.z - low) * inverse_length).clamp(0.0, 1.0);
+            (state.x.get(p) - before - DVec3::Z * affine).length_squared()
+        };
+        let particles = (0..state.len()).into_par_iter().with_min_len(CHUNK);
+        particles.map(square).reduce(|| 0.0, f64::max).sqrt()
     }
 
     /// Finds all candidate pairs anew.
     pub fn search(&mut self, state: &State, now: Stretch) -> &PairList {
         self.reference.clone_from(&state.x);
         self.stretch = now;
+        self.safe_until = 0.0;
         self.rebuilds += 1;
         self.longest = longest_bond(state);
         self.margin = self.needed_margin();
@@ -409,15 +400,9 @@ mod tests {
                 let z0 = start.z[i];
                 state.x.z[i] = z0 + d * ((z0 - 0.01) / 0.1).clamp(0.0, 1.0);
             }
-            let seen = |r: Reference| {
-                let all = (0..state.len()).map(|i| {
-                    let here = state.x.get(i).to_array().map(|x| Lanes::splat(pulp::Scalar, x));
-                    r.residual2(pulp::Scalar, i, here).at(0)
-                });
-                all.fold(0.0, f64::max)
-            };
-            let largest = neighbours.reference(&now).map_or(0.0, seen);
-            if neighbours.stale(largest, &now) {
+            // What the motion until here amounts to.
+            state.travel = d;
+            if neighbours.stale(&state, &now) {
                 neighbours.search(&state, now);
             }
         }

@@ -14,6 +14,7 @@ mod second;
 
 use super::bytes::{Bytes, NUMBER, VECTOR, behind};
 use super::contacts::{Contacts, closing};
+use super::kinds::Kinds;
 use super::neighbours::PairList;
 use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
 use super::state::{CHUNK, Deepest, Partial, State};
@@ -29,7 +30,6 @@ use pulp::Arch;
 use rayon::prelude::*;
 use second::Places;
 pub use second::SecondSides;
-use std::collections::HashMap;
 
 /// Pairs (i + k, j + k), k below [`BLOCK`].
 #[derive(Debug, Clone, Copy)]
@@ -78,34 +78,8 @@ fn pair(key: u64) -> [u32; 2] {
 struct Store {
     blocks: Vec<Block>,
     records: Vec<f64>,
-    constants: Constants,
-}
-
-/// What does not change from search to search: R* [m], 0 where no candidate is, and 2ξ√m* [√kg]. Nearly all blocks of a
-/// strand are alike in it, so each kind is kept once.
-#[derive(Default)]
-struct Constants {
-    /// Two rows of [`BLOCK`] numbers each.
-    rows: Vec<f64>,
-    /// Place of each kind by its bits.
-    kinds: HashMap<[u64; 2 * BLOCK], u32>,
-}
-
-impl Constants {
-    fn clear(&mut self) {
-        self.rows.clear();
-        self.kinds.clear();
-    }
-
-    /// Where these rows are.
-    fn place(&mut self, rows: &[f64; 2 * BLOCK]) -> u32 {
-        let next = self.rows.len() as u32;
-        let place = *self.kinds.entry(rows.map(f64::to_bits)).or_insert(next);
-        if place == next {
-            self.rows.extend_from_slice(rows);
-        }
-        place
-    }
+    /// What does not change from search to search: a row of R* [m], 0 where no candidate is, and one of 2ξ√m* [√kg].
+    constants: Kinds,
 }
 
 /// Contacts between spheres with normal law `N` and tangential law `T`.
@@ -156,7 +130,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
     }
 
     fn history(store: &Store, block: usize, lane: usize) -> History<N, T> {
-        let radius = store.constants.rows[store.blocks[block].constants as usize + lane];
+        let radius = store.constants.rows()[store.blocks[block].constants as usize + lane];
         History::of(radius, |k| store.records[Self::place(block, k, lane)])
     }
 
@@ -291,7 +265,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             starts: &self.starts,
             blocks: &mut self.now.blocks,
             records: &mut self.now.records,
-            constants: &self.now.constants.rows,
+            constants: self.now.constants.rows(),
             actions: &mut self.actions[BLOCK..end],
             sides,
             partial: &mut self.partial,
@@ -337,12 +311,12 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             let mass = reduced_mass(state.mass[i], state.mass[j]);
             let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
             let nodes = [i as u32, j as u32, 0];
-            out.contact(nodes, [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j], 0.0], viscosity);
+            out.contact(nodes, 0.0, k, [state.radius[i], state.radius[j]], viscosity);
         }
     }
 
     fn bytes(&self, particles: usize) -> Bytes {
-        let store = |s: &Store| behind(&s.blocks) + behind(&s.records) + behind(&s.constants.rows);
+        let store = |s: &Store| behind(&s.blocks) + behind(&s.records) + s.constants.bytes();
         let lists = behind(&self.keys) + behind(&self.starts) + behind(&self.partial) + self.places.bytes();
         let (records, actions) = (size_of_val(&self.now.records[..]), size_of_val(&self.actions[..]));
         // x, v, ω, radius and thinning in; forces and torques of first sides cleared, and added to.

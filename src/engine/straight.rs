@@ -77,37 +77,47 @@ impl Straight<'_> {
     /// As many particles from the first of `run` on as a register holds. Past its end masses are 0, and so is the rest.
     #[inline(always)]
     fn hold<S: Simd>(&mut self, simd: S, run: Range<usize>, lane: usize, sums: &mut Sums) {
-        let load = |numbers: &[f64]| Lanes::load_up_to_end(simd, &numbers[run.clone()], 0);
-        let vector = |v: &Vectors| Triple { x: load(&v.x), y: load(&v.y), z: load(&v.z) };
         let s = &mut *self.state;
-        let (mass, inertia) = (load(&s.mass), load(&s.inertia));
+        let (mass, inertia) = (load(simd, &s.mass, &run), load(simd, &s.inertia, &run));
         let zero = mass.like(0.0);
         let per_kick = 1.0 / self.kicked;
         // The speeds before the kick, the push to where the grip goes, and the work of it.
-        let v = vector(&s.v);
+        let v = vector(simd, &s.v, &run);
         let after = Triple { x: zero, y: zero, z: zero.like(self.speed) };
         let push = (after - v) * (mass * per_kick);
-        let before = v - vector(&s.force) * (load(&s.inverse_mass) * self.kicked);
-        let w = vector(&s.w);
+        let before = v - vector(simd, &s.force, &run) * (load(simd, &s.inverse_mass, &run) * self.kicked);
+        let w = vector(simd, &s.w, &run);
         let twist = w * (-inertia * per_kick);
-        let spin = w - vector(&s.torque) * (load(&s.inverse_inertia) * self.kicked);
+        let spin = w - vector(simd, &s.torque, &run) * (load(simd, &s.inverse_inertia, &run) * self.kicked);
         let work = (push.dot(before + after) + twist.dot(spin)) * (0.5 * self.kicked);
-        let (x, y) = (load(&s.x.x) - self.axis[0], load(&s.x.y) - self.axis[1]);
+        let (x, y) = (load(simd, &s.x.x, &run) - self.axis[0], load(simd, &s.x.y, &run) - self.axis[1]);
         let torque = x * push.y - y * push.x + twist.z;
 
-        let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| (Lanes::load(simd, sum, lane) + part).store(sum, lane);
-        book(&mut sums.force, push.z);
-        book(&mut sums.torque, torque);
-        book(&mut sums.mass, mass);
-        book(&mut sums.work, work);
-        let put = |numbers: &mut [f64], to: Lanes<S>| to.store_up_to_end(&mut numbers[run.clone()], 0);
-        put(&mut s.v.x, zero);
-        put(&mut s.v.y, zero);
-        put(&mut s.v.z, after.z);
-        put(&mut s.w.x, zero);
-        put(&mut s.w.y, zero);
-        put(&mut s.w.z, zero);
+        book(simd, &mut sums.force, lane, push.z);
+        book(simd, &mut sums.torque, lane, torque);
+        book(simd, &mut sums.mass, lane, mass);
+        book(simd, &mut sums.work, lane, work);
+        let State { v, w, .. } = s;
+        after.z.store_up_to_end(&mut v.z[run.clone()], 0);
+        for row in [&mut v.x, &mut v.y, &mut w.x, &mut w.y, &mut w.z] {
+            zero.store_up_to_end(&mut row[run.clone()], 0);
+        }
     }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, numbers: &[f64], run: &Range<usize>) -> Lanes<S> {
+    Lanes::load_up_to_end(simd, &numbers[run.clone()], 0)
+}
+
+#[inline(always)]
+fn vector<S: Simd>(simd: S, v: &Vectors, run: &Range<usize>) -> Triple<Lanes<S>> {
+    Triple { x: load(simd, &v.x, run), y: load(simd, &v.y, run), z: load(simd, &v.z, run) }
+}
+
+#[inline(always)]
+fn book<S: Simd>(simd: S, sum: &mut [f64; BLOCK], lane: usize, part: Lanes<S>) {
+    (Lanes::load(simd, sum, lane) + part).store(sum, lane);
 }
 
 #[cfg(test)]

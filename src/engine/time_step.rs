@@ -15,13 +15,13 @@ use rayon::prelude::*;
 #[derive(Debug, Clone, Copy)]
 struct Element {
     nodes: [u32; 3],
-    /// Share of the element's displacement that each node carries [-].
-    weight: [f64; 3],
+    /// Share of the second side's displacement that the third node carries [-].
+    third: f64,
     /// Stiffness along the normal or axis, and across it [N/m].
     normal: f64,
     across: f64,
-    /// Lever arms of the nodes for the stiffness across [m].
-    arm: [f64; 3],
+    /// Lever arms of the two sides for the stiffness across [m].
+    arm: [f64; 2],
     /// Bending and torsional stiffness [N m/rad].
     bend: f64,
     twist: f64,
@@ -31,15 +31,25 @@ struct Element {
 }
 
 impl Element {
+    /// Share of the element's displacement that a node carries [-].
+    fn weight(&self, node: usize) -> f64 {
+        [1.0, 1.0 - self.third, self.third][node]
+    }
+
+    /// Lever arm of a node [m].
+    fn lever(&self, node: usize) -> f64 {
+        self.arm[node.min(1)]
+    }
+
     fn translation(&self) -> f64 {
         self.normal.max(self.across)
     }
 
     /// √(k/m*) of a contact on its own [1/s].
     fn pair_frequency(&self, state: &State, held: &impl Fn(usize) -> bool) -> f64 {
-        let free = (0..3).filter(|k| self.weight[*k] > 0.0 && !held(self.nodes[*k] as usize));
+        let free = (0..3).filter(|k| self.weight(*k) > 0.0 && !held(self.nodes[*k] as usize));
         let inverse_mass: f64 =
-            free.map(|k| self.weight[k] * self.weight[k] / state.mass[self.nodes[k] as usize]).sum();
+            free.map(|k| self.weight(k) * self.weight(k) / state.mass[self.nodes[k] as usize]).sum();
         (self.normal * inverse_mass).sqrt()
     }
 
@@ -127,10 +137,10 @@ impl Stiffness {
         let viscous = if turn { [axial.max(across), turning] } else { [axial, 0.0] };
         self.elements.push(Element {
             nodes: [slot as u32, slot as u32 + 1, 0],
-            weight: [1.0, 1.0, 0.0],
+            third: 0.0,
             normal: k.axial,
             across: shear,
-            arm: [arm, arm, 0.0],
+            arm: [arm; 2],
             bend,
             twist,
             viscous,
@@ -138,13 +148,14 @@ impl Stiffness {
         });
     }
 
-    /// Adds a contact between nodes with weights; `arm` are the lever arms of friction [m]
-    /// (0 when nothing turns), `viscosity` the viscous coefficient along the normal [N s/m].
-    pub fn contact(&mut self, nodes: [u32; 3], weight: [f64; 3], stiffness: [f64; 2], arm: [f64; 3], viscosity: f64) {
+    /// Adds a contact of the first node with the second and third, the latter with the share `third`; `arm` are the lever
+    /// arms of friction on the two sides [m] (0 when nothing turns), `viscosity` the viscous coefficient along the normal
+    /// [N s/m].
+    pub fn contact(&mut self, nodes: [u32; 3], third: f64, stiffness: [f64; 2], arm: [f64; 2], viscosity: f64) {
         let [normal, across] = stiffness;
         self.elements.push(Element {
             nodes,
-            weight,
+            third,
             normal,
             across,
             arm,
@@ -168,10 +179,10 @@ impl Stiffness {
         for e in &self.elements {
             for k in 0..3 {
                 let node = e.nodes[k] as usize;
-                self.translation[node] += e.translation() * e.weight[k];
-                self.rotation[node] += e.rotation() * e.weight[k];
-                self.viscous[node][0] += e.viscous[0] * e.weight[k];
-                self.viscous[node][1] += e.viscous[1] * e.weight[k];
+                self.translation[node] += e.translation() * e.weight(k);
+                self.rotation[node] += e.rotation() * e.weight(k);
+                self.viscous[node][0] += e.viscous[0] * e.weight(k);
+                self.viscous[node][1] += e.viscous[1] * e.weight(k);
             }
         }
         let found = self.elements.par_chunks(CHUNK).map(|some| self.worst(some, state, resolution, &held));
@@ -217,11 +228,11 @@ impl Stiffness {
             return 0.0;
         }
         (0..3)
-            .filter(|k| e.weight[*k] > 0.0 && !held(e.nodes[*k] as usize))
+            .filter(|k| e.weight(*k) > 0.0 && !held(e.nodes[*k] as usize))
             .map(|k| {
                 let node = e.nodes[k] as usize;
                 let [translation, rotation] = self.viscous[node];
-                e.weight[k] * (translation / state.mass[node] + rotation / state.inertia[node])
+                e.weight(k) * (translation / state.mass[node] + rotation / state.inertia[node])
             })
             .sum()
     }
@@ -232,13 +243,13 @@ impl Stiffness {
         let (mut mass, mut levers, mut turn) = (0.0, 0.0, [0.0; 3]);
         for (k, turn) in turn.iter_mut().enumerate() {
             let node = e.nodes[k] as usize;
-            if e.weight[k] == 0.0 || held(node) {
+            if e.weight(k) == 0.0 || held(node) {
                 continue;
             }
-            mass += e.weight[k] * self.translation[node] / state.mass[node];
+            mass += e.weight(k) * self.translation[node] / state.mass[node];
             if qe > 0.0 {
-                *turn = e.weight[k] * self.rotation[node] / (state.inertia[node] * qe);
-                levers += e.arm[k] * e.arm[k] * *turn;
+                *turn = e.weight(k) * self.rotation[node] / (state.inertia[node] * qe);
+                levers += e.lever(k) * e.lever(k) * *turn;
             }
         }
         let normal = if ke > 0.0 { e.normal / ke * mass } else { 0.0 };

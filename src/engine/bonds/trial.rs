@@ -1,7 +1,7 @@
 //! One bond by itself, with numbers of any kind: the formulas of the stage, without its memory. The bench counts their
 //! operations with numbers that count.
 
-use super::{Node, Step};
+use super::kinematics::{Node, Step};
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
 use crate::law::bond::{BondForce, BondLaw, BondShape};

@@ -1,0 +1,163 @@
+//! The bonds of one chunk, as many at once as a register holds.
+
+use super::kinematics::{Acts, Node, Step};
+use super::{BondStage, CONSTANTS, SHAPE, force, shape};
+use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
+use crate::base::triple::Triple;
+use crate::base::vectors::Vectors;
+use crate::engine::state::{BondActions, CHUNK, Partial};
+use crate::law::bond::BondLaw;
+use pulp::{Simd, WithSimd};
+
+/// The bonds of one chunk at one step.
+pub(super) struct Chunk<'a, L: BondLaw, const TURN: bool> {
+    pub(super) law: &'a L,
+    /// Its first slot.
+    pub(super) first: usize,
+    pub(super) x: &'a Vectors,
+    pub(super) v: &'a Vectors,
+    pub(super) w: &'a Vectors,
+    /// Step [s].
+    pub(super) dt: f64,
+    pub(super) records: &'a mut [f64],
+    /// Where the constants of each block are among `constants`.
+    pub(super) kind: &'a [u32],
+    pub(super) constants: &'a [f64],
+    pub(super) damped: bool,
+    /// Plastic strain at which each slot breaks [-], if that is the criterion.
+    pub(super) limit: Option<&'a [f64]>,
+    pub(super) actions: &'a mut [f64],
+}
+
+/// Energies of one chunk, a sum per lane of a block: added up in the same order whatever the registers' width.
+#[derive(Default)]
+struct Sums {
+    plastic: [f64; BLOCK],
+    damping: [f64; BLOCK],
+}
+
+impl<L: BondLaw, const TURN: bool> WithSimd for Chunk<'_, L, TURN> {
+    /// Energies, and whether a bond may have reached its limit.
+    type Output = (Partial, bool);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
+        let (mut sums, mut due) = (Sums::default(), self.limit.is_none());
+        let blocks = self.records.len() / (BLOCK * BondStage::<L, TURN>::FIELDS);
+        for block in 0..blocks {
+            for lane in (0..BLOCK).step_by(Lanes::<S>::LEN) {
+                due |= self.bonds(simd, block, lane, &mut sums);
+            }
+        }
+        let sum = |lanes: [f64; BLOCK]| lanes.iter().sum();
+        (Partial { plastic: sum(sums.plastic), damping: sum(sums.damping), ..Default::default() }, due)
+    }
+}
+
+impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
+    /// The bonds of a block from `lane` on, as many as a register holds; tells whether one may have reached its limit.
+    #[inline(always)]
+    fn bonds<S: Simd>(&mut self, simd: S, block: usize, lane: usize, sums: &mut Sums) -> bool {
+        let fields = BondStage::<L, TURN>::FIELDS;
+        let slot = self.first + block * BLOCK + lane;
+        let ends = [self.node(simd, slot), self.node(simd, slot + 1)];
+        let record = &mut self.records[block * BLOCK * fields..(block + 1) * BLOCK * fields];
+        let load = |record: &[f64], field: usize| Lanes::load(simd, record, field * BLOCK + lane);
+        let live_number = load(record, BondStage::<L, TURN>::LIVE);
+        let zero = live_number.like(0.0);
+        let live = live_number.above(zero);
+
+        let constants = &self.constants[self.kind[block] as usize..][..CONSTANTS * BLOCK];
+        let shape = shape(|k| load(constants, k));
+        let mut state = L::history(|k| load(record, BondStage::<L, TURN>::HISTORY + k));
+        let across = |k| if TURN { load(record, BondStage::<L, TURN>::ACROSS + k) } else { zero };
+        let mut force = force(load(record, BondStage::<L, TURN>::AXIAL), across);
+        let mut dashpot = load(record, BondStage::<L, TURN>::DASHPOT);
+        let viscosity = self.damped.then(|| {
+            [load(constants, SHAPE), load(constants, SHAPE + 1), load(constants, SHAPE + 2), load(constants, SHAPE + 3)]
+        });
+
+        let mut step = Step { law: self.law, dt: self.dt, live, plastic: zero, damping: zero };
+        let acts = if TURN {
+            let frame = |k| load(record, BondStage::<L, TURN>::FRAME + k);
+            let mut e1 = Triple { x: frame(0), y: frame(1), z: frame(2) };
+            let acts = step.turning(&ends, &shape, &mut e1, &mut force, &mut state, &mut dashpot, viscosity);
+            let frame = BondStage::<L, TURN>::FRAME * BLOCK + lane;
+            e1.x.store(record, frame);
+            e1.y.store(record, frame + BLOCK);
+            e1.z.store(record, frame + 2 * BLOCK);
+            let across = BondStage::<L, TURN>::ACROSS * BLOCK + lane;
+            force.shear[0].store(record, across);
+            force.shear[1].store(record, across + BLOCK);
+            force.bend[0].store(record, across + 2 * BLOCK);
+            force.bend[1].store(record, across + 3 * BLOCK);
+            force.twist.store(record, across + 4 * BLOCK);
+            acts
+        } else {
+            step.stretching(&ends, &shape, &mut force, &mut state, &mut dashpot, viscosity)
+        };
+        force.axial.store(record, BondStage::<L, TURN>::AXIAL * BLOCK + lane);
+        dashpot.store(record, BondStage::<L, TURN>::DASHPOT * BLOCK + lane);
+        L::each_number(&state, |k, number| {
+            number.store(record, (BondStage::<L, TURN>::HISTORY + k) * BLOCK + lane);
+        });
+        let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| {
+            (Lanes::load(simd, sum, lane) + Lanes::choose(live, part, zero)).store(sum, lane);
+        };
+        book(&mut sums.plastic, step.plastic);
+        book(&mut sums.damping, step.damping);
+        self.act(block, lane, live, &acts, self.law.thinning(&shape, &state));
+        self.limit.is_some_and(|limit| {
+            let limit = Lanes::load_up_to_end(simd, limit, slot);
+            (live & !limit.above(self.law.plastic_strain(&shape, &state))).any()
+        })
+    }
+
+    #[inline(always)]
+    fn node<S: Simd>(&self, simd: S, p: usize) -> Node<Lanes<S>> {
+        let still = Lanes::splat(simd, 0.0);
+        Node {
+            x: vector(simd, self.x, p),
+            v: vector(simd, self.v, p),
+            w: if TURN { vector(simd, self.w, p) } else { Triple { x: still, y: still, z: still } },
+        }
+    }
+
+    /// Writes what the bonds do, and zeros for those that are not there.
+    #[inline(always)]
+    fn act<S: Simd>(
+        &mut self,
+        block: usize,
+        lane: usize,
+        live: <Lanes<S> as Real>::Mask,
+        acts: &Acts<Lanes<S>>,
+        thinning: Lanes<S>,
+    ) {
+        let at = block * BLOCK + lane;
+        let mut put = |field: usize, number: Lanes<S>| {
+            Lanes::choose(live, number, number.like(0.0)).store(self.actions, field * CHUNK + at);
+        };
+        put(BondActions::THINNING, thinning);
+        put(BondActions::PULL, acts.pull.x);
+        put(BondActions::PULL + 1, acts.pull.y);
+        put(BondActions::PULL + 2, acts.pull.z);
+        if TURN {
+            put(BondActions::NEAR, acts.near.x);
+            put(BondActions::NEAR + 1, acts.near.y);
+            put(BondActions::NEAR + 2, acts.near.z);
+            put(BondActions::FAR, acts.far.x);
+            put(BondActions::FAR + 1, acts.far.y);
+            put(BondActions::FAR + 2, acts.far.z);
+        }
+    }
+}
+
+/// The vectors from particle `p` on.
+#[inline(always)]
+fn vector<S: Simd>(simd: S, v: &Vectors, p: usize) -> Triple<Lanes<S>> {
+    Triple {
+        x: Lanes::load_up_to_end(simd, &v.x, p),
+        y: Lanes::load_up_to_end(simd, &v.y, p),
+        z: Lanes::load_up_to_end(simd, &v.z, p),
+    }
+}
