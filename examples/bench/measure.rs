@@ -120,7 +120,12 @@ pub fn load(args: &Args, factor: f64) -> Result<Scene> {
     let mut set = args.set.clone();
     set.push(format!("strand.length={} mm", length * 1e3));
     if args.strain > 0.0 {
-        set.push(format!("grip.speed={} m/s", args.rate * (length - 2.0 * grip.length)));
+        let speed = args.rate * (length - 2.0 * grip.length);
+        set.push(format!("grip.speed={speed} m/s"));
+        if grip.adaptive.is_some() {
+            // The same rate all the way.
+            set.push(format!("grip.adaptive={{ from = \"1000 %\", fastest = \"{} m/s\" }}", 2.0 * speed));
+        }
     }
     // Nothing breaks on the way, or it would not be the same strand.
     let by_strain =
