@@ -1,4 +1,4 @@
-//! Presets of accuracy against run time: `--quality draft|standard|fine`. A preset turns the keys of [`TABLE`] by a
+//! Presets of accuracy against run time: `--quality draft|standard|fine`. A preset turns the keys of its table by a
 //! factor from what the scene says; `--set` wins over it.
 
 use super::spec::{DriveSpec, Spec};
