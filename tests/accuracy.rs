@@ -4,8 +4,17 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// A wire of 30 mm: a run takes a tenth of a second.
-const WIRE: [&str; 6] =
-    ["single-wire", "--set", "wire.0.to=[\"0 mm\", \"0 mm\", \"30 mm\"]", "--set", "grip.length=5 mm", "--threads=1"];
+/// Short, and weak enough to break before the scene's limit on strain.
+const WIRE: [&str; 8] = [
+    "single-wire",
+    "--set",
+    "wire.0.to=[\"0 mm\", \"0 mm\", \"30 mm\"]",
+    "--set",
+    "grip.length=5 mm",
+    "--set",
+    "bond.rupture.strain=29 %",
+    "--threads=1",
+];
 
 fn strandsnap(folder: &Path, args: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
