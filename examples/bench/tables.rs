@@ -46,9 +46,9 @@ fn relative(rows: &[Row], row: &Row, ms: impl Fn(&Row) -> f64) -> f64 {
 fn roofline(rows: &[Row]) {
     println!("\nDistance to what the machine can do, per step: bytes over its bandwidth on as much memory, operations");
     println!(
-        "(bonds counted by running them as they yield, the rest by hand) over its throughput in the widest registers,"
+        "(laws of bonds and contacts counted by running them, the rest by hand; a fused one counts once) over its"
     );
-    println!("unfused; ms without the time that other programs took");
+    println!("throughput in the widest registers; ms without the time that other programs took");
     println!(
         "length threads stage            MB  M flop   M div  M sqrt       ms  limits: bandwidth  arithmetic   reached"
     );
