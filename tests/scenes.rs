@@ -28,6 +28,17 @@ fn good(name: &str) -> Spec {
     load(file.to_str().unwrap(), &[]).unwrap_or_else(|error| panic!("{name}: {error}")).spec
 }
 
+#[test]
+fn a_construction_becomes_layers() {
+    let strand = good("construction.toml").strand.unwrap();
+    let layers: Vec<(&str, usize, f64)> = strand.layers.iter().map(|l| (l.name.as_str(), l.wires, l.lay)).collect();
+    assert_eq!(layers, [("inner", 5, -1.0), ("middle 1", 11, -1.0), ("middle 2", 17, -1.0), ("outer", 23, -1.0)]);
+    assert!(strand.layers.iter().all(|layer| layer.lay_radius.is_none() && layer.wire_diameter == 0.30e-3));
+    let listed = load("ka4", &["strand.layer=", "strand.construction=[1, 6]"]).unwrap().spec.strand.unwrap();
+    let radii: Vec<Option<f64>> = listed.layers.iter().map(|layer| layer.lay_radius).collect();
+    assert_eq!(radii, [Some(0.0), None]);
+}
+
 fn scene_error(result: Result<Scene, Error>, case: &str) -> Box<SceneError> {
     match result {
         Err(Error::Scene(error)) => error,

@@ -2,6 +2,7 @@
 
 pub mod error;
 pub mod lanes;
+pub mod lay;
 pub mod random;
 pub mod ticks;
 pub mod triple;

@@ -13,6 +13,8 @@ pub enum Dimension {
     Ratio,
     /// \[m\].
     Length,
+    /// \[m²\].
+    Area,
     /// \[s\].
     Time,
     /// \[Hz\].
@@ -45,9 +47,10 @@ pub struct UnitError {
 
 impl Dimension {
     /// All of them.
-    pub const ALL: [Dimension; 11] = [
+    pub const ALL: [Dimension; 12] = [
         Dimension::Ratio,
         Dimension::Length,
+        Dimension::Area,
         Dimension::Time,
         Dimension::Frequency,
         Dimension::Velocity,
@@ -64,6 +67,7 @@ impl Dimension {
         match self {
             Dimension::Ratio => "ratio",
             Dimension::Length => "length",
+            Dimension::Area => "area",
             Dimension::Time => "time",
             Dimension::Frequency => "frequency",
             Dimension::Velocity => "velocity",
@@ -81,6 +85,7 @@ impl Dimension {
         match self {
             Dimension::Ratio => "0.2 or \"20 %\"",
             Dimension::Length => "\"39 mm\"",
+            Dimension::Area => "\"4 mm^2\"",
             Dimension::Time => "\"1 ms\"",
             Dimension::Frequency => "\"50 Hz\"",
             Dimension::Velocity => "\"5 m/s\" or \"50 mm/min\"",
@@ -98,6 +103,7 @@ impl Dimension {
         match self {
             Dimension::Ratio => &[],
             Dimension::Length => &[("mm", 1e-3), ("m", 1.0)],
+            Dimension::Area => &[("mm^2", 1e-6), ("m^2", 1.0)],
             Dimension::Time => &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)],
             Dimension::Frequency => &[("Hz", 1.0), ("kHz", 1e3)],
             Dimension::Velocity => &[("m/s", 1.0), ("mm/s", 1e-3)],
@@ -198,6 +204,7 @@ fn convert(text: &str, dimension: Dimension) -> Option<f64> {
     match dimension {
         Dimension::Ratio => si!(Ratio),
         Dimension::Length => si!(Length),
+        Dimension::Area => si!(Area),
         Dimension::Time => si!(Time),
         Dimension::Frequency => si!(Frequency),
         Dimension::Velocity => si!(Velocity),
@@ -233,6 +240,7 @@ mod tests {
             ("39 mm", Length, 0.039),
             ("39mm", Length, 0.039),
             ("5 um", Length, 5e-6),
+            ("4 mm^2", Area, 4e-6),
             ("50 mm/min", Velocity, 0.05 / 60.0),
             ("8960 kg/m^3", Density, 8960.0),
             ("8.96 g/cm^3", Density, 8960.0),
@@ -278,7 +286,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn writing_and_reading_gives_the_same_bits(value in proptest::num::f64::NORMAL, which in 0usize..11) {
+        fn writing_and_reading_gives_the_same_bits(value in proptest::num::f64::NORMAL, which in 0usize..12) {
             let dimension = Dimension::ALL[which];
             let text = format(value, dimension);
             prop_assert_eq!(parse(&text, dimension).map(f64::to_bits), Ok(value.to_bits()), "{}", text);

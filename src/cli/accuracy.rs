@@ -7,8 +7,8 @@ use super::values::{SceneArgs, duration};
 use crate::base::error::{Error, Result};
 use crate::run::folder;
 use crate::scene::quality::Quality;
-use crate::study::accuracy::work::Progress;
 use crate::study::accuracy::{self, Options, Study, Subject, knobs, table, verified};
+use crate::study::cases::workshop::Progress;
 use crate::study::verify::Case;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
@@ -131,7 +131,7 @@ fn of_pulled_scene(args: &Args) -> Result<Ended> {
 }
 
 /// What the user typed.
-fn command() -> String {
+pub(super) fn command() -> String {
     let words = std::env::args().skip(1).map(|word| {
         let plain = word.chars().all(|c| c.is_ascii_alphanumeric() || "-_./=,%+:".contains(c));
         if plain { word } else { format!("'{}'", word.replace('\'', "'\\''")) }

@@ -16,6 +16,7 @@ mod say;
 mod scene;
 mod select;
 mod stability;
+mod study;
 mod values;
 mod verify;
 mod view;
@@ -55,6 +56,8 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Say what accuracy each second buys: error against run time, knob by knob
     Accuracy(accuracy::Args),
+    /// Vary a scene: pitch, wire diameter, seeds, or what a file says; gather, fit, and set beside the paper and theory
+    Study(study::Args),
     /// Compare the engine with closed forms
     Verify(cases::CaseArgs),
     /// Run stiff and extreme cases ("friction-*" takes all that begin so): each must be stable, or be refused or
@@ -95,6 +98,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
         Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
         Command::Accuracy(args) => accuracy::accuracy(&args),
+        Command::Study(args) => study::study(&args),
         Command::Stability(args) => stability::stability(&args),
         Command::Render(args) => render::render(args),
         Command::Verify(args) => verify::verify(&args),

@@ -54,7 +54,7 @@ impl SceneArgs {
 }
 
 /// Reads a preset by its name.
-fn quality() -> impl TypedValueParser<Value = Quality> {
+pub fn quality() -> impl TypedValueParser<Value = Quality> {
     PossibleValuesParser::new(Quality::ALL.map(Quality::word)).map(|word| {
         let named = Quality::ALL.into_iter().find(|quality| quality.word() == word);
         named.expect("the parser lets only their names through")

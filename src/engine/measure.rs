@@ -231,8 +231,8 @@ impl Engine {
             // Compression ends where it is told to: nothing foretells at which strain a wire breaks in it.
             return stop.is_finite().then_some(-stop);
         }
-        let falls = self.spec.stop.stress_fraction.is_some();
-        let end = if falls { stop.min(1.1 * self.rupture_strain()) } else { stop };
+        let ends_broken = self.spec.stop.stress_fraction.is_some() || self.spec.stop.strain_after_drop.is_some();
+        let end = if ends_broken { stop.min(1.1 * self.rupture_strain()) } else { stop };
         end.is_finite().then_some(end)
     }
 

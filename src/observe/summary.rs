@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Fall of the nominal stress below its peak at which the second elongation is read [-].
-const DROP: f64 = 0.2;
+pub const DROP: f64 = 0.2;
 
 /// The result of a run. Quantities that the scene does not have (strength of free bodies) are `None`, `null` in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -9,7 +9,7 @@ pub mod accuracy;
 mod answer;
 mod breaks;
 mod curve;
-mod document;
+pub mod document;
 mod energy;
 mod figure;
 mod picture;

@@ -205,7 +205,7 @@ impl Driver<'_, '_> {
     fn row(&mut self, sample: &Sample) -> Result<()> {
         // A row that is not finite must not reach the files.
         self.guard.check(sample)?;
-        self.rule.row(sample.stress);
+        self.rule.row(sample.strain, sample.stress);
         self.audience.sample(sample)?;
         let judged = self.guard.row(sample);
         self.notices()?;

@@ -29,6 +29,16 @@ pub fn accuracy(scene: &str) -> PathBuf {
     Path::new("out").join("accuracy").join(scene)
 }
 
+/// A study of many cases, in a folder of its own.
+pub const STUDY: &str = "study.json";
+/// Its page.
+pub const STUDY_PAGE: &str = "study.html";
+
+/// Folder of a study where no other is given.
+pub fn study(name: &str) -> PathBuf {
+    Path::new("out").join("study").join(name)
+}
+
 /// An output folder that may be written.
 #[derive(Debug)]
 pub struct OutFolder {

@@ -1,5 +1,6 @@
 //! When a run ends.
 
+use crate::observe::summary::DROP;
 use crate::scene::spec::StopSpec;
 use std::collections::VecDeque;
 use std::fmt;
@@ -15,6 +16,8 @@ pub enum StopReason {
     Strain(f64),
     /// Nominal stress fell below `stop.stress_fraction` of its peak [-].
     StressFraction(f64),
+    /// `stop.strain_after_drop` was passed [-].
+    AfterDrop(f64),
     /// `stop.time` was reached [s].
     Time(f64),
     /// `stop.steps` was reached.
@@ -34,6 +37,9 @@ impl fmt::Display for StopReason {
             Self::StressFraction(fraction) => {
                 write!(f, "stress fell to {} % of its peak after a rupture (stop.stress_fraction)", fraction * 100.0)
             }
+            Self::AfterDrop(strain) => {
+                write!(f, "strain went {} % beyond the drop (stop.strain_after_drop)", strain * 100.0)
+            }
             Self::Time(time) => write!(f, "time reached {time:.4e} s (stop.time)"),
             Self::Steps(steps) => write!(f, "{steps} steps were done (stop.steps)"),
             Self::Interrupted => write!(f, "interrupted"),
@@ -47,15 +53,27 @@ impl fmt::Display for StopReason {
 pub struct StopRule {
     stop: StopSpec,
     window: VecDeque<f64>,
+    /// Greatest mean over the window.
     peak: f64,
     ruptured: bool,
     fallen: bool,
+    /// Strain at which stress dropped, as long as it stays down [-].
+    dropped_at: Option<f64>,
+    passed: bool,
 }
 
 impl StopRule {
     /// The rule of a scene.
     pub fn new(stop: &StopSpec) -> Self {
-        Self { stop: stop.clone(), window: VecDeque::with_capacity(WINDOW), peak: 0.0, ruptured: false, fallen: false }
+        Self {
+            stop: stop.clone(),
+            window: VecDeque::with_capacity(WINDOW),
+            peak: 0.0,
+            ruptured: false,
+            fallen: false,
+            dropped_at: None,
+            passed: false,
+        }
     }
 
     /// A bond broke.
@@ -63,11 +81,11 @@ impl StopRule {
         self.ruptured = true;
     }
 
-    /// A row of the curve was taken at this nominal stress [Pa].
-    pub fn row(&mut self, stress: f64) {
-        let Some(fraction) = self.stop.stress_fraction else {
+    /// A row of the curve was taken at this strain [-] and nominal stress [Pa].
+    pub fn row(&mut self, strain: f64, stress: f64) {
+        if self.stop.stress_fraction.is_none() && self.stop.strain_after_drop.is_none() {
             return;
-        };
+        }
         if self.window.len() == WINDOW {
             self.window.pop_front();
         }
@@ -77,7 +95,11 @@ impl StopRule {
         }
         let mean = self.window.iter().sum::<f64>() / WINDOW as f64;
         self.peak = self.peak.max(mean);
-        self.fallen = self.ruptured && mean < fraction * self.peak;
+        let below = |share: f64| self.ruptured && mean < share * self.peak;
+        self.fallen = self.stop.stress_fraction.is_some_and(below);
+        self.dropped_at = if below(1.0 - DROP) { self.dropped_at.or(Some(strain)) } else { None };
+        let beyond = self.dropped_at.zip(self.stop.strain_after_drop);
+        self.passed = beyond.is_some_and(|(at, beyond)| strain - at >= beyond);
     }
 
     /// The condition that holds now, if one does.
@@ -91,6 +113,11 @@ impl StopRule {
             && self.fallen
         {
             return Some(StopReason::StressFraction(fraction));
+        }
+        if let Some(beyond) = self.stop.strain_after_drop
+            && self.passed
+        {
+            return Some(StopReason::AfterDrop(beyond));
         }
         if self.stop.time.is_some_and(|end| time >= end) {
             return Some(StopReason::Time(time));
@@ -107,11 +134,11 @@ mod tests {
     use super::*;
 
     fn at_half() -> StopRule {
-        StopRule::new(&StopSpec { strain: None, stress_fraction: Some(0.5), time: None, steps: None })
+        StopRule::new(&StopSpec { stress_fraction: Some(0.5), ..StopSpec::default() })
     }
 
     fn rows(rule: &mut StopRule, stress: f64, count: usize) {
-        (0..count).for_each(|_| rule.row(stress));
+        (0..count).for_each(|_| rule.row(0.0, stress));
     }
 
     #[test]
@@ -142,8 +169,27 @@ mod tests {
     }
 
     #[test]
+    fn a_strain_beyond_the_drop_ends_the_run() {
+        let mut rule = StopRule::new(&StopSpec { strain_after_drop: Some(0.02), ..StopSpec::default() });
+        let pull = |rule: &mut StopRule, from: f64, to: f64, stress: f64| {
+            for k in 0..=100 {
+                rule.row(from + (to - from) * f64::from(k) / 100.0, stress);
+            }
+            rule.reached(to, 0.0, 0)
+        };
+        assert_eq!(pull(&mut rule, 0.0, 0.2, 100.0), None);
+        rule.rupture();
+        // A fall of less than a fifth, and one that does not last.
+        assert_eq!(pull(&mut rule, 0.2, 0.23, 85.0), None);
+        assert_eq!(pull(&mut rule, 0.23, 0.24, 70.0), None);
+        assert_eq!(pull(&mut rule, 0.24, 0.25, 95.0), None);
+        assert_eq!(pull(&mut rule, 0.25, 0.265, 40.0), None);
+        assert_eq!(pull(&mut rule, 0.265, 0.28, 40.0), Some(StopReason::AfterDrop(0.02)));
+    }
+
+    #[test]
     fn each_limit_ends_the_run() {
-        let stop = StopSpec { strain: Some(0.3), stress_fraction: None, time: Some(2.0), steps: Some(7) };
+        let stop = StopSpec { strain: Some(0.3), time: Some(2.0), steps: Some(7), ..StopSpec::default() };
         let rule = StopRule::new(&stop);
         assert_eq!(rule.reached(0.29, 1.9, 6), None);
         assert!(matches!(rule.reached(0.3, 1.9, 6), Some(StopReason::Strain(_))));

@@ -6,6 +6,7 @@ mod at;
 pub mod builtin;
 pub mod caution;
 pub mod centreline_text;
+mod construction;
 pub mod hardening;
 pub mod look;
 mod overrides;
@@ -25,6 +26,7 @@ pub use source::SceneSource;
 use crate::base::error::{Error, Result};
 use at::At;
 use overrides::Override;
+use serde::de::DeserializeOwned;
 use source::{path_at, scene_error};
 use spec::Spec;
 use std::path::Path;
@@ -67,39 +69,53 @@ fn is_path(argument: &str) -> bool {
 /// Reads a scene from its text. `file_name` is shown in errors, and its stem names the scene where the text does not;
 /// `folder` is where centreline files are looked for.
 pub fn parse(text: &str, file_name: &str, folder: &Path, overrides: &[String]) -> Result<Scene> {
-    let document = Document::parse(text.to_owned()).map_err(|error| {
-        let span = error.span().unwrap_or(0..0);
-        scene_error(file_name, text, span, format!("this is not TOML: {}", error.message()), String::new())
-    })?;
+    let document = document(text, file_name)?;
     let overrides = overrides.iter().map(|text| Override::parse(text)).collect::<Result<Vec<_>>>()?;
     let mut changed = document.clone().into_mut();
     overrides.iter().try_for_each(|option| option.apply(&mut changed))?;
     let source = SceneSource::new(file_name, document, overrides);
-    let raw = read_tables(&changed.to_string(), &source)?;
+    let raw: raw::RawScene = read_tables(&changed.to_string(), &source, "a scene")?;
     let stem = Path::new(file_name).file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
     let spec = resolve::resolve(&At::root(&source), &raw, &stem, folder)?;
     Ok(Scene { spec, source })
 }
 
-/// Reads the raw tables; what serde has to say is brought back to key paths.
-fn read_tables(text: &str, source: &SceneSource) -> Result<raw::RawScene> {
+/// Reads tables of another kind than a scene, with errors of the same kind: `whole` says what it is, "a study".
+///
+/// # Errors
+/// Text that is not TOML; keys or values that the tables do not have.
+pub fn read<T: DeserializeOwned>(text: &str, file_name: &str, whole: &str) -> Result<(T, SceneSource)> {
+    let source = SceneSource::new(file_name, document(text, file_name)?, Vec::new());
+    let tables = read_tables(text, &source, whole)?;
+    Ok((tables, source))
+}
+
+fn document(text: &str, file_name: &str) -> Result<Document<String>> {
+    Document::parse(text.to_owned()).map_err(|error| {
+        let span = error.span().unwrap_or(0..0);
+        scene_error(file_name, text, span, format!("this is not TOML: {}", error.message()), String::new())
+    })
+}
+
+/// Reads the raw tables of `whole`; what serde has to say is brought back to key paths.
+fn read_tables<T: DeserializeOwned>(text: &str, source: &SceneSource, whole: &str) -> Result<T> {
     toml::from_str(text).map_err(|error| {
-        let document = Document::parse(text).expect("toml_edit writes TOML");
+        let document = Document::parse(text).expect("it was read before, or toml_edit wrote it");
         let (path, part) =
             error.span().map_or_else(|| (Vec::new(), source::Part::Value), |span| path_at(document.as_item(), &span));
-        let (what, help) = in_plain_words(error.message(), &path);
+        let (what, help) = in_plain_words(error.message(), &path, whole);
         source.error_at(&path, part, what, help)
     })
 }
 
 /// Serde's message as what is wrong and what would be right.
-fn in_plain_words(message: &str, path: &[String]) -> (String, String) {
+fn in_plain_words(message: &str, path: &[String], whole: &str) -> (String, String) {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let key = path.join(".");
     if let (true, [unknown, known @ ..]) = (message.starts_with("unknown field"), &quoted[..]) {
         let place = match path.split_last() {
             Some((_, parents)) if !parents.is_empty() => format!("`{}`", parents.join(".")),
-            _ => "a scene".into(),
+            _ => whole.into(),
         };
         return (format!("unknown key `{unknown}` in {place}"), did_you_mean(unknown, known, "known keys"));
     }

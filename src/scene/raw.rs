@@ -281,9 +281,25 @@ pub struct RawStrand {
     pub pitch: Option<Scalar>,
     /// Lay direction of layers that give none. Default `right`.
     pub lay: Option<RawLay>,
-    /// `[[strand.layer]]`, from the inside out. At least one.
+    /// Instead of `[[strand.layer]]`: the wires of each layer from the inside out, such as [5, 11, 18], or `auto` for
+    /// full rings of copper nearest to `area`; lay radii are least, and all layers have the strand's wire diameter,
+    /// pitch and lay.
+    pub construction: Option<RawConstruction>,
+    /// Copper section of `construction = "auto"`, "mm^2". Required there.
+    pub area: Option<Scalar>,
+    /// `[[strand.layer]]`, from the inside out. At least one, unless there is a `construction`.
     #[serde(default)]
     pub layer: Vec<RawLayer>,
+}
+
+/// `strand.construction`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected \"auto\" or the wires of each layer, such as [5, 11, 18]")]
+pub enum RawConstruction {
+    /// `"auto"`.
+    Named(String),
+    /// Wires of each layer, from the inside out.
+    Layers(Vec<i64>),
 }
 
 /// `[[strand.layer]]`.
@@ -385,6 +401,9 @@ pub struct RawStop {
     pub strain: Option<Scalar>,
     /// Nominal stress over its peak, after a rupture [-]; needs a grip and a rupture criterion.
     pub stress_fraction: Option<Scalar>,
+    /// Strain beyond the drop, at which nominal stress had fallen to 80 % of its peak after a rupture [-]: shows what is
+    /// left. Needs a grip and a rupture criterion.
+    pub strain_after_drop: Option<Scalar>,
     /// Simulated time, "ms".
     pub time: Option<Scalar>,
     /// Number of steps.

@@ -2,6 +2,7 @@
 
 use super::at::{At, Range};
 use super::centreline_text::{self, CentrelineWire};
+use super::construction;
 use super::raw::{RawLay, RawLayer, RawSphere, RawStrand, RawWire, Scalar};
 use super::spec::{LayerSpec, PathSpec, SphereSpec, StrandSpec, WireSpec};
 use crate::base::error::Result;
@@ -14,8 +15,12 @@ const DEFAULT_LAYER: &str = "wire";
 /// Resolves `[strand]`.
 pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
     let length = at.required("length", &raw.length, Dimension::Length, Range::Positive)?;
+    if let Some(given) = &raw.construction {
+        return Ok(StrandSpec { length, layers: construction::layers(at, raw, given)? });
+    }
+    at.refuse("area", &raw.area, "has no effect without construction = \"auto\"")?;
     if raw.layer.is_empty() {
-        return Err(at.error("the strand has no layer", "add [[strand.layer]] with `wires`"));
+        return Err(at.error("the strand has no layer", "add [[strand.layer]] with `wires`, or a `construction`"));
     }
     let mut layers: Vec<LayerSpec> = Vec::with_capacity(raw.layer.len());
     for (index, layer) in raw.layer.iter().enumerate() {
@@ -48,12 +53,17 @@ fn layer(at: &At, strand: &At, raw: &RawLayer, defaults: &RawStrand, index: usiz
         wire_diameter: diameter.ok_or_else(|| at.missing("wire_diameter", "\"0.39 mm\""))?,
         lay_radius,
         pitch,
-        lay: match raw.lay.or(defaults.lay).unwrap_or(RawLay::Right) {
-            RawLay::Right => 1.0,
-            RawLay::Left => -1.0,
-        },
+        lay: hand(raw.lay.or(defaults.lay)),
         phase: at.optional("phase", &raw.phase, Dimension::Angle, Range::Any)?.unwrap_or(0.0),
     })
+}
+
+/// Sign of the lay; right where it is not given.
+pub(super) fn hand(lay: Option<RawLay>) -> f64 {
+    match lay.unwrap_or(RawLay::Right) {
+        RawLay::Right => 1.0,
+        RawLay::Left => -1.0,
+    }
 }
 
 /// A length that the layer gives, or the strand for all layers.

@@ -168,20 +168,28 @@ pub(super) fn stop(at: &At, raw: &RawStop, grip: Option<&GripSpec>, breaks: bool
         let why = "needs a [grip], which this scene does not have";
         at.refuse("strain", &raw.strain, why)?;
         at.refuse("stress_fraction", &raw.stress_fraction, why)?;
+        at.refuse("strain_after_drop", &raw.strain_after_drop, why)?;
     }
     if !breaks {
-        at.refuse("stress_fraction", &raw.stress_fraction, "never holds: no bond of this scene can break")?;
+        let why = "never holds: no bond of this scene can break";
+        at.refuse("stress_fraction", &raw.stress_fraction, why)?;
+        at.refuse("strain_after_drop", &raw.strain_after_drop, why)?;
     }
     let stop = StopSpec {
         strain: at.optional("strain", &raw.strain, Dimension::Ratio, Range::Positive)?,
         stress_fraction: at.optional("stress_fraction", &raw.stress_fraction, Dimension::Ratio, Range::Fraction)?,
+        strain_after_drop: at.optional(
+            "strain_after_drop",
+            &raw.strain_after_drop,
+            Dimension::Ratio,
+            Range::Positive,
+        )?,
         time: at.optional("time", &raw.time, Dimension::Time, Range::Positive)?,
         steps: raw.steps.map(|steps| at.key("steps").count(steps, 1)).transpose()?,
     };
-    if stop == (StopSpec { strain: None, stress_fraction: None, time: None, steps: None }) {
-        return Err(
-            at.error("the scene does not say when to stop", "add [stop] with strain, stress_fraction, time or steps")
-        );
+    if stop == StopSpec::default() {
+        let help = "add [stop] with strain, stress_fraction, strain_after_drop, time or steps";
+        return Err(at.error("the scene does not say when to stop", help));
     }
     let still = grip.is_some_and(|grip| grip.drive == DriveSpec::Speed(0.0));
     if still && stop.time.is_none() && stop.steps.is_none() {

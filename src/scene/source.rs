@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 use std::ops::Range;
 use toml_edit::{Document, Item};
 
-/// The text that a scene came from, so that any later floor can point at the line of a key.
+/// The text that a scene, or a study, came from, so that any later floor can point at the line of a key.
 #[derive(Debug, Clone)]
 pub struct SceneSource {
     file_name: String,

@@ -356,12 +356,14 @@ pub struct TimeSpec {
 }
 
 /// When to stop; the first that holds ends the run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct StopSpec {
     /// Grip displacement over gauge length [-].
     pub strain: Option<f64>,
     /// Nominal stress has fallen to this fraction of its peak, after a rupture [-].
     pub stress_fraction: Option<f64>,
+    /// Strain beyond the drop, at which nominal stress had fallen to 80 % of its peak after a rupture [-].
+    pub strain_after_drop: Option<f64>,
     /// Simulated time [s].
     pub time: Option<f64>,
     /// Steps.

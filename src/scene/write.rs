@@ -298,6 +298,9 @@ fn stop(out: &mut Lines, stop: &StopSpec) {
     if let Some(fraction) = stop.stress_fraction {
         out.entry("stress_fraction", number(fraction));
     }
+    if let Some(strain) = stop.strain_after_drop {
+        out.entry("strain_after_drop", number(strain));
+    }
     if let Some(time) = stop.time {
         out.quantity("time", time, Dimension::Time);
     }

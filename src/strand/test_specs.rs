@@ -32,7 +32,7 @@ pub(crate) fn empty() -> Spec {
             kinetic_limit: 0.05,
             mismatch_limit: 0.05,
         },
-        stop: StopSpec { strain: None, stress_fraction: None, time: Some(1e-6), steps: None },
+        stop: StopSpec { time: Some(1e-6), ..StopSpec::default() },
         output: OutputSpec { samples: 10, snapshots: 2, rupture_density: 1.0, ..OutputSpec::default() },
         plan: PlanMode::Auto,
     }

@@ -2,6 +2,11 @@
 
 pub mod accuracy;
 pub mod calibrate;
+pub mod cases;
+pub mod fit;
 pub mod plot;
+pub mod screening;
 pub mod stability;
+pub mod sweep;
+pub mod table;
 pub mod verify;

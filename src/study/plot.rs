@@ -27,17 +27,24 @@ pub struct Axis {
     pub scale: Scale,
     /// Least and greatest value shown; what holds all series and limits when `None`.
     pub range: Option<[f64; 2]>,
+    /// Names of the values 0, 1, 2, … instead of numbers; empty for numbers.
+    pub names: Vec<String>,
 }
 
 impl Axis {
     /// A linear axis.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear, range: None }
+        Self { label: label.into(), scale: Scale::Linear, range: None, names: Vec::new() }
     }
 
     /// A logarithmic axis.
     pub fn log(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Log, range: None }
+        Self { label: label.into(), scale: Scale::Log, range: None, names: Vec::new() }
+    }
+
+    /// An axis of names, at 0, 1, 2, ….
+    pub fn named(label: impl Into<String>, names: Vec<String>) -> Self {
+        Self { range: Some([-0.5, names.len() as f64 - 0.5]), names, ..Self::linear(label) }
     }
 
     /// Shows `low` to `high`.
@@ -73,12 +80,27 @@ pub struct Series {
     pub errors: Vec<f64>,
     /// How it is drawn.
     pub mark: Mark,
+    /// Its place on a colour map that is even to the eye, from 0 to 1, for series that are in an order; `None` for a
+    /// colour of its own.
+    pub shade: Option<f64>,
 }
 
 impl Series {
     /// A series without error bars.
     pub fn new(name: impl Into<String>, mark: Mark, points: Vec<[f64; 2]>) -> Self {
-        Self { name: name.into(), points, errors: Vec::new(), mark }
+        Self { name: name.into(), points, errors: Vec::new(), mark, shade: None }
+    }
+
+    /// The same with error bars: half their heights, in the unit of y.
+    pub fn with_errors(mut self, errors: Vec<f64>) -> Self {
+        self.errors = errors;
+        self
+    }
+
+    /// The same in the colour of this place, from 0 to 1.
+    pub fn shaded(mut self, shade: f64) -> Self {
+        self.shade = Some(shade);
+        self
     }
 }
 
@@ -247,6 +269,26 @@ mod tests {
             text[tag..].split('"').next().unwrap().parse::<i32>().unwrap()
         };
         assert!(legend_x("cantilever") > 700, "{}", legend_x("cantilever"));
+    }
+
+    #[test]
+    fn names_stand_where_numbers_would() {
+        let mut f = Figure::new("By grip", Axis::named("grip", vec!["all".into(), "jaw".into()]), Axis::linear("y"));
+        f.series.push(Series::new("mean", Mark::Points, vec![[0.0, 1.0], [1.0, 2.0]]).with_errors(vec![0.1, 0.2]));
+        let text = draw::svg(&[f], 1).unwrap();
+        assert!(text.contains("\nall\n") && text.contains("\njaw\n"), "{text}");
+        assert!(!text.contains("\n0.5\n"));
+    }
+
+    #[test]
+    fn series_in_an_order_have_colours_in_an_order() {
+        let mut f = figure();
+        let line =
+            |shade: f64| Series::new(format!("at {shade}"), Mark::Line, vec![[0.1, 1e-2], [0.01, 1e-3]]).shaded(shade);
+        f.series = vec![line(0.0), line(1.0)];
+        let text = draw::svg(&[f], 1).unwrap();
+        // The ends of viridis, as it is published.
+        assert!(text.contains("#440154"), "{text}");
     }
 
     #[test]

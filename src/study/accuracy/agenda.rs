@@ -3,6 +3,7 @@
 
 use super::knobs::{Knob, Ladder, Role};
 use crate::scene::spec::Spec;
+use crate::study::cases::workshop::Case;
 
 /// A knob that this scene has.
 pub struct Turned {
@@ -41,6 +42,19 @@ pub struct Item {
     pub writes: bool,
     /// Lower comes first.
     tier: usize,
+}
+
+impl Item {
+    /// The run, of a scene with these options.
+    pub fn case(&self, overrides: &[String]) -> Case {
+        Case {
+            name: self.name.clone(),
+            overrides: overrides.iter().chain(&self.set).cloned().collect(),
+            work: self.work,
+            writes: self.writes,
+            leads: self.place.is_none(),
+        }
+    }
 }
 
 /// All runs, in the order in which they are made.

@@ -2,7 +2,6 @@
 //! hardening law, and it breaks where its weakest bond's rupture strain is reached.
 
 use super::errors::Truth;
-use super::measured::Curve;
 use crate::engine::rupture::RuptureCheck;
 use crate::observe::summary::Break;
 use crate::observe::units::{mm, mpa, percent};
@@ -13,6 +12,7 @@ use crate::scene::spec::{
     BondLawSpec, DriveSpec, GripKind, HardeningSpec, PathSpec, RuptureCriterion, RuptureSpec, Spec, WireSpec,
 };
 use crate::strand::assembly::Assembly;
+use crate::study::cases::measured::Curve;
 use glam::DVec3;
 
 /// Points of the elastic and of the plastic part of the curve.

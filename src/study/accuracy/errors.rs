@@ -1,7 +1,7 @@
 //! How far a run is from the reference.
 
-use super::measured::{Curve, Measured};
 use crate::observe::summary::Break;
+use crate::study::cases::measured::{Curve, Measured};
 use serde::Serialize;
 
 /// What a run ought to have given.

@@ -1,11 +1,12 @@
 //! `accuracy.json`: the study for programs, and the tables for the page.
 
 use super::rows::{Outcome, Row};
-use super::stat::Stat;
-use super::table::{self, Table};
+use super::table;
 use super::{Study, reference::Along};
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
+use crate::study::cases::stat::Stat;
+use crate::study::table::Table;
 use serde::Serialize;
 use std::path::Path;
 

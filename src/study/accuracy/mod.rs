@@ -1,44 +1,40 @@
 //! Error against run time: what each second buys.
 //!
-//! A study turns one knob at a time ([`knobs`]) away from the scene as it stands, runs every value ([`work`]), and
-//! measures how far each run is from a reference ([`reference`], [`closed_form`]). Every finished run is kept as a record
-//! ([`case`]), so that an interrupted study goes on where it stopped.
+//! A study turns one knob at a time ([`knobs`]) away from the scene as it stands, runs every value, and
+//! measures how far each run is from a reference ([`reference`], [`closed_form`]). The runs are made and kept by
+//! [`crate::study::cases`].
 
 pub mod agenda;
-pub mod case;
 pub mod closed_form;
 mod csv;
 pub mod errors;
 mod json;
 pub mod knobs;
-pub mod measured;
 pub mod pareto;
 pub mod plots;
 pub mod reference;
 pub mod richardson;
 pub mod rows;
-pub mod stat;
 pub mod table;
 pub mod verified;
-pub mod work;
 
 use crate::base::error::{Error, Result};
 use crate::run::folder::ACCURACY_STUDY;
 use crate::scene::plan::Plan;
 use crate::scene::spec::{DriveSpec, Spec};
 use crate::scene::{self, Scene};
+use crate::study::cases::measured::Measured;
+use crate::study::cases::record::{self, Found};
+use crate::study::cases::workshop::{Became, Case, Progress, Workshop};
 use agenda::{Item, Turned};
-use case::Found;
 use errors::{Errors, Truth};
 use knobs::{Knob, Role};
-use measured::Measured;
 use reference::{Along, Refined, Series};
 use rows::{Outcome, Row, Run};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-use work::{Became, Progress, Workshop};
 
 /// What to study and how.
 pub struct Options {
@@ -171,26 +167,27 @@ pub fn study(
     stop: &AtomicBool,
     tell: &(dyn Fn(&Progress) + Sync),
 ) -> Result<Study> {
-    case::open(&options.out, options.fresh)?;
+    record::open(&options.out, options.fresh)?;
     let items = agenda::items(&subject.turned, &subject.seeds);
     let workshop = Workshop {
         scene: &options.scene,
-        overrides: &options.overrides,
         folder: &options.out,
         jobs: options.jobs,
         threads: options.threads,
+        costs: true,
         budget: options.budget,
         began: Instant::now(),
         stop,
         tell,
     };
-    let became = workshop.make(&items)?;
+    let cases: Vec<Case> = items.iter().map(|item| item.case(&options.overrides)).collect();
+    let became = workshop.make(&cases)?;
     let done = |was_kept: bool| {
         let is = move |one: &&Became| matches!(one, Became::Done { kept, .. } if *kept == was_kept);
         became.iter().filter(is).count()
     };
     let (kept, made) = (done(true), done(false));
-    let build = case::build();
+    let build = record::build();
     let other = |one: &&Became| matches!(one, Became::Done { record, .. } if record.build != build);
     let other_build = became.iter().filter(other).count();
     let mut runs = Runs::new(&items, became);

@@ -5,8 +5,8 @@ use super::errors::Errors;
 use super::knobs::Role;
 use super::pareto::staircase;
 use super::rows::Row;
-use super::stat::Stat;
 use crate::base::error::Result;
+use crate::study::cases::stat::Stat;
 use crate::study::plot::{self, Axis, Figure, Highlight, Legend, Limit, Mark, Series};
 use std::path::{Path, PathBuf};
 

@@ -8,8 +8,8 @@
 
 use super::errors::Truth;
 use super::knobs::Role;
-use super::measured::{Curve, Measured};
 use super::richardson::{Limit, limit};
+use crate::study::cases::measured::{Curve, Measured};
 use serde::Serialize;
 
 /// Runs along one knob, the scene as it stands among them.

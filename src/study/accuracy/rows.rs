@@ -3,8 +3,8 @@
 use super::agenda::Turned;
 use super::errors::Errors;
 use super::knobs::Role;
-use super::measured::Measured;
-use super::stat::Stat;
+use crate::study::cases::measured::Measured;
+use crate::study::cases::stat::Stat;
 
 /// A value of a knob, or the scene as it stands.
 pub struct Row {

@@ -1,26 +1,13 @@
 //! The study as people read it: two tables and what stands around them.
 
 use super::errors::Errors;
-use super::measured::Measured;
 use super::reference::Along;
 use super::rows::{Outcome, Row};
-use super::stat::Stat;
 use super::{Reference, Study, Subject};
-use serde::Serialize;
+use crate::study::cases::measured::Measured;
+use crate::study::cases::stat::Stat;
+use crate::study::table::Table;
 use std::fmt::Write;
-
-/// A table for people, as it stands on the screen and on the page.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Table {
-    /// Its heading.
-    pub title: String,
-    /// Heads of the columns, with units.
-    pub heads: Vec<String>,
-    /// Cells, row by row.
-    pub rows: Vec<Vec<String>>,
-    /// Which of the rows is the scene as it stands.
-    pub default: Option<usize>,
-}
 
 /// Columns of text at the left: knob and value.
 const LEFT: usize = 2;
@@ -105,6 +92,7 @@ fn table(title: &str, heads: &[&str], study: &Study, cells: impl Fn(&Row) -> Vec
         heads: heads.iter().map(|head| head.to_string()).collect(),
         rows: rows.collect(),
         default,
+        left: LEFT,
     }
 }
 
@@ -152,34 +140,6 @@ fn first_break(row: &Row) -> String {
             let same = several.iter().filter(|errors| errors.same_first_wire == Some(true)).count();
             format!("{same} of {} same wire", several.len())
         }
-    }
-}
-
-impl Table {
-    /// Text to the left, numbers to the right, a note at the end.
-    pub fn to_text(&self) -> String {
-        // Units stand below what they belong to, which keeps columns narrow.
-        let split = |head: &String| match head.split_once(" [") {
-            Some((what, unit)) => [what.to_string(), format!("[{unit}")],
-            None => [head.clone(), String::new()],
-        };
-        let heads: Vec<[String; 2]> = self.heads.iter().map(split).collect();
-        let [whats, units] = [0, 1].map(|k| heads.iter().map(|head| head[k].clone()).collect::<Vec<_>>());
-        let width = |k: usize| {
-            let cells = self.rows.iter().map(|row| &row[k]).chain(&heads[k]);
-            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..self.heads.len()).map(width).collect();
-        let line = |cells: &[String]| {
-            let padded = cells.iter().enumerate().map(|(k, cell)| {
-                let pad = " ".repeat(widths[k] - cell.chars().count());
-                if k < LEFT || self.heads[k] == "note" { format!("{cell}{pad}") } else { format!("{pad}{cell}") }
-            });
-            padded.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
-        };
-        let rule = "-".repeat(widths.iter().sum::<usize>() + 2 * (widths.len() - 1));
-        let rows: String = self.rows.iter().map(|row| line(row)).collect();
-        format!("{}\n{}{}{rule}\n{rows}", self.title, line(&whats), line(&units))
     }
 }
 

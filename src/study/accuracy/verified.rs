@@ -4,8 +4,8 @@
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
 use crate::run::in_pool;
-use crate::study::accuracy::table::Table;
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series, Slope};
+use crate::study::table::Table;
 use crate::study::verify::finding::{Convergence, Finding};
 use crate::study::verify::{CASES, Case, Effort, run_one};
 use serde::{Deserialize, Serialize};
@@ -208,6 +208,7 @@ impl Verified {
             heads: heads.iter().map(|head| head.to_string()).collect(),
             rows,
             default: None,
+            left: 2,
         }
     }
 

@@ -11,19 +11,21 @@ const TICKS: usize = 6;
 const PADDING: f64 = 0.06;
 
 /// An axis whose range is known.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Span {
     low: f64,
     high: f64,
     scale: Scale,
+    /// Names of 0, 1, 2, …; empty for numbers.
+    names: Vec<String>,
 }
 
 impl Span {
     /// The axis' own range, or one that holds `values` with some room.
     pub fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Self {
-        let scale = axis.scale;
+        let (scale, names) = (axis.scale, axis.names.clone());
         if let Some([low, high]) = axis.range {
-            return Self { low, high, scale };
+            return Self { low, high, scale, names };
         }
         let shown = values.filter(|v| can_show(scale, *v)).map(|v| forward(scale, v));
         let (low, high) = shown.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
@@ -33,7 +35,7 @@ impl Span {
             _ if low.is_finite() => (low - 0.5 * low.abs().max(1.0), high + 0.5 * low.abs().max(1.0)),
             _ => (0.0, 1.0),
         };
-        Self { low: backward(scale, low), high: backward(scale, high), scale }
+        Self { low: backward(scale, low), high: backward(scale, high), scale, names }
     }
 
     /// Whether a value has a place on this axis.
@@ -63,6 +65,9 @@ impl Span {
 
     /// Major ticks.
     fn major(&self) -> Vec<f64> {
+        if !self.names.is_empty() {
+            return (0..self.names.len()).map(|k| k as f64).collect();
+        }
         if self.scale == Scale::Linear {
             return ticks(self.low, self.high, TICKS).values;
         }
@@ -124,6 +129,9 @@ impl Ranged for Span {
 
 impl ValueFormatter<f64> for Span {
     fn format_ext(&self, value: &f64) -> String {
+        if !self.names.is_empty() {
+            return self.names.get(value.round() as usize).cloned().unwrap_or_default();
+        }
         let largest = self.low.abs().max(self.high.abs());
         let plain = (1e-3..1e5).contains(&largest) && (self.scale == Scale::Linear || self.low >= 1e-4);
         if !plain {

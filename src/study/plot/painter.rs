@@ -109,7 +109,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
             .caption(&f.title, title)
             .x_label_area_size(self.px(48.0))
             .y_label_area_size(self.px(72.0))
-            .build_cartesian_2d(self.x, self.y)?;
+            .build_cartesian_2d(self.x.clone(), self.y.clone())?;
         chart
             .configure_mesh()
             .x_desc(&f.x.label)
@@ -179,7 +179,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
     }
 
     fn series(&self, index: usize, series: &Series) -> Drawn<B> {
-        let colour = PALETTE[index % PALETTE.len()];
+        let colour = colour(index, series);
         let style = self.stroke(colour, LINE);
         let shown: Vec<(usize, [f64; 2])> = self.shown(series).collect();
         let points: Vec<Pixel> = shown.iter().map(|(_, p)| self.at(*p)).collect();
@@ -203,8 +203,8 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
     }
 
     /// Points of a series that lie within the frame, with their numbers.
-    fn shown<'s>(&self, series: &'s Series) -> impl Iterator<Item = (usize, [f64; 2])> + use<'s, B> {
-        let (x, y) = (self.x, self.y);
+    fn shown<'s>(&'s self, series: &'s Series) -> impl Iterator<Item = (usize, [f64; 2])> + use<'s, 'a, B> {
+        let (x, y) = (&self.x, &self.y);
         series.points.iter().copied().enumerate().filter(move |(_, p)| x.shows(p[0]) && y.shows(p[1]))
     }
 
@@ -227,7 +227,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
         let series = f.series.iter().enumerate().map(|(index, s)| Entry {
             name: &s.name,
             mark: s.mark,
-            colour: PALETTE[index % PALETTE.len()],
+            colour: colour(index, s),
             index,
         });
         let slopes = f.slopes.iter().map(|s| Entry { name: &s.name, mark: Mark::Dashed, colour: GREY, index: 0 });
@@ -335,6 +335,19 @@ const SHORT_DASH: [f64; 2] = [3.0, 4.0];
 fn has_markers(mark: Mark) -> bool {
     matches!(mark, Mark::Points | Mark::LineAndPoints)
 }
+
+/// Colour of the series with this number.
+fn colour(index: usize, series: &Series) -> RGBColor {
+    let ramp = |shade: f64| {
+        // Viridis is even to the eye and for the colour-blind; its last tenth is too light for lines on white.
+        let colour = colorous::VIRIDIS.eval_continuous((LIGHTEST * shade).clamp(0.0, 1.0));
+        RGBColor(colour.r, colour.g, colour.b)
+    };
+    series.shade.map_or(PALETTE[index % PALETTE.len()], ramp)
+}
+
+/// Greatest place on the colour map that is used for lines on white [-].
+const LIGHTEST: f64 = 0.9;
 
 /// Ranges of both axes, which hold series, error bars and limits.
 fn spans(figure: &Figure) -> [Span; 2] {

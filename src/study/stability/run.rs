@@ -167,7 +167,7 @@ impl Watched {
     fn row(&mut self) -> Result<()> {
         let sample = self.engine.sample();
         self.guard.check(&sample)?;
-        self.rule.row(sample.stress);
+        self.rule.row(sample.strain, sample.stress);
         let judged = self.guard.row(&sample);
         self.seen.row(&self.engine, sample);
         judged

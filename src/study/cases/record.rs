@@ -1,8 +1,10 @@
-//! One run of a study, and the record that is kept of it: a study that was interrupted goes on where it stopped.
+//! One run of a study, and the record that is kept of it in a folder named by the hash of its scene: a study that was
+//! interrupted goes on where it stopped.
 
 use super::measured::{Measured, Watcher};
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
+use crate::run::folder::SCENE;
 use crate::run::{RunOptions, cost, outputs, run_watched, summarise};
 use crate::scene::spec::{PathSpec, Spec};
 use crate::scene::{Scene, write};
@@ -11,16 +13,19 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Folder of the records within that of the study.
-const FOLDER: &str = "cases";
+/// Folder of the cases within that of the study.
+const CASES: &str = "cases";
+/// The record, in the folder of its case.
+const RECORD: &str = "case.json";
 
 /// What decides what a run gives: two runs that agree in this are the same run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Version of the program.
     pub version: String,
-    /// Threads of the engine.
-    pub threads: usize,
+    /// Threads of the engine where the cost of a run is what is studied; `None` where only its answer is, which has the
+    /// same bits on any number.
+    pub threads: Option<usize>,
     /// Whether the run was written to disk.
     pub writes: bool,
     /// The resolved scene, points of centreline files included.
@@ -28,8 +33,8 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Of a run of `spec` on `threads`.
-    pub fn of(spec: &Spec, threads: usize, writes: bool) -> Self {
+    /// Of a run of `spec`.
+    pub fn of(spec: &Spec, threads: Option<usize>, writes: bool) -> Self {
         let mut scene = write::to_toml(spec);
         for wire in &spec.wires {
             if let PathSpec::File { points, .. } = &wire.path {
@@ -39,12 +44,17 @@ impl Identity {
         Self { version: env!("CARGO_PKG_VERSION").into(), threads, writes, scene }
     }
 
-    /// Name of its record: FNV-1a over all of it. The record holds the whole identity, so that a clash of names is seen.
-    fn file(&self, folder: &Path) -> PathBuf {
-        let text = format!("{} {} {} {}", self.version, self.threads, self.writes, self.scene);
+    /// Name of its folder: FNV-1a over all of it. The record holds the whole identity, so that a clash of names is seen.
+    pub fn name(&self) -> String {
+        let text = format!("{} {:?} {} {}", self.version, self.threads, self.writes, self.scene);
         let fnv = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
         let hash = text.bytes().fold(0xCBF2_9CE4_8422_2325, fnv);
-        folder.join(FOLDER).join(format!("{hash:016x}.json"))
+        format!("{hash:016x}")
+    }
+
+    /// Its folder within that of the study.
+    pub fn folder(&self, study: &Path) -> PathBuf {
+        study.join(CASES).join(self.name())
     }
 }
 
@@ -72,37 +82,39 @@ pub struct Record {
 impl Record {
     /// The record of a run, if one is kept in the study's folder. One that is damaged, or of another run, is none.
     pub fn kept(identity: &Identity, folder: &Path) -> Option<Self> {
-        let text = std::fs::read_to_string(identity.file(folder)).ok()?;
+        let text = std::fs::read_to_string(identity.folder(folder).join(RECORD)).ok()?;
         let record: Self = serde_json::from_str(&text).ok()?;
         (record.identity == *identity).then_some(record)
     }
 
-    /// Writes the record, and gives it as it will be read: a study that goes on must write the same numbers as one that
-    /// was never interrupted, and reading may change the last bit.
+    /// Writes the record beside its scene, and gives it as it will be read: a study that goes on must write the same
+    /// numbers as one that was never interrupted, and reading may change the last bit.
     ///
     /// # Errors
     /// When the folder cannot be written.
     fn keep(self, folder: &Path) -> Result<Self> {
-        let path = self.identity.file(folder);
+        let folder = self.identity.folder(folder);
+        std::fs::create_dir_all(&folder).map_err(|e| Error::io("cannot make the folder", &folder, e))?;
+        write_whole(&folder.join(SCENE), &self.identity.scene)?;
+        let path = folder.join(RECORD);
         let text = serde_json::to_string(&self).expect("a record holds nothing that JSON lacks");
         write_whole(&path, &text)?;
         serde_json::from_str(&text).map_err(|e| Error::io("cannot read back", &path, std::io::Error::other(e)))
     }
 }
 
-/// Makes the folder of the records; `fresh` removes those that are there.
+/// Makes the folder of the cases; `fresh` removes the records that are there.
 ///
 /// # Errors
 /// When the folder cannot be made or a record cannot be removed.
 pub fn open(folder: &Path, fresh: bool) -> Result<()> {
-    let records = folder.join(FOLDER);
-    std::fs::create_dir_all(&records).map_err(|e| Error::io("cannot make the folder", &records, e))?;
+    let cases = folder.join(CASES);
+    std::fs::create_dir_all(&cases).map_err(|e| Error::io("cannot make the folder", &cases, e))?;
     if !fresh {
         return Ok(());
     }
-    let entries = std::fs::read_dir(&records).map_err(|e| Error::io("cannot read the folder", &records, e))?;
-    for path in entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "json"))
-    {
+    let entries = std::fs::read_dir(&cases).map_err(|e| Error::io("cannot read the folder", &cases, e))?;
+    for path in entries.flatten().map(|entry| entry.path().join(RECORD)).filter(|path| path.is_file()) {
         std::fs::remove_file(&path).map_err(|e| Error::io("cannot remove", &path, e))?;
     }
     Ok(())
@@ -193,7 +205,7 @@ mod tests {
 
     fn identity(options: &[&str], threads: usize) -> Identity {
         let options: Vec<String> = options.iter().map(|text| text.to_string()).collect();
-        Identity::of(&scene::load("single-wire", &options).unwrap().spec, threads, false)
+        Identity::of(&scene::load("single-wire", &options).unwrap().spec, Some(threads), false)
     }
 
     fn record(identity: &Identity) -> Record {
@@ -208,6 +220,7 @@ mod tests {
         assert_eq!(Record::kept(&one, folder.path()), None);
         record(&one).keep(folder.path()).unwrap();
         assert_eq!(Record::kept(&one, folder.path()), Some(record(&one)));
+        assert_eq!(std::fs::read_to_string(one.folder(folder.path()).join(SCENE)).unwrap(), one.scene);
         assert_eq!(Record::kept(&identity(&["seed=2"], 1), folder.path()), None);
         assert_eq!(Record::kept(&identity(&[], 2), folder.path()), None);
         open(folder.path(), true).unwrap();
@@ -220,7 +233,7 @@ mod tests {
         open(folder.path(), false).unwrap();
         let one = identity(&[], 1);
         record(&one).keep(folder.path()).unwrap();
-        let path = one.file(folder.path());
+        let path = one.folder(folder.path()).join(RECORD);
         let text = std::fs::read_to_string(&path).unwrap();
         std::fs::write(&path, &text[..text.len() / 2]).unwrap();
         assert_eq!(Record::kept(&one, folder.path()), None);

@@ -1,8 +1,7 @@
 //! Makes the runs of a study: those that are kept are not made again, those that the budget has no room for are left
 //! out, and one that fails does not stop the others.
 
-use super::agenda::Item;
-use super::case::{self, CpuClock, Found, Identity, Record};
+use super::record::{self, CpuClock, Found, Identity, Record};
 use crate::base::error::{Error, Result};
 use crate::run::in_pool;
 use crate::scene::{self, Scene};
@@ -11,18 +10,33 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
+/// A run that is to be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// What it is called.
+    pub name: String,
+    /// Options of the scene, in the order in which they win.
+    pub overrides: Vec<String>,
+    /// What it will cost, in any unit that all cases share.
+    pub work: f64,
+    /// Whether it is written to disk.
+    pub writes: bool,
+    /// Whether it must be over before the others begin, because estimates go by it.
+    pub leads: bool,
+}
+
 /// How the runs are made.
 pub struct Workshop<'a> {
     /// The scene by name or path.
     pub scene: &'a str,
-    /// Its options.
-    pub overrides: &'a [String],
     /// Folder of the study.
     pub folder: &'a Path,
     /// Runs side by side, each on one thread when there are several.
     pub jobs: usize,
     /// Threads of the engine when runs are made one by one; `None`: one per core.
     pub threads: Option<usize>,
+    /// Whether the cost of runs is what is studied: then a run on another number of threads is another run.
+    pub costs: bool,
     /// Wall time that the study may take [s].
     pub budget: Option<f64>,
     /// When it began.
@@ -44,11 +58,11 @@ pub struct Progress {
     pub of: usize,
     /// Share of the work done [-].
     pub share: f64,
-    /// Time left [s]; `None` before the scene itself was run.
+    /// Time left [s]; `None` before any run says how fast the machine is.
     pub left: Option<f64>,
 }
 
-/// What became of an item.
+/// What became of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Became {
     /// It is over; `kept` when an earlier study had made it.
@@ -71,7 +85,7 @@ struct Shared {
     next: usize,
     became: Vec<Became>,
     /// Wall time [s] and work of the runs that estimates go by: those made now, and before there are any, the kept ones
-    /// of the scene as it stands.
+    /// that lead.
     pace: (f64, f64),
     /// Runs made now.
     made: usize,
@@ -83,7 +97,7 @@ struct Shared {
 }
 
 impl Shared {
-    /// Wall time of a run like that of the scene as it stands [s].
+    /// Wall time of a run of one unit of work [s].
     fn wall_per_work(&self) -> Option<f64> {
         (self.pace.1 > 0.0).then(|| self.pace.0 / self.pace.1)
     }
@@ -91,8 +105,8 @@ impl Shared {
 
 impl Shared {
     /// Takes a run into the estimates. A busy machine shows in what is made now, so that counts more than what is kept.
-    fn pace(&mut self, wall_s: f64, item: &Item, kept: bool) {
-        if kept && (self.made > 0 || item.place.is_some()) {
+    fn pace(&mut self, wall_s: f64, case: &Case, kept: bool) {
+        if kept && (self.made > 0 || !case.leads) {
             return;
         }
         if !kept {
@@ -101,20 +115,20 @@ impl Shared {
             }
             self.made += 1;
         }
-        self.pace = (self.pace.0 + wall_s, self.pace.1 + item.work);
+        self.pace = (self.pace.0 + wall_s, self.pace.1 + case.work);
     }
 }
 
 impl Workshop<'_> {
-    /// Makes all runs, in the order of `items`.
+    /// Makes all runs, in the order of `cases`.
     ///
     /// # Errors
     /// What the machine refuses: threads, files.
-    pub fn make(&self, items: &[Item]) -> Result<Vec<Became>> {
-        let all = items.iter().map(|item| item.work).sum();
+    pub fn make(&self, cases: &[Case]) -> Result<Vec<Became>> {
+        let all = cases.iter().map(|case| case.work).sum();
         let shared = Mutex::new(Shared {
             next: 0,
-            became: vec![Became::NotReached; items.len()],
+            became: vec![Became::NotReached; cases.len()],
             pace: (0.0, 0.0),
             made: 0,
             finished: 0,
@@ -122,12 +136,12 @@ impl Workshop<'_> {
             all,
             failed: None,
         });
-        // What the others cost is known only when the scene itself was run.
-        let bases = items.iter().take_while(|item| item.place.is_none()).count();
-        for end in [bases, items.len()] {
+        // What the others cost is known only when those that lead were run.
+        let leading = cases.iter().take_while(|case| case.leads).count();
+        for end in [leading, cases.len()] {
             std::thread::scope(|scope| {
                 for _ in 0..self.jobs {
-                    scope.spawn(|| self.worker(items, end, &shared));
+                    scope.spawn(|| self.worker(cases, end, &shared));
                 }
             });
         }
@@ -135,8 +149,8 @@ impl Workshop<'_> {
         shared.failed.map_or(Ok(shared.became), Err)
     }
 
-    /// Takes items until `end` as long as there are any.
-    fn worker(&self, items: &[Item], end: usize, shared: &Mutex<Shared>) {
+    /// Takes cases until `end` as long as there are any.
+    fn worker(&self, cases: &[Case], end: usize, shared: &Mutex<Shared>) {
         let lock = || shared.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
             let index = {
@@ -147,30 +161,30 @@ impl Workshop<'_> {
                 now.next += 1;
                 now.next - 1
             };
-            self.say(&items[index].name, items.len(), &lock());
-            let estimate = lock().wall_per_work().map(|wall| wall * items[index].work);
-            let made = self.one(&items[index], estimate);
+            self.say(&cases[index].name, cases.len(), &lock());
+            let estimate = lock().wall_per_work().map(|wall| wall * cases[index].work);
+            let made = self.one(&cases[index], estimate);
             let mut now = lock();
             match made {
-                Ok(Some(became)) => self.book(index, &items[index], became, &mut now),
+                Ok(Some(became)) => self.book(index, &cases[index], became, &mut now),
                 Ok(None) => {}
                 Err(error) => now.failed = Some(error),
             }
-            self.say(&items[index].name, items.len(), &now);
+            self.say(&cases[index].name, cases.len(), &now);
         }
     }
 
-    fn book(&self, index: usize, item: &Item, became: Became, now: &mut Shared) {
+    fn book(&self, index: usize, case: &Case, became: Became, now: &mut Shared) {
         match &became {
             Became::Done { record, kept } => {
                 now.finished += 1;
                 if let Found::Ran(measured) = &record.found {
-                    now.pace(measured.wall_s, item, *kept);
+                    now.pace(measured.wall_s, case, *kept);
                 }
                 // Kept runs say nothing of the time that is left.
-                if *kept { now.all -= item.work } else { now.done += item.work }
+                if *kept { now.all -= case.work } else { now.done += case.work }
             }
-            _ => now.all -= item.work,
+            _ => now.all -= case.work,
         }
         now.became[index] = became;
     }
@@ -187,17 +201,17 @@ impl Workshop<'_> {
         (self.tell)(&Progress { name: name.into(), finished: now.finished, of, share, left });
     }
 
-    /// One item; `None` when it was interrupted.
-    fn one(&self, item: &Item, estimate: Option<f64>) -> Result<Option<Became>> {
-        let overrides: Vec<String> = self.overrides.iter().chain(&item.set).cloned().collect();
-        let scene = match scene::load(self.scene, &overrides) {
+    /// One case; `None` when it was interrupted.
+    fn one(&self, case: &Case, estimate: Option<f64>) -> Result<Option<Became>> {
+        let scene = match scene::load(self.scene, &case.overrides) {
             Ok(scene) => scene,
             Err(error @ (Error::Scene(_) | Error::Input { .. })) => {
                 return Ok(Some(Became::Refused(error.to_string())));
             }
             Err(error) => return Err(error),
         };
-        let identity = Identity::of(&scene.spec, self.threads_of_a_run(), item.writes);
+        let threads = self.costs.then(|| self.threads_of_a_run());
+        let identity = Identity::of(&scene.spec, threads, case.writes);
         if let Some(record) = Record::kept(&identity, self.folder) {
             return Ok(Some(Became::Done { record: Box::new(record), kept: true }));
         }
@@ -212,7 +226,7 @@ impl Workshop<'_> {
 
     fn run(&self, scene: &Scene, identity: &Identity) -> Result<Option<Record>> {
         let clock = if self.jobs > 1 { CpuClock::Thread } else { CpuClock::Process };
-        in_pool(Some(identity.threads), || case::run(scene, identity, self.folder, clock, self.stop))?
+        in_pool(Some(self.threads_of_a_run()), || record::run(scene, identity, self.folder, clock, self.stop))?
     }
 
     /// Threads of the engine in each run.

@@ -1,12 +1,15 @@
 //! Mean over seeds, and how sure it is.
 
 use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// A number over several seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Stat {
     /// Mean.
     pub mean: f64,
+    /// Standard deviation from seed to seed; `None` for one seed.
+    pub standard_deviation: Option<f64>,
     /// Standard error of the mean; `None` for one seed.
     pub standard_error: Option<f64>,
     /// Half the width of the interval that holds the mean with 95 % confidence (Student's t); `None` for one seed.
@@ -14,12 +17,6 @@ pub struct Stat {
     /// Seeds.
     pub count: usize,
 }
-
-/// Student's t for a two-sided interval of 95 %, by degrees of freedom from 1.
-const T_95: [f64; 15] =
-    [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131];
-/// The same for more, a little too wide.
-const T_95_BEYOND: f64 = 2.13;
 
 impl Stat {
     /// Of values; `None` when there is none.
@@ -29,11 +26,18 @@ impl Stat {
             return None;
         }
         let mean = values.iter().sum::<f64>() / n as f64;
-        let variance = || values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1) as f64;
-        let standard_error = (n > 1).then(|| (variance() / n as f64).sqrt());
-        let t = T_95.get(n.saturating_sub(2)).copied().unwrap_or(T_95_BEYOND);
-        Some(Self { mean, standard_error, interval_95: standard_error.map(|error| t * error), count: n })
+        let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        let standard_deviation = (n > 1).then(|| (squares / (n - 1) as f64).sqrt());
+        let standard_error = standard_deviation.map(|deviation| deviation / (n as f64).sqrt());
+        let interval_95 = standard_error.map(|error| t_95(n - 1) * error);
+        Some(Self { mean, standard_deviation, standard_error, interval_95, count: n })
     }
+}
+
+/// Student's t for a two-sided interval of 95 % and `freedom` degrees of freedom, at least 1.
+pub fn t_95(freedom: usize) -> f64 {
+    let t = StudentsT::new(0.0, 1.0, freedom as f64).expect("a positive number of degrees of freedom");
+    t.inverse_cdf(0.975)
 }
 
 #[cfg(test)]
@@ -45,7 +49,9 @@ mod tests {
         let stat = Stat::of(&[1.0, 2.0, 3.0]).unwrap();
         assert_eq!((stat.mean, stat.count), (2.0, 3));
         assert!((stat.standard_error.unwrap() - 1.0 / 3f64.sqrt()).abs() < 1e-12);
-        assert!((stat.interval_95.unwrap() - 4.303 / 3f64.sqrt()).abs() < 1e-12);
+        assert_eq!(stat.standard_deviation, Some(1.0));
+        // 4.303 is what tables of Student's t have for two degrees of freedom.
+        assert!((stat.interval_95.unwrap() - 4.303 / 3f64.sqrt()).abs() < 3e-4);
     }
 
     #[test]

@@ -79,6 +79,8 @@ pub struct Measured {
     pub strength_mpa: f64,
     /// Strain at the peak [%].
     pub elongation_percent: f64,
+    /// Strain at which stress has fallen 20 % below its peak [%]; `None` when it never did.
+    pub drop_percent: Option<f64>,
     /// Greatest share of the energy that the ledger does not account for [%].
     pub energy_residual_percent: Option<f64>,
     /// Greatest kinetic over internal energy before the first rupture [-].
@@ -89,6 +91,10 @@ pub struct Measured {
     pub wires: usize,
     /// Layer names, inside out.
     pub layers: Vec<String>,
+    /// Wires of each layer.
+    pub layer_wires: Vec<usize>,
+    /// Where the gauge begins and ends along z before loading [mm]; `None` without grips.
+    pub gauge_mm: Option<[f64; 2]>,
     /// First rupture of each wire that broke, in order.
     pub breaks: Vec<Break>,
     /// Histories.
@@ -108,11 +114,14 @@ impl Measured {
             particles: summary.particles,
             strength_mpa: summary.tensile_strength_mpa?,
             elongation_percent: summary.fracture_elongation_percent?,
+            drop_percent: summary.elongation_at_20_percent_drop_percent,
             energy_residual_percent: summary.energy_residual_percent,
             kinetic_over_internal: summary.quasi_static.kinetic_over_internal_max,
             grip_mismatch_percent: summary.quasi_static.grip_force_mismatch_percent,
-            wires: watcher.wires,
+            wires: watcher.layer_wires.iter().sum(),
             layers: watcher.layers,
+            layer_wires: watcher.layer_wires,
+            gauge_mm: watcher.gauge_mm,
             breaks,
             curve: watcher.curve,
         })
@@ -124,12 +133,16 @@ impl Measured {
 pub struct Watcher {
     curve: Curve,
     layers: Vec<String>,
-    wires: usize,
+    layer_wires: Vec<usize>,
+    gauge_mm: Option<[f64; 2]>,
 }
 
 impl Observer for Watcher {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
-        *self = Self { layers: info.layers.clone(), wires: info.wires.len(), ..Self::default() };
+        let mut layer_wires = vec![0; info.layers.len()];
+        info.wires.iter().for_each(|wire| layer_wires[wire.layer] += 1);
+        let gauge_mm = info.gauge.map(|ends| ends.map(f64::from));
+        *self = Self { layers: info.layers.clone(), layer_wires, gauge_mm, ..Self::default() };
         Ok(())
     }
 

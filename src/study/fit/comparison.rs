@@ -1,0 +1,70 @@
+//! All models through the same points, and what each says of points that it was not shown.
+
+use super::{Fit, FitError, Model, fit};
+use serde::Serialize;
+
+/// Leave-one-out cross-validation (Stone 1974): each point is foretold by the curve through the others.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CrossValidation {
+    /// Squared error at each point, in the unit of y squared.
+    pub folds: Vec<f64>,
+    /// Their mean, MSE.
+    pub mean: f64,
+}
+
+/// A model through the points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Compared {
+    /// Which.
+    pub model: Model,
+    /// Its curve, or why there is none.
+    pub fit: Result<Fit, FitError>,
+    /// What it says of points that it was not shown, or why a curve without one of them cannot be had.
+    pub cross_validation: Result<CrossValidation, FitError>,
+}
+
+/// All models.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The points (x, y).
+    pub points: Vec<[f64; 2]>,
+    /// Each model, the simplest first.
+    pub models: Vec<Compared>,
+    /// The one that foretells best; `None` when none can be cross-validated.
+    pub best: Option<Model>,
+}
+
+impl Comparison {
+    /// A model of it.
+    pub fn model(&self, model: Model) -> &Compared {
+        self.models.iter().find(|compared| compared.model == model).expect("all models are compared")
+    }
+}
+
+/// Fits all models to points (x, y) and cross-validates them.
+pub fn compare(points: &[[f64; 2]]) -> Comparison {
+    let one = |model| Compared { model, fit: fit(model, points), cross_validation: cross_validate(model, points) };
+    let models: Vec<Compared> = Model::ALL.into_iter().map(one).collect();
+    let known = models.iter().filter_map(|one| Some((one.model, one.cross_validation.as_ref().ok()?.mean)));
+    // The simpler one of equals.
+    let best = known.fold(None, |best: Option<(Model, f64)>, (model, mean)| match best {
+        Some((_, least)) if least <= mean => best,
+        _ => Some((model, mean)),
+    });
+    Comparison { points: points.to_vec(), best: best.map(|(model, _)| model), models }
+}
+
+fn cross_validate(model: Model, points: &[[f64; 2]]) -> Result<CrossValidation, FitError> {
+    if points.is_empty() {
+        return Err(FitError::TooFew { have: 0, need: model.names().len() });
+    }
+    let fold = |k: usize| {
+        let others: Vec<[f64; 2]> =
+            points.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, point)| *point).collect();
+        let [x, y] = points[k];
+        Ok((y - fit(model, &others)?.value(x)).powi(2))
+    };
+    let folds = (0..points.len()).map(fold).collect::<Result<Vec<f64>, FitError>>()?;
+    let mean = folds.iter().sum::<f64>() / folds.len() as f64;
+    Ok(CrossValidation { folds, mean })
+}

@@ -1,0 +1,322 @@
+//! A study as it was read: base scene, axes, points and cases.
+
+use super::axis::{self, Axis};
+use super::quantity::{self, Quantity};
+use super::raw::{RawDesign, RawQuality, RawSeeds, RawStudy};
+use crate::base::error::{Error, Result};
+use crate::scene::quality::Quality;
+use crate::scene::suggest::nearest;
+use crate::scene::{self, SceneSource};
+use crate::study::screening::{self, Model};
+use std::path::Path;
+
+/// Most cases of a study: more is a typing error.
+const MOST_CASES: usize = 100_000;
+
+macro_rules! studies {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../../../assets/studies/", $name, ".toml")))),*]
+    };
+}
+
+/// Name and text of the studies that come with the program.
+const STUDIES: &[(&str, &str)] = studies!["pitch", "diameter", "seeds", "mechanism"];
+
+/// The studies that come with the program: name, and TOML text.
+pub fn list() -> &'static [(&'static str, &'static str)] {
+    STUDIES
+}
+
+/// What the user may change of a study.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Changes {
+    /// Accuracy against run time; `None`: as the study says.
+    pub quality: Option<Quality>,
+    /// Further `--set` options of every case.
+    pub set: Vec<String>,
+    /// Seeds instead of the study's; empty for those.
+    pub seeds: Vec<u64>,
+}
+
+/// What results stand beside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beside {
+    /// What the reference paper prints.
+    Paper,
+    /// Strand theory.
+    StrandTheory,
+}
+
+impl Beside {
+    const ALL: [(&'static str, Beside); 2] = [("paper", Beside::Paper), ("strand-theory", Beside::StrandTheory)];
+}
+
+/// A study that was read.
+pub struct Definition {
+    /// Its name.
+    pub name: String,
+    /// What it asks.
+    pub about: String,
+    /// The base scene by name or path.
+    pub base: String,
+    /// What it varies.
+    pub axes: Vec<Axis>,
+    /// Chosen points: the level of every axis.
+    pub points: Vec<Vec<usize>>,
+    /// The model of effects, when the study has a design.
+    pub model: Option<Model>,
+    /// How well the design tells the model's terms apart, over the full grid [-].
+    pub efficiency: Option<f64>,
+    /// Seeds of every point.
+    pub seeds: Vec<u64>,
+    /// Accuracy against run time.
+    pub quality: Quality,
+    /// What is gathered.
+    pub quantities: Vec<&'static Quantity>,
+    /// What curves are fitted to.
+    pub fits: Vec<&'static Quantity>,
+    /// What results stand beside.
+    pub compare: Vec<Beside>,
+    /// Options of every case, before those of its point.
+    common: Vec<String>,
+}
+
+impl Definition {
+    /// Reads a study by built-in name or by path.
+    ///
+    /// # Errors
+    /// An unknown name; a file that cannot be read; anything wrong in the study or in its base scene.
+    pub fn load(name_or_path: &str, changes: &Changes) -> Result<Self> {
+        let path = Path::new(name_or_path);
+        let is_path = name_or_path.ends_with(".toml") || name_or_path.contains(std::path::is_separator);
+        if !is_path {
+            let text = builtin(name_or_path)?;
+            return Self::parse(text, &format!("{name_or_path}.toml"), Path::new("."), changes);
+        }
+        let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
+            std::io::ErrorKind::NotFound => {
+                Error::input(format!("there is no study file {}", path.display()), "give its path, or a built-in name")
+            }
+            _ => Error::io("cannot read", path, source),
+        })?;
+        Self::parse(&text, name_or_path, path.parent().unwrap_or(Path::new(".")), changes)
+    }
+
+    /// Reads a study from its text. `file_name` is shown in errors, and its stem names the study; a base scene that is a
+    /// path is taken from `folder`.
+    ///
+    /// # Errors
+    /// Anything wrong in the study or in its base scene.
+    pub fn parse(text: &str, file_name: &str, folder: &Path, changes: &Changes) -> Result<Self> {
+        let (raw, source): (RawStudy, SceneSource) = scene::read(text, file_name, "a study")?;
+        let missing = |key: &str, help: &str| source.error("", format!("`{key}` is missing"), help);
+        let about = raw.about.clone().ok_or_else(|| missing("about", "say in a sentence what the study asks"))?;
+        let base = raw.base.as_ref().ok_or_else(|| missing("base", "add it, for example base = \"ka4\""))?;
+        let base = base_scene(base, folder);
+        let axes = axis::axes(&raw.axis, &source)?;
+        let quality = changes.quality.unwrap_or(match raw.quality {
+            Some(RawQuality::Draft) => Quality::Draft,
+            Some(RawQuality::Fine) => Quality::Fine,
+            Some(RawQuality::Standard) | None => Quality::Standard,
+        });
+        let own = scene::load(&base, &[])?;
+        let seeds = match changes.seeds.is_empty() {
+            true => seeds(raw.seeds.as_ref(), own.spec.seed, &source)?,
+            false => changes.seeds.clone(),
+        };
+        let common: Vec<String> =
+            quality.overrides(&own.spec).into_iter().chain(raw.set).chain(changes.set.iter().cloned()).collect();
+        let model = raw.design.as_ref().map(|design| model(design, &axes, &source)).transpose()?;
+        let points = points(&axes, model.as_ref(), raw.design.as_ref(), &source)?;
+        if points.len() * seeds.len() > MOST_CASES {
+            let what = format!("{} points and {} seeds are more than {MOST_CASES} cases", points.len(), seeds.len());
+            return Err(source.error("axis", what, "vary less, or pick points with [design]"));
+        }
+        let quantities = match &raw.quantities {
+            None => quantity::ALL.iter().collect(),
+            Some(names) => quantities(names, "quantities", &source)?,
+        };
+        let fits = fits(&raw.fits, &axes, &source)?;
+        let compare = raw.compare.iter().enumerate().map(|(k, name)| beside(k, name, &source));
+        let compare = compare.collect::<Result<Vec<_>>>()?;
+        let efficiency = model.as_ref().map(|model| screening::efficiency(model, &points));
+        let stem = Path::new(file_name).file_stem().map_or_else(|| "study".into(), |stem| stem.to_string_lossy());
+        Ok(Self {
+            name: stem.into_owned(),
+            about,
+            base,
+            axes,
+            points,
+            model,
+            efficiency,
+            seeds,
+            quality,
+            quantities,
+            fits,
+            compare,
+            common,
+        })
+    }
+
+    /// Options of a point with a seed, in the order in which they win: quality, the study's, the axes', the seed.
+    pub fn overrides(&self, point: usize, seed: u64) -> Vec<String> {
+        let of_axes = self.levels(point).flat_map(|(_, level)| level.set.iter().cloned());
+        self.common.iter().cloned().chain(of_axes).chain([format!("seed={seed}")]).collect()
+    }
+
+    /// The level of every axis at a point.
+    pub fn levels(&self, point: usize) -> impl Iterator<Item = (&Axis, &axis::Level)> {
+        self.axes.iter().zip(&self.points[point]).map(|(axis, level)| (axis, &axis.levels[*level]))
+    }
+
+    /// A point as people read it.
+    pub fn point_name(&self, point: usize) -> String {
+        let names: Vec<String> =
+            self.levels(point).map(|(axis, level)| format!("{} {}", axis.name, level.name)).collect();
+        if names.is_empty() { "the scene as it stands".into() } else { names.join(", ") }
+    }
+
+    /// A case as people read it.
+    pub fn case_name(&self, point: usize, seed: u64) -> String {
+        format!("{}, seed {seed}", self.point_name(point))
+    }
+
+    /// All cases in the order in which they are made: all points with the first seed, so that a study that is cut short
+    /// has been everywhere, then with the next.
+    pub fn cases(&self) -> Vec<(usize, u64)> {
+        self.seeds.iter().flat_map(|seed| (0..self.points.len()).map(move |point| (point, *seed))).collect()
+    }
+
+    /// The axis that curves run over: the only one, when it is numeric.
+    pub fn abscissa(&self) -> Option<&Axis> {
+        match &self.axes[..] {
+            [axis] if axis.is_numeric() => Some(axis),
+            _ => None,
+        }
+    }
+}
+
+/// The text of a built-in study.
+fn builtin(name: &str) -> Result<&'static str> {
+    if let Some((_, text)) = STUDIES.iter().find(|(known, _)| *known == name) {
+        return Ok(text);
+    }
+    let names: Vec<&str> = STUDIES.iter().map(|(name, _)| *name).collect();
+    let all = format!("built-in studies: {}; a file is given by its path", names.join(", "));
+    let help = match nearest(name, names.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`? {all}"),
+        None => all,
+    };
+    Err(Error::input(format!("there is no built-in study `{name}`"), help))
+}
+
+/// A scene file is given from the study's folder, a built-in scene by its name.
+fn base_scene(base: &str, folder: &Path) -> String {
+    if base.ends_with(".toml") { folder.join(base).to_string_lossy().into_owned() } else { base.to_owned() }
+}
+
+fn seeds(raw: Option<&RawSeeds>, own: u64, source: &SceneSource) -> Result<Vec<u64>> {
+    let wrong = |key: &str, what: String| source.error(key, what, "for example seeds = 3, or seeds = [1, 2, 3]");
+    match raw {
+        None => Ok(vec![own]),
+        Some(RawSeeds::Count(count)) if *count < 1 => {
+            Err(wrong("seeds", format!("`seeds` is {count}, but there must be at least one")))
+        }
+        Some(RawSeeds::Count(count)) => Ok((1..=*count as u64).collect()),
+        Some(RawSeeds::List(list)) if list.is_empty() => Err(wrong("seeds", "`seeds` lists none".into())),
+        Some(RawSeeds::List(list)) => {
+            let mut seeds = Vec::with_capacity(list.len());
+            for (k, seed) in list.iter().enumerate() {
+                let key = format!("seeds.{k}");
+                let number = u64::try_from(*seed).map_err(|_| wrong(&key, format!("{seed} is no seed")))?;
+                if seeds.contains(&number) {
+                    return Err(wrong(&key, format!("seed {number} is listed twice")));
+                }
+                seeds.push(number);
+            }
+            Ok(seeds)
+        }
+    }
+}
+
+fn model(design: &RawDesign, axes: &[Axis], source: &SceneSource) -> Result<Model> {
+    let place = |k: usize, name: &String| {
+        axes.iter().position(|axis| axis.name == *name).ok_or_else(|| {
+            let names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
+            let key = format!("design.interactions.{k}");
+            source.error(&key, format!("no axis is called `{name}`"), format!("axes: {}", names.join(", ")))
+        })
+    };
+    let pair = |(k, [a, b]): (usize, &[String; 2])| {
+        let pair = [place(k, a)?, place(k, b)?];
+        if pair[0] == pair[1] {
+            let key = format!("design.interactions.{k}");
+            return Err(source.error(&key, format!("`{a}` cannot interact with itself"), "name two axes"));
+        }
+        Ok(pair)
+    };
+    let interactions = design.interactions.iter().enumerate().map(pair).collect::<Result<Vec<_>>>()?;
+    Ok(Model { levels: axes.iter().map(|axis| axis.levels.len()).collect(), interactions })
+}
+
+/// Points of the study: those of its design, or the full grid with the last axis running fastest.
+fn points(
+    axes: &[Axis],
+    model: Option<&Model>,
+    design: Option<&RawDesign>,
+    source: &SceneSource,
+) -> Result<Vec<Vec<usize>>> {
+    let (Some(model), Some(design)) = (model, design) else {
+        let mut points = vec![Vec::new()];
+        for axis in axes {
+            if points.len() * axis.levels.len() > MOST_CASES {
+                let what = format!("the axes make more than {MOST_CASES} points");
+                return Err(source.error("axis", what, "vary less, or pick points with [design]"));
+            }
+            let further = |point: &Vec<usize>| {
+                let point = point.clone();
+                (0..axis.levels.len()).map(move |level| point.iter().copied().chain([level]).collect())
+            };
+            points = points.iter().flat_map(further).collect();
+        }
+        return Ok(points);
+    };
+    let Some(count) = design.points else {
+        return Err(source.error("design", "`design` has no `points`", "say how many, for example points = 32"));
+    };
+    let count = usize::try_from(count).unwrap_or(0);
+    screening::d_optimal(model, count).map_err(|e| source.error("design.points", e.to_string(), ""))
+}
+
+fn quantities(names: &[String], key: &str, source: &SceneSource) -> Result<Vec<&'static Quantity>> {
+    let one = |(k, name): (usize, &String)| {
+        quantity::find(name).ok_or_else(|| {
+            let known: Vec<&str> = quantity::ALL.iter().map(|quantity| quantity.name).collect();
+            let all = format!("known: {}", known.join(", "));
+            let help = match nearest(name, known.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`? {all}"),
+                None => all,
+            };
+            source.error(&format!("{key}.{k}"), format!("there is no quantity `{name}`"), help)
+        })
+    };
+    names.iter().enumerate().map(one).collect()
+}
+
+fn fits(names: &[String], axes: &[Axis], source: &SceneSource) -> Result<Vec<&'static Quantity>> {
+    let curves = matches!(axes, [axis] if axis.is_numeric());
+    if !names.is_empty() && !curves {
+        let what = "curves are fitted over one axis of numbers, and this study has another kind of axes";
+        return Err(source.error("fits", what, "remove `fits`, or vary one key only"));
+    }
+    quantities(names, "fits", source)
+}
+
+fn beside(k: usize, name: &str, source: &SceneSource) -> Result<Beside> {
+    let found = Beside::ALL.iter().find(|(known, _)| *known == name);
+    found.map(|(_, beside)| *beside).ok_or_else(|| {
+        let known: Vec<&str> = Beside::ALL.iter().map(|(name, _)| *name).collect();
+        let what = format!("`{name}` is nothing to compare with");
+        source.error(&format!("compare.{k}"), what, format!("one of: {}", known.join(", ")))
+    })
+}

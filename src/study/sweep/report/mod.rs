@@ -1,0 +1,183 @@
+//! What a study found, for people and for programs.
+
+mod comparison;
+mod csv;
+mod effects;
+mod fits;
+mod html;
+mod plots;
+mod tables;
+
+pub use tables::{agenda, built};
+
+use super::beside::{self, PointBeside, Trend};
+use super::definition::Definition;
+use super::gather::Gathered;
+use super::quantity::Quantity;
+use crate::base::error::{Error, Result};
+use crate::observe::files::write_whole;
+use crate::run::folder::{STUDY, STUDY_PAGE};
+use crate::study::fit::{self, Comparison, Fit, Model};
+use crate::study::screening::Effects;
+use crate::study::table::Table;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// What follows from the cases of a study.
+pub struct Findings {
+    /// Points beside the paper and theory.
+    pub beside: Vec<PointBeside>,
+    /// How strength and elongation go over the axis.
+    pub trends: Vec<Trend>,
+    /// Curves over the axis.
+    pub fits: Vec<Fitted>,
+    /// What each factor of a design does.
+    pub effects: Vec<Moved>,
+}
+
+/// Curves through a quantity over the axis.
+#[derive(Serialize)]
+pub struct Fitted {
+    /// Name of the quantity.
+    pub quantity: &'static str,
+    /// All models, each with its cross-validation.
+    pub comparison: Comparison,
+}
+
+/// What the factors of a design do to a quantity.
+#[derive(Serialize)]
+pub struct Moved {
+    /// Name of the quantity.
+    pub quantity: &'static str,
+    /// Effects, or why there are none.
+    pub effects: std::result::Result<Effects, String>,
+}
+
+impl Findings {
+    /// From the cases that are there.
+    ///
+    /// # Errors
+    /// When strand theory cannot be calibrated.
+    pub fn new(definition: &Definition, gathered: &Gathered) -> Result<Self> {
+        let beside = beside::points(definition, gathered)?;
+        let trends = beside::trends(definition, &beside);
+        let fitted = |quantity: &&'static Quantity| Fitted {
+            quantity: quantity.name,
+            comparison: fit::compare(&means_over_axis(definition, gathered, quantity)),
+        };
+        let fits = definition.fits.iter().map(fitted).collect();
+        Ok(Self { beside, trends, fits, effects: effects::of(definition, gathered) })
+    }
+
+    /// A exp(B x) + C through a quantity, if it was asked for and found.
+    pub fn exponential(&self, quantity: &str) -> Option<&Fit> {
+        let fitted = self.fits.iter().find(|fitted| fitted.quantity == quantity)?;
+        fitted.comparison.model(Model::Exponential).fit.as_ref().ok()
+    }
+}
+
+/// (x, mean over seeds) of the points of a study over one axis.
+fn means_over_axis(definition: &Definition, gathered: &Gathered, quantity: &Quantity) -> Vec<[f64; 2]> {
+    let Some(axis) = definition.abscissa() else { return Vec::new() };
+    let at = |point: usize| {
+        let x = axis.levels[definition.points[point][0]].number?;
+        Some([x, gathered.stat(point, quantity)?.mean])
+    };
+    (0..definition.points.len()).filter_map(at).collect()
+}
+
+/// All tables, in their order.
+fn all_tables(definition: &Definition, gathered: &Gathered, findings: &Findings) -> Vec<Table> {
+    let mut all = vec![tables::means(definition, gathered), tables::breaks(definition, gathered)];
+    all.extend(comparison::tables(definition, findings));
+    all.extend(fits::tables(definition, findings));
+    all.extend(effects::tables(definition, findings));
+    all
+}
+
+/// What a study found, as text.
+pub fn to_text(definition: &Definition, gathered: &Gathered, findings: &Findings) -> String {
+    let mut text = built(definition, gathered);
+    for table in all_tables(definition, gathered, findings) {
+        let _ = writeln!(text, "\n{}", table.to_text().trim_end());
+    }
+    let _ = write!(text, "\n{}", tables::state(definition, gathered));
+    text
+}
+
+/// Writes everything into the study's folder; `command` is what the user typed. Gives the files.
+///
+/// # Errors
+/// When the folder cannot be written.
+pub fn write(
+    definition: &Definition,
+    gathered: &Gathered,
+    findings: &Findings,
+    command: &str,
+    folder: &Path,
+) -> Result<Vec<PathBuf>> {
+    let [cases, points, breaks] = ["cases.csv", "points.csv", "breaks.csv"].map(|name| folder.join(name));
+    csv::cases(definition, gathered, &cases)?;
+    csv::points(definition, gathered, &points)?;
+    csv::breaks(definition, gathered, &breaks)?;
+    let tables = all_tables(definition, gathered, findings);
+    let json = folder.join(STUDY);
+    write_json(definition, gathered, findings, command, &json)?;
+    let plots = plots::write(definition, gathered, findings, folder)?;
+    let page = folder.join(STUDY_PAGE);
+    let text = html::page(definition, gathered, &tables, &plots, command)?;
+    write_whole(&page, &text)?;
+    Ok([cases, points, breaks, json].into_iter().chain(plots).chain([page]).collect())
+}
+
+/// `study.json`: the findings for programs; the numbers of cases stand in the tables beside it.
+fn write_json(
+    definition: &Definition,
+    gathered: &Gathered,
+    findings: &Findings,
+    command: &str,
+    path: &Path,
+) -> Result<()> {
+    let axes: Vec<_> = definition
+        .axes
+        .iter()
+        .map(|axis| {
+            let levels: Vec<&str> = axis.levels.iter().map(|level| level.name.as_str()).collect();
+            serde_json::json!({ "name": axis.name, "key": axis.key, "unit": axis.unit, "levels": levels })
+        })
+        .collect();
+    let point = |k: usize| {
+        let stats: serde_json::Map<String, serde_json::Value> = definition
+            .quantities
+            .iter()
+            .map(|quantity| (quantity.name.to_string(), serde_json::json!(gathered.stat(k, quantity))))
+            .collect();
+        serde_json::json!({
+            "name": definition.point_name(k),
+            "levels": definition.points[k],
+            "quantities": stats,
+            "breaks": super::breaks::layers(gathered, k),
+        })
+    };
+    let document = serde_json::json!({
+        "study": definition.name,
+        "about": definition.about,
+        "command": command,
+        "version": env!("CARGO_PKG_VERSION"),
+        "base": definition.base,
+        "quality": definition.quality.word(),
+        "seeds": definition.seeds,
+        "axes": axes,
+        "cases": { "all": gathered.cases.len(), "ran": gathered.ran(), "missing": gathered.missing() },
+        "design_efficiency": definition.efficiency,
+        "points": (0..definition.points.len()).map(point).collect::<Vec<_>>(),
+        "beside": findings.beside,
+        "trends": findings.trends,
+        "fits": findings.fits,
+        "effects": findings.effects,
+    });
+    let text = serde_json::to_string_pretty(&document)
+        .map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
+    write_whole(path, &(text + "\n"))
+}

@@ -1,0 +1,168 @@
+//! Tables for people.
+
+use super::super::Cost;
+use super::super::breaks;
+use super::super::definition::Definition;
+use super::super::gather::{CaseResult, Gathered, State, construction};
+use super::super::quantity::Quantity;
+use crate::study::cases::stat::Stat;
+use crate::study::table::Table;
+use std::fmt::Write;
+
+/// All cases with what they are expected to take.
+pub fn agenda(definition: &Definition, gathered: &Gathered, costs: &[Cost]) -> Table {
+    let axes = definition.axes.iter().map(|axis| axis.label());
+    let heads = ["case"].map(String::from).into_iter().chain(axes);
+    let heads = heads.chain(["seed", "state", "one thread [s]", "folder"].map(String::from));
+    let row = |(case, cost): (&CaseResult, &Cost)| {
+        let mut cells = vec![case.number.to_string()];
+        cells.extend(level_names(definition, case.point));
+        let takes = match cost {
+            Cost::Takes(seconds) => format!("{seconds:.0}"),
+            Cost::Done | Cost::Unknown => String::new(),
+        };
+        cells.extend([case.seed.to_string(), case.state.word().into(), takes, case.folder.clone()]);
+        cells
+    };
+    Table {
+        title: format!("{}: {}", definition.name, definition.about),
+        heads: heads.collect(),
+        rows: gathered.cases.iter().zip(costs).map(row).collect(),
+        default: None,
+        left: 1 + definition.axes.len(),
+    }
+}
+
+/// What strands the points are made of: one line when they are all alike.
+pub fn built(definition: &Definition, gathered: &Gathered) -> String {
+    let all: Vec<(usize, String)> = (0..definition.points.len())
+        .filter_map(|point| Some((point, construction(gathered.spec(point)?))))
+        .filter(|(_, built)| !built.is_empty())
+        .collect();
+    let Some((_, first)) = all.first() else { return String::new() };
+    if all.iter().all(|(_, built)| built == first) {
+        return format!("Built: {first}.\n");
+    }
+    let line = |(point, built): &(usize, String)| format!("  {}: {built}\n", definition.point_name(*point));
+    "Built:\n".to_string() + &all.iter().map(line).collect::<String>()
+}
+
+/// Means over seeds, point by point.
+pub fn means(definition: &Definition, gathered: &Gathered) -> Table {
+    let axes = definition.axes.iter().map(|axis| axis.label());
+    let heads = axes.chain(["runs".to_string()]);
+    let heads = heads.chain(definition.quantities.iter().map(|quantity| quantity.label_and_unit()));
+    let row = |point: usize| {
+        let mut cells = level_names(definition, point);
+        cells.push(gathered.runs(point).count().to_string());
+        cells.extend(
+            definition.quantities.iter().map(|quantity| with_interval(gathered.stat(point, quantity), quantity)),
+        );
+        cells
+    };
+    Table {
+        title: "Means over seeds, ± the 95 % interval of the mean (± standard deviation in brackets)".into(),
+        heads: heads.collect(),
+        rows: (0..definition.points.len()).map(row).collect(),
+        default: None,
+        left: definition.axes.len(),
+    }
+}
+
+/// Which layer breaks first, as frequencies over seeds and, below several points, over all of them.
+pub fn breaks(definition: &Definition, gathered: &Gathered) -> Table {
+    let axes = definition.axes.iter().map(|axis| axis.label());
+    let heads = axes.chain(
+        [
+            "layer",
+            "broke first [runs]",
+            "order: 1st / 2nd / … / never [runs]",
+            "wires broken [%]",
+            "first break in the middle third [runs]",
+            "from mid-length [mm]",
+        ]
+        .map(String::from),
+    );
+    let mut rows = Vec::new();
+    for point in 0..definition.points.len() {
+        let runs = gathered.runs(point).count();
+        for (k, layer) in breaks::layers(gathered, point).iter().enumerate() {
+            let names = level_names(definition, point);
+            let mut cells = if k == 0 { names } else { vec![String::new(); names.len()] };
+            let order: Vec<String> = layer.places.iter().chain([&layer.never]).map(usize::to_string).collect();
+            let broke = runs - layer.never;
+            cells.extend([
+                format!("{} ({} wires)", layer.layer, layer.wires),
+                format!("{} of {runs}", layer.places[0]),
+                order.join(" / "),
+                mean(layer.broken_percent, 0),
+                format!("{} of {broke}", layer.middle_third),
+                mean(layer.off_middle_mm, 1),
+            ]);
+            rows.push(cells);
+        }
+    }
+    Table {
+        title: "Which layer breaks first, in which order the others follow, and where".into(),
+        heads: heads.collect(),
+        rows,
+        default: None,
+        left: 1 + definition.axes.len(),
+    }
+}
+
+/// Cases that failed, with their causes, and how many there are of each kind.
+pub fn state(definition: &Definition, gathered: &Gathered) -> String {
+    let mut text = String::new();
+    for case in &gathered.cases {
+        if let Some(cause) = case.state.cause() {
+            let name = definition.case_name(case.point, case.seed);
+            let _ = writeln!(text, "case {} ({name}) {}: {cause}", case.number, case.state.word());
+        }
+    }
+    let count = |word: &str| gathered.cases.iter().filter(|case| case.state.word() == word).count();
+    let kinds: Vec<String> =
+        [("ran", "ran"), ("failed", "failed"), ("refused", "have scenes that are refused"), ("missing", "are missing")]
+            .iter()
+            .filter(|(word, _)| count(word) > 0)
+            .map(|(word, words)| format!("{} {words}", count(word)))
+            .collect();
+    let _ = writeln!(
+        text,
+        "{} cases at {} quality: {}.",
+        gathered.cases.len(),
+        definition.quality.word(),
+        kinds.join(", ")
+    );
+    if gathered.cases.iter().any(|case| case.state == State::Missing) {
+        let _ = writeln!(
+            text,
+            "What is missing is made by the same command without --collect, or case by case with --case."
+        );
+    }
+    if gathered.other_build > 0 {
+        let _ = writeln!(
+            text,
+            "{} cases were run by another build of this version; --fresh runs them again.",
+            gathered.other_build
+        );
+    }
+    text
+}
+
+fn level_names(definition: &Definition, point: usize) -> Vec<String> {
+    definition.levels(point).map(|(_, level)| level.name.clone()).collect()
+}
+
+fn mean(stat: Option<Stat>, decimals: usize) -> String {
+    stat.map_or(String::new(), |stat| format!("{:.decimals$}", stat.mean))
+}
+
+fn with_interval(stat: Option<Stat>, quantity: &Quantity) -> String {
+    let Some(stat) = stat else { return String::new() };
+    let decimals = quantity.decimals;
+    match stat.interval_95.zip(stat.standard_deviation) {
+        Some((half, deviation)) => format!("{:.decimals$} ± {half:.decimals$} ({deviation:.decimals$})", stat.mean),
+        None => format!("{:.decimals$}", stat.mean),
+    }
+}

@@ -1,0 +1,225 @@
+//! `strandsnap study` as a user runs it: a tiny study end to end, resumed, run case by case, with cases that fail, and
+//! what it refuses.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A wire of 30 mm over three pull speeds and two seeds: a run takes a tenth of a second.
+const SPEEDS: &str = r#"
+about = "How the speed of the pull changes a wire."
+base = "single-wire"
+set = ["wire.0.to=[\"0 mm\", \"0 mm\", \"30 mm\"]", "grip.length=5 mm", "bond.rupture.strain=20 %", "stop.stress_fraction=", "stop.strain_after_drop=2 %"]
+seeds = 2
+fits = ["elongation"]
+compare = ["paper", "strand-theory"]
+
+[[axis]]
+key = "grip.speed"
+from = "5 m/s"
+to = "20 m/s"
+points = 4
+"#;
+
+fn strandsnap(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
+    command.args(args).current_dir(folder).output().expect("the program starts")
+}
+
+/// Runs a study from its text, in a folder that keeps its results.
+fn study(folder: &Path, text: &str, args: &[&str]) -> Output {
+    std::fs::write(folder.join("own.toml"), text).unwrap();
+    strandsnap(folder, &[&["study", "own.toml"], args].concat())
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn printed(output: &Output) -> String {
+    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+    text(&output.stdout)
+}
+
+fn rows(path: &Path) -> Vec<HashMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    reader.deserialize().collect::<Result<_, _>>().unwrap()
+}
+
+fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column} is {:?} in {row:?}", row[column]))
+}
+
+#[test]
+fn a_tiny_study_runs_is_not_run_twice_and_writes_everything() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = printed(&study(folder.path(), SPEEDS, &[]));
+    for part in
+        ["Means over seeds", "Which layer breaks first", "A exp(B x) + C", "8 cases at standard quality: 8 ran."]
+    {
+        assert!(first.contains(part), "{part} is not in\n{first}");
+    }
+    let out = folder.path().join("out/study/own");
+    let cases = rows(&out.join("cases.csv"));
+    assert_eq!(cases.len(), 8);
+    assert!(cases.iter().all(|row| row["outcome"] == "ran" && row["first layer"] == "wire"), "{cases:?}");
+    // Every case has a folder named by the hash of its scene, and the scene in it.
+    for row in &cases {
+        let scene = std::fs::read_to_string(out.join("cases").join(&row["folder"]).join("scene.toml")).unwrap();
+        assert!(scene.contains(&format!("seed = {}", row["seed"])), "{scene}");
+    }
+    let strength: Vec<f64> = cases.iter().map(|row| number(row, "strength [MPa]")).collect();
+    let points = rows(&out.join("points.csv"));
+    let mean = points.iter().find(|row| row["quantity"] == "strength" && row["speed [m/s]"] == "5").unwrap();
+    assert!((number(mean, "mean") - 0.5 * (strength[0] + strength[4])).abs() < 1e-9, "{mean:?}");
+    assert!((number(mean, "standard deviation") - (strength[0] - strength[4]).abs() / 2f64.sqrt()).abs() < 1e-9);
+    let json: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("study.json")).unwrap()).unwrap();
+    assert_eq!(json["points"].as_array().unwrap().len(), 4);
+    assert_eq!(json["fits"][0]["quantity"], "elongation");
+    for name in ["curves", "trends"] {
+        assert!(std::fs::read_to_string(out.join(format!("{name}.svg"))).unwrap().contains("</svg>"));
+        assert!(out.join(format!("{name}.png")).metadata().unwrap().len() > 10_000);
+    }
+    let page = std::fs::read_to_string(out.join("study.html")).unwrap();
+    assert!(
+        page.contains("data:image/svg+xml;base64,") && page.contains("Means over seeds") && !page.contains("http://")
+    );
+
+    let tables = ["cases.csv", "points.csv", "breaks.csv", "study.json", "study.html"];
+    let before: Vec<Vec<u8>> = tables.iter().map(|name| std::fs::read(out.join(name)).unwrap()).collect();
+    let second = printed(&study(folder.path(), SPEEDS, &[]));
+    assert_eq!(second, first);
+    let after: Vec<Vec<u8>> = tables.iter().map(|name| std::fs::read(out.join(name)).unwrap()).collect();
+    assert_eq!(after, before, "a study that is run again makes no case again, so even run times are the same");
+}
+
+#[test]
+fn cases_may_be_run_one_by_one_and_gathered() {
+    let folder = tempfile::tempdir().unwrap();
+    let dry = printed(&study(folder.path(), SPEEDS, &["--dry-run"]));
+    assert!(dry.contains("8 cases, 0 of them done") && dry.contains("15 m/s"), "{dry}");
+    assert!(!folder.path().join("out").exists(), "a dry run writes nothing");
+    let none = study(folder.path(), SPEEDS, &["--collect"]);
+    assert_eq!(none.status.code(), Some(2));
+    assert!(text(&none.stderr).contains("none was run yet"), "{}", text(&none.stderr));
+    for case in ["3", "7"] {
+        let one = printed(&study(folder.path(), SPEEDS, &["--case", case]));
+        assert!(one.contains(&format!("case {case} (speed 15 m/s")), "{one}");
+    }
+    let gathered = printed(&study(folder.path(), SPEEDS, &["--collect"]));
+    assert!(gathered.contains("2 ran, 6 are missing"), "{gathered}");
+    let dry = printed(&study(folder.path(), SPEEDS, &["--dry-run"]));
+    assert!(dry.contains("2 of them done") && dry.contains("which is what a finished case took"), "{dry}");
+    // The whole study makes the rest, and gives the same numbers as if it had made all.
+    printed(&study(folder.path(), SPEEDS, &["--jobs", "1"]));
+    let whole = tempfile::tempdir().unwrap();
+    printed(&study(whole.path(), SPEEDS, &["--jobs", "2"]));
+    let [a, b] = [&folder, &whole].map(|folder| std::fs::read(folder.path().join("out/study/own/points.csv")).unwrap());
+    assert_eq!(text(&a), text(&b));
+    let wrong = study(folder.path(), SPEEDS, &["--case", "9"]);
+    assert!(text(&wrong.stderr).contains("numbered from 1 to 8"), "{}", text(&wrong.stderr));
+}
+
+#[test]
+fn a_case_that_fails_is_told_with_its_cause_and_stops_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    // A wire cannot be pulled by the same speed at a spacing that is no number, and bonds of 6 mm whip too far.
+    let failing = SPEEDS.replace(
+        "key = \"grip.speed\"\nfrom = \"5 m/s\"\nto = \"20 m/s\"\npoints = 4",
+        "key = \"spacing\"\nvalues = [1, 16, -1]",
+    );
+    let failing = failing.replace("fits = [\"elongation\"]", "");
+    let found = printed(&study(folder.path(), &failing, &[]));
+    assert!(found.contains("spacing 16, seed 1) failed: stopped at step"), "{found}");
+    assert!(found.contains("spacing -1, seed 2) refused: `spacing` is -1"), "{found}");
+    let cases = rows(&folder.path().join("out/study/own/cases.csv"));
+    let of = |outcome: &str| cases.iter().filter(|row| row["outcome"] == outcome).count();
+    assert_eq!((of("ran"), of("failed"), of("refused")), (2, 2, 2));
+    let alone = study(folder.path(), &failing, &["--case", "2"]);
+    assert_eq!(alone.status.code(), Some(2));
+    assert!(text(&alone.stderr).contains("failed: stopped at step"), "{}", text(&alone.stderr));
+}
+
+#[test]
+fn axes_that_zip_go_along_and_a_design_tells_effects() {
+    let folder = tempfile::tempdir().unwrap();
+    let axes = r#"
+about = "Two factors of a wire."
+base = "single-wire"
+set = ["wire.0.to=[\"0 mm\", \"0 mm\", \"30 mm\"]", "grip.length=5 mm", "grip.speed=20 m/s"]
+seeds = [3, 4]
+
+[[axis]]
+name = "strain at rupture"
+key = "bond.rupture.strain"
+values = ["10 %", "20 %"]
+
+[[axis]]
+key = "stop.strain"
+values = ["30 %", "41 %"]
+zip = true
+
+[[axis]]
+name = "scatter"
+[[axis.levels]]
+name = "none"
+set = ["bond.rupture.weibull_modulus=inf"]
+[[axis.levels]]
+name = "modulus 8"
+set = ["bond.rupture.weibull_modulus=8"]
+
+[design]
+points = 4
+interactions = [["strain at rupture", "scatter"]]
+"#;
+    let found = printed(&study(folder.path(), axes, &[]));
+    assert!(found.contains("8 cases at standard quality: 8 ran."), "{found}");
+    let out = folder.path().join("out/study/own");
+    let cases = rows(&out.join("cases.csv"));
+    let elongation = |strain: &str, scatter: &str| {
+        let row = cases.iter().find(|row| row["strain at rupture [%]"] == strain && row["scatter"] == scatter).unwrap();
+        number(row, "elongation [%]")
+    };
+    // Twice the strain at rupture, twice as far; scatter takes from it.
+    assert!(elongation("20", "none") > 1.9 * elongation("10", "none"));
+    assert!(elongation("20", "modulus 8") < elongation("20", "none"));
+    let json: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("study.json")).unwrap()).unwrap();
+    assert!(json["effects"].as_array().unwrap().iter().any(|one| one["quantity"] == "elongation"), "{json}");
+    assert!(out.join("effects.svg").is_file());
+}
+
+#[test]
+fn what_is_wrong_in_a_study_is_told_with_its_line_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    for (from, to, words) in [
+        ("base = \"single-wire\"", "base = \"singel-wire\"", "did you mean `single-wire`?"),
+        ("base = \"single-wire\"", "", "`base` is missing"),
+        ("seeds = 2", "seeds = 0", "there must be at least one"),
+        ("seeds = 2", "seads = 2", "unknown key `seads` in a study"),
+        ("fits = [\"elongation\"]", "fits = [\"elongaton\"]", "did you mean `elongation`?"),
+        ("compare = [\"paper\"", "compare = [\"papper\"", "`papper` is nothing to compare with"),
+        ("to = \"20 m/s\"", "to = \"20 mm/s\"", "give both in one unit"),
+        ("points = 4", "points = 1", "a range has at least 2"),
+        ("key = \"grip.speed\"", "", "the axis does not say what it varies"),
+        ("points = 4", "points = 4\nvalues = [\"5 m/s\"]", "does not go with a range"),
+    ] {
+        let wrong = study(folder.path(), &SPEEDS.replace(from, to), &[]);
+        let said = text(&wrong.stderr);
+        assert_eq!(wrong.status.code(), Some(2), "{to}: {said}");
+        assert!(said.contains(words), "{to}: {words} is not in\n{said}");
+    }
+    let unknown = strandsnap(folder.path(), &["study", "pich"]);
+    assert!(text(&unknown.stderr).contains("did you mean `pitch`?"), "{}", text(&unknown.stderr));
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn the_studies_that_come_along_have_their_cases() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = printed(&strandsnap(folder.path(), &["study", "--list"]));
+    for part in ["pitch ", "diameter ", "seeds ", "mechanism "] {
+        assert!(list.contains(part), "{part} is not in\n{list}");
+    }
+}
