@@ -118,25 +118,30 @@ fn trend(definition: &Definition, gathered: &Gathered, findings: &Findings, axis
         let x = |i: usize| ends[0] + (ends[1] - ends[0]) * i as f64 / (FINE - 1) as f64;
         (0..FINE).map(|i| [x(i), value(x(i))]).collect()
     };
-    if let Some(fit) = findings.exponential(name) {
-        figure.series.push(Series::new("A exp(B x) + C through it", Mark::Line, curve(&|x| fit.value(x))));
-    }
+    let fitted = findings.exponential(name).map_or(Vec::new(), |fit| curve(&|x| fit.value(x)));
+    push(&mut figure, "A exp(B x) + C through it", Mark::Line, fitted);
     let of = |value: fn(&PointBeside) -> Option<[f64; 2]>| -> Vec<[f64; 2]> {
         let at =
             |beside: &PointBeside| Some([axis.levels[definition.points[beside.point][0]].number?, value(beside)?[k]]);
         findings.beside.iter().filter_map(at).collect()
     };
     let (paper, theory) = (of(|beside| beside.paper), of(|beside| beside.theory));
-    if !paper.is_empty() {
-        figure.series.push(Series::new("the paper's simulations", Mark::Points, paper));
-    }
-    if let Some(fit) = beside::curve_over(axis, name).filter(|_| !findings.beside.is_empty()) {
-        figure.series.push(Series::new("the paper's curve", Mark::Dashed, curve(&|x| fit.value(x))));
-    }
-    if !theory.is_empty() {
-        figure.series.push(Series::new("strand theory", Mark::LineAndPoints, theory));
+    let printed = beside::curve_over(axis, name).filter(|_| !paper.is_empty());
+    let printed = printed.map_or(Vec::new(), |fit| curve(&|x| fit.value(x)));
+    for (words, mark, points) in [
+        ("the paper's simulations", Mark::Points, paper),
+        ("the paper's curve", Mark::Dashed, printed),
+        ("strand theory", Mark::LineAndPoints, theory),
+    ] {
+        push(&mut figure, words, mark, points);
     }
     figure
+}
+
+/// Adds a series; one without points keeps its place, so that colours mean the same in every figure, but has no name.
+fn push(figure: &mut Figure, name: &str, mark: Mark, points: Vec<[f64; 2]>) {
+    let name = if points.is_empty() { "" } else { name };
+    figure.series.push(Series::new(name, mark, points));
 }
 
 /// Means of a quantity over the axis, and half their intervals.
