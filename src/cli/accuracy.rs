@@ -1,6 +1,7 @@
 //! `strandsnap accuracy`.
 
 use super::Ended;
+use super::cases as shared;
 use super::interrupt;
 use super::say::{self, say};
 use super::values::{SceneArgs, duration};
@@ -8,15 +9,11 @@ use crate::base::error::{Error, Result};
 use crate::run::folder;
 use crate::scene::quality::Quality;
 use crate::study::accuracy::{self, Options, Study, Subject, knobs, table, verified};
-use crate::study::cases::workshop::Progress;
 use crate::study::verify::Case;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
 use std::time::Duration;
 
 const STOPPING: &str = "\nstopping; finished runs are kept, and the same command goes on with them.";
-/// Parts of the progress bar.
-const PARTS: u64 = 1000;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -80,7 +77,7 @@ fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
     }
     let out = args.out.clone().unwrap_or_else(|| folder::accuracy(&name));
     let stop = interrupt::install_saying(STOPPING)?;
-    let bar = super::cases::bar("accuracy", cases.len());
+    let bar = shared::bar("accuracy", cases.len());
     let began = |case: &str| {
         bar.set_message(case.to_string());
         bar.inc(1);
@@ -88,7 +85,7 @@ fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
     let found = verified::study(&name, cases, args.quick, &out, args.fresh, stop, &began);
     bar.finish_and_clear();
     let found = found?;
-    let files = found.write(&command(), &out)?;
+    let files = found.write(&shared::command(), &out)?;
     say::print(format_args!("{}", found.table().to_text()));
     say::print(format_args!("\n{}", found.summary()));
     say!("{} cases run, {} kept from before. Written:", found.made, found.kept);
@@ -121,38 +118,13 @@ fn of_pulled_scene(args: &Args) -> Result<Ended> {
     subject.notes.iter().for_each(|note| eprintln!("note: {note}"));
     let stop =
         interrupt::install_saying("\nstopping; finished runs are kept, and the same command goes on with them.")?;
-    let bar = bar();
-    let study = accuracy::study(&options, &subject, stop, &|progress| show(&bar, progress));
+    let bar = shared::bar_of_parts("accuracy");
+    let study = accuracy::study(&options, &subject, stop, &|progress| shared::show(&bar, progress, "runs"));
     bar.finish_and_clear();
     let study = study?;
-    let files = accuracy::write(&study, &command(), &options.out)?;
+    let files = accuracy::write(&study, &shared::command(), &options.out)?;
     print(&study, &files);
     Ok(if study.interrupted { Ended::Interrupted } else { Ended::Well })
-}
-
-/// What the user typed.
-pub(super) fn command() -> String {
-    let words = std::env::args().skip(1).map(|word| {
-        let plain = word.chars().all(|c| c.is_ascii_alphanumeric() || "-_./=,%+:".contains(c));
-        if plain { word } else { format!("'{}'", word.replace('\'', "'\\''")) }
-    });
-    std::iter::once("strandsnap".to_string()).chain(words).collect::<Vec<_>>().join(" ")
-}
-
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
-    let style = ProgressStyle::with_template("accuracy [{bar:24}] {wide_msg}");
-    bar.with_style(style.expect("the template is constant and right"))
-}
-
-fn show(bar: &ProgressBar, progress: &Progress) {
-    let left = progress.left.map_or(String::new(), |left| format!(", about {} left", time(left)));
-    bar.set_position((progress.share * PARTS as f64) as u64);
-    bar.set_message(format!("{} of {} runs{left}: {}", progress.finished, progress.of, progress.name));
-}
-
-fn time(seconds: f64) -> String {
-    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
 }
 
 fn print(study: &Study, files: &[PathBuf]) {

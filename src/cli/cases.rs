@@ -1,6 +1,7 @@
-//! What `verify` and `stability` share: they run a table of cases.
+//! What commands that make many runs share: arguments of those that run a table of cases, progress, and what was typed.
 
 use crate::base::error::{Error, Result};
+use crate::study::cases::workshop::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 
@@ -66,4 +67,35 @@ pub fn bar(command: &str, cases: usize) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(cases as u64), ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template(&format!("{command} [{{bar:24}}] {{pos}} of {{len}} cases  {{msg}}"));
     bar.with_style(style.expect("the template is constant and right"))
+}
+
+/// Parts of a bar that shows a share of the work.
+const PARTS: u64 = 1000;
+
+/// Share of the work done.
+pub fn bar_of_parts(command: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
+    let style = ProgressStyle::with_template(&format!("{command} [{{bar:24}}] {{wide_msg}}"));
+    bar.with_style(style.expect("the template is constant and right"))
+}
+
+/// Shows how far a study is; `what` are runs or cases.
+pub fn show(bar: &ProgressBar, progress: &Progress, what: &str) {
+    let left = progress.left.map_or(String::new(), |left| format!(", about {} left", time(left)));
+    bar.set_position((progress.share * PARTS as f64) as u64);
+    bar.set_message(format!("{} of {} {what}{left}: {}", progress.finished, progress.of, progress.name));
+}
+
+/// A time as people read it.
+pub fn time(seconds: f64) -> String {
+    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
+}
+
+/// What the user typed.
+pub fn command() -> String {
+    let words = std::env::args().skip(1).map(|word| {
+        let plain = word.chars().all(|c| c.is_ascii_alphanumeric() || "-_./=,%+:".contains(c));
+        if plain { word } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    });
+    std::iter::once("strandsnap".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }

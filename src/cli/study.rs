@@ -1,6 +1,7 @@
 //! `strandsnap study`.
 
 use super::Ended;
+use super::cases;
 use super::interrupt;
 use super::say::{self, say};
 use super::values::quality;
@@ -10,12 +11,9 @@ use crate::scene::quality::Quality;
 use crate::study::cases::workshop::Progress;
 use crate::study::sweep::report::{self, Findings};
 use crate::study::sweep::{self, Changes, Cost, Definition, Gathered, Making, definition};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 
 const STOPPING: &str = "\nstopping; finished cases are kept, and the same command goes on with them.";
-/// Parts of the progress bar.
-const PARTS: u64 = 1000;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -69,8 +67,8 @@ pub fn study(args: &Args) -> Result<Ended> {
     }
     sweep::open(&out, args.fresh)?;
     let stop = interrupt::install_saying(STOPPING)?;
-    let bar = bar();
-    let tell = |progress: &Progress| show(&bar, progress);
+    let bar = cases::bar_of_parts("study");
+    let tell = |progress: &Progress| cases::show(&bar, progress, "cases");
     let making = Making { folder: &out, jobs: jobs(args), threads: None, stop, tell: &tell };
     if let Some(number) = args.case {
         let made = sweep::make_one(&definition, number, &Making { jobs: 1, ..making });
@@ -96,7 +94,7 @@ fn jobs(args: &Args) -> usize {
 fn list() -> Result<Ended> {
     for (name, text) in definition::list() {
         let study = Definition::parse(text, &format!("{name}.toml"), Path::new("."), &Changes::default())?;
-        say!("{name:12}{} ({} cases)", study.about, study.cases().len());
+        say!("{name:20}{} ({} cases)", study.about, study.cases().len());
     }
     Ok(Ended::Well)
 }
@@ -113,7 +111,7 @@ fn dry_run(definition: &Definition, out: &Path, jobs: usize) -> Result<Ended> {
         None => "by their first steps; contacts that form make it up to four times as much".into(),
     };
     let done = costs.cases.iter().filter(|cost| **cost == Cost::Done).count();
-    let left = time(costs.left() / jobs as f64);
+    let left = cases::time(costs.left() / jobs as f64);
     say!("{} cases, {done} of them done; about {left} for the others, {jobs} at a time, {by}.", costs.cases.len());
     Ok(Ended::Well)
 }
@@ -151,7 +149,7 @@ fn finish(definition: &Definition, out: &Path, interrupted: bool) -> Result<Ende
         return Err(Error::input(format!("no case of {} has a result; {cause}", definition.name), help));
     }
     let findings = Findings::new(definition, &gathered)?;
-    let files = report::write(definition, &gathered, &findings, &super::accuracy::command(), out)?;
+    let files = report::write(definition, &gathered, &findings, &cases::command(), out)?;
     say::print(format_args!("{}", report::to_text(definition, &gathered, &findings)));
     if interrupted {
         say!("Interrupted: the same command goes on with what is missing.");
@@ -159,20 +157,4 @@ fn finish(definition: &Definition, out: &Path, interrupted: bool) -> Result<Ende
     say!("Written:");
     files.iter().for_each(|file| say!("  {}", file.display()));
     Ok(if interrupted { Ended::Interrupted } else { Ended::Well })
-}
-
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
-    let style = ProgressStyle::with_template("study [{bar:24}] {wide_msg}");
-    bar.with_style(style.expect("the template is constant and right"))
-}
-
-fn show(bar: &ProgressBar, progress: &Progress) {
-    let left = progress.left.map_or(String::new(), |left| format!(", about {} left", time(left)));
-    bar.set_position((progress.share * PARTS as f64) as u64);
-    bar.set_message(format!("{} of {} cases{left}: {}", progress.finished, progress.of, progress.name));
-}
-
-fn time(seconds: f64) -> String {
-    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
 }

@@ -17,6 +17,9 @@ use std::f64::consts::{FRAC_PI_4, PI};
 const MOST_INNERMOST: usize = 5;
 /// Most wires of an automatic construction: a strand, not a typing error.
 const MOST_WIRES: f64 = 5000.0;
+/// How much further out than the ring below leaves it a ring may lie, over the wire diameter [-]: lay must not turn six
+/// around one into five, and wires flatten more than that.
+const SLACK: f64 = 0.002;
 /// How far full rings may be from the area before the outermost ring is built with fewer wires than it holds [-].
 const NEAR: f64 = 0.02;
 
@@ -108,9 +111,9 @@ fn full_rings(first: usize, target: f64, diameter: f64, pitch: f64) -> Vec<usize
     while (rings.iter().sum::<usize>() as f64) < target {
         radius += diameter;
         // Parallel wires are the bound; lay takes some of it.
-        let parallel = (PI / (0.5 * diameter / radius).asin() + 1e-9).floor() as usize;
+        let parallel = (PI / (0.5 * diameter / (radius + SLACK * diameter)).asin()).floor() as usize;
         let fits = |wires: &usize| {
-            least_radius_of_layer(*wires, diameter, pitch).is_some_and(|least| least <= radius * (1.0 + 1e-12))
+            least_radius_of_layer(*wires, diameter, pitch).is_some_and(|least| least <= radius + SLACK * diameter)
         };
         let Some(wires) = (1..=parallel).rev().find(fits) else { break };
         // Where the pitch sets the limit, rings further out hold no more than those below.
@@ -118,6 +121,7 @@ fn full_rings(first: usize, target: f64, diameter: f64, pitch: f64) -> Vec<usize
             break;
         }
         rings.push(wires);
+        radius = least_radius_of_layer(wires, diameter, pitch).map_or(radius, |least| least.max(radius));
     }
     rings
 }
@@ -151,10 +155,12 @@ mod tests {
         assert_eq!(of_area(4.0, 0.25), [4, 10, 16, 22, 29]);
     }
 
-    /// The rings of KA4 hold one wire less than KA4 itself, whose outer layer lies further out than it must.
+    /// The rings of KA4 hold one wire less than KA4 itself, whose outer layer lies further out than it must. Six around one
+    /// stay six when they are laid.
     #[test]
     fn rings_of_ka4() {
         assert_eq!(of_area(4.0, 0.39), [5, 11, 17]);
+        assert_eq!(of_area(4.0, 0.37), [1, 6, 12, 18]);
     }
 
     #[test]

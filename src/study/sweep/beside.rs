@@ -33,6 +33,8 @@ pub struct PointBeside {
     pub ours: [Option<Stat>; 2],
     /// The paper's simulation of the same strand.
     pub paper: Option<[f64; 2]>,
+    /// The experiment, where this is its strand.
+    pub experiment: Option<[f64; 2]>,
     /// Strand theory.
     pub theory: Option<[f64; 2]>,
 }
@@ -61,6 +63,11 @@ pub fn points(definition: &Definition, gathered: &Gathered) -> Result<Vec<PointB
             point,
             ours: QUANTITIES.map(|name| gathered.stat(point, quantity(name))),
             paper: simulation.map(|s| [s.tensile_strength_mpa, s.fracture_elongation_percent]),
+            // The paper compares one of its simulations with the experiment: the one of the strand that was tested.
+            experiment: simulation.filter(|s| s.error_against_experiment_percent.is_some()).map(|_| {
+                let experiment = &paper().experiment;
+                [experiment.tensile_strength_mpa, experiment.fracture_elongation_percent]
+            }),
             theory: layers.filter(|_| asks(Beside::StrandTheory)).map(|layers| wire.strand(&layers)),
         }
     };
@@ -190,7 +197,7 @@ mod tests {
     fn the_papers_strands_are_found_by_pitch_and_diameter() {
         let points = of("[[axis]]\nkey = \"strand.pitch\"\nvalues = [\"44 mm\", \"45 mm\"]");
         assert_eq!(points[0].paper, Some([282.12, 26.24]));
-        assert_eq!(points[1].paper, None);
+        assert_eq!((points[0].experiment, points[1].paper), (None, None));
         let thin = "set = [\"strand.layer=\", \"strand.construction=auto\", \"strand.area=4 mm^2\"]\n\
                     [[axis]]\nkey = \"strand.wire_diameter\"\nvalues = [\"0.25 mm\"]";
         assert_eq!(of(thin)[0].paper, Some([263.46, 23.93]));

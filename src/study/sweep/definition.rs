@@ -20,7 +20,7 @@ macro_rules! studies {
 }
 
 /// Name and text of the studies that come with the program.
-const STUDIES: &[(&str, &str)] = studies!["pitch", "diameter", "seeds", "mechanism"];
+const STUDIES: &[(&str, &str)] = studies!["pitch", "diameter", "seeds", "mechanism", "pitch-modulus-12"];
 
 /// The studies that come with the program: name, and TOML text.
 pub fn list() -> &'static [(&'static str, &'static str)] {

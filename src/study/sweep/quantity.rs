@@ -7,6 +7,9 @@ use crate::study::cases::measured::Measured;
 const AFTER_DROP: f64 = 0.01;
 const HALF_WINDOW: f64 = 0.001;
 
+/// Unit of what a run either is or is not.
+const OF_RUNS: &str = "% of runs";
+
 /// A number that every run has, or lacks for a reason.
 #[derive(Debug)]
 pub struct Quantity {
@@ -23,6 +26,11 @@ pub struct Quantity {
 }
 
 impl Quantity {
+    /// Whether it is 100 or 0 for each run, so that its mean is how often something happens.
+    pub fn is_frequency(&self) -> bool {
+        self.unit == OF_RUNS
+    }
+
     /// Label and unit, for the axis of a plot or the head of a column.
     pub fn label_and_unit(&self) -> String {
         format!("{} [{}]", self.label, self.unit)
@@ -55,7 +63,7 @@ pub static ALL: [Quantity; 9] = [
     Quantity {
         name: "first-outer",
         label: "first break in the outer layer",
-        unit: "% of runs",
+        unit: OF_RUNS,
         decimals: 0,
         of: |measured| Some(share(first_layer(measured)? == measured.layers.len() - 1)),
     },
@@ -64,7 +72,7 @@ pub static ALL: [Quantity; 9] = [
     Quantity {
         name: "outer-alone",
         label: "all outer wires broken, some below whole",
-        unit: "% of runs",
+        unit: OF_RUNS,
         decimals: 0,
         of: |measured| Some(share(outer_broken(measured)? == 100.0 && below_broken(measured)? < 100.0)),
     },

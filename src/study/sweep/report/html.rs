@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub fn page(
     definition: &Definition,
     gathered: &Gathered,
-    tables: &[Table],
+    all: &[Table],
     plots: &[PathBuf],
     command: &str,
 ) -> Result<String> {
@@ -27,7 +27,7 @@ pub fn page(
         Section {
             id: "tables",
             title: "Tables",
-            body: html! { @for table in tables { div.scroll { (cells(table)) } } },
+            body: html! { p { (tables::frequencies(gathered)) } @for table in all { div.scroll { (cells(table)) } } },
         },
         Section { id: "cases", title: "Cases", body: cases(definition, gathered, command) },
     ];

@@ -102,7 +102,7 @@ pub fn to_text(definition: &Definition, gathered: &Gathered, findings: &Findings
     for table in all_tables(definition, gathered, findings) {
         let _ = writeln!(text, "\n{}", table.to_text().trim_end());
     }
-    let _ = write!(text, "\n{}", tables::state(definition, gathered));
+    let _ = write!(text, "\n{}{}", tables::frequencies(gathered), tables::state(definition, gathered));
     text
 }
 

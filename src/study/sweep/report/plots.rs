@@ -7,7 +7,6 @@ use super::super::gather::Gathered;
 use super::super::quantity::{self, Quantity};
 use super::Findings;
 use crate::base::error::Result;
-use crate::reference::paper;
 use crate::study::cases::measured::Curve;
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series};
 use std::path::{Path, PathBuf};
@@ -125,13 +124,14 @@ fn trend(definition: &Definition, gathered: &Gathered, findings: &Findings, axis
             |beside: &PointBeside| Some([axis.levels[definition.points[beside.point][0]].number?, value(beside)?[k]]);
         findings.beside.iter().filter_map(at).collect()
     };
-    let (paper, theory) = (of(|beside| beside.paper), of(|beside| beside.theory));
+    let (paper, theory, tested) = (of(|one| one.paper), of(|one| one.theory), of(|one| one.experiment));
     let printed = beside::curve_over(axis, name).filter(|_| !paper.is_empty());
     let printed = printed.map_or(Vec::new(), |fit| curve(&|x| fit.value(x)));
     for (words, mark, points) in [
         ("the paper's simulations", Mark::Points, paper),
         ("the paper's curve", Mark::Dashed, printed),
         ("strand theory", Mark::LineAndPoints, theory),
+        ("the experiment, calibrated on", Mark::Points, tested),
     ] {
         push(&mut figure, words, mark, points);
     }
@@ -170,12 +170,11 @@ fn scatter(definition: &Definition, gathered: &Gathered, findings: &Findings) ->
     figure.legend = Legend::Beside;
     let runs = gathered.runs(0).map(|run| [run.elongation_percent, run.strength_mpa]).collect();
     figure.series.push(Series::new("this engine, one seed each", Mark::Points, runs));
-    let paper = findings.beside.first().and_then(|beside| beside.paper);
-    if let Some([strength, elongation]) = paper {
-        let experiment = &paper::paper().experiment;
-        let experiment = [experiment.fracture_elongation_percent, experiment.tensile_strength_mpa];
-        figure.series.push(Series::new("the paper's simulation", Mark::Points, vec![[elongation, strength]]));
-        figure.series.push(Series::new("the paper's experiment", Mark::Points, vec![experiment]));
+    if let Some(beside) = findings.beside.first() {
+        for (name, value) in [("the paper's simulation", beside.paper), ("the experiment, calibrated on", beside.experiment)] {
+            let point = value.map(|[strength, elongation]| [elongation, strength]);
+            push(&mut figure, name, Mark::Points, point.into_iter().collect());
+        }
     }
     figure
 }

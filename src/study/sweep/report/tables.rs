@@ -4,7 +4,8 @@ use super::super::Cost;
 use super::super::breaks;
 use super::super::definition::Definition;
 use super::super::gather::{CaseResult, Gathered, State, construction};
-use super::super::quantity::Quantity;
+use super::super::quantity::{self, Quantity};
+use crate::study::cases::measured::Measured;
 use crate::study::cases::stat::Stat;
 use crate::study::table::Table;
 use std::fmt::Write;
@@ -51,7 +52,11 @@ pub fn built(definition: &Definition, gathered: &Gathered) -> String {
 pub fn means(definition: &Definition, gathered: &Gathered) -> Table {
     let axes = definition.axes.iter().map(|axis| axis.label());
     let heads = axes.chain(["runs".to_string()]);
-    let heads = heads.chain(definition.quantities.iter().map(|quantity| quantity.label_and_unit()));
+    let head = |quantity: &&'static Quantity| match quantity.is_frequency() {
+        true => format!("{} [runs]", quantity.label),
+        false => quantity.label_and_unit(),
+    };
+    let heads = heads.chain(definition.quantities.iter().map(head));
     let row = |point: usize| {
         let mut cells = level_names(definition, point);
         cells.push(gathered.runs(point).count().to_string());
@@ -111,6 +116,40 @@ pub fn breaks(definition: &Definition, gathered: &Gathered) -> Table {
     }
 }
 
+/// How often what the paper reports happens, over all runs of the study, in a sentence; empty when nothing broke.
+pub fn frequencies(gathered: &Gathered) -> String {
+    let runs: Vec<&Measured> = gathered.cases.iter().filter_map(CaseResult::measured).collect();
+    let broken: Vec<&&Measured> = runs.iter().filter(|run| !run.breaks.is_empty() && run.layers.len() > 1).collect();
+    if broken.is_empty() {
+        return String::new();
+    }
+    let count = |holds: &dyn Fn(&Measured) -> bool| broken.iter().filter(|run| holds(run)).count();
+    let first = |wanted: &dyn Fn(usize, usize) -> bool| {
+        count(&|run| quantity::first_layer(run).is_some_and(|layer| wanted(layer, run.layers.len() - 1)))
+    };
+    let middle = |run: &Measured| {
+        let off = quantity::off_middle(run, run.breaks[0].rest_z_mm);
+        off.zip(run.gauge_mm).is_some_and(|(off, [lower, upper])| off.abs() <= (upper - lower) / 6.0)
+    };
+    let whole = |name: &str| quantity::find(name).expect("it is one of them").of;
+    let (outer, below) = (whole("outer-broken"), whole("below-broken"));
+    format!(
+        "Over all {} runs in which wires of several layers broke, the first was in the outermost layer in {}, in the innermost in \
+         {}, between in {}; in the middle third of the gauge in {}. At their ends all outer wires were broken in {}, all \
+         wires below them in {}, all outer ones with some below still whole in {}, and some outer ones whole with all below \
+         broken in {}.\n",
+        broken.len(),
+        first(&|layer, last| layer == last),
+        first(&|layer, _| layer == 0),
+        first(&|layer, last| layer > 0 && layer < last),
+        count(&middle),
+        count(&|run| outer(run) == Some(100.0)),
+        count(&|run| below(run) == Some(100.0)),
+        count(&|run| outer(run) == Some(100.0) && below(run) < Some(100.0)),
+        count(&|run| outer(run) < Some(100.0) && below(run) == Some(100.0)),
+    )
+}
+
 /// Cases that failed, with their causes, and how many there are of each kind.
 pub fn state(definition: &Definition, gathered: &Gathered) -> String {
     let mut text = String::new();
@@ -160,6 +199,9 @@ fn mean(stat: Option<Stat>, decimals: usize) -> String {
 
 fn with_interval(stat: Option<Stat>, quantity: &Quantity) -> String {
     let Some(stat) = stat else { return String::new() };
+    if quantity.is_frequency() {
+        return format!("{:.0} of {}", 0.01 * stat.mean * stat.count as f64, stat.count);
+    }
     let decimals = quantity.decimals;
     match stat.interval_95.zip(stat.standard_deviation) {
         Some((half, deviation)) => format!("{:.decimals$} ± {half:.decimals$} ({deviation:.decimals$})", stat.mean),
