@@ -63,8 +63,10 @@ pub struct Definition {
     pub axes: Vec<Axis>,
     /// Chosen points: the level of every axis.
     pub points: Vec<Vec<usize>>,
-    /// The model of effects, when the study has a design.
+    /// The model that the points were picked for, when the study has a design.
     pub model: Option<Model>,
+    /// The model of effects in the analysis.
+    pub analysis: Option<Model>,
     /// How well the design tells the model's terms apart, over the full grid [-].
     pub efficiency: Option<f64>,
     /// Seeds of every point.
@@ -126,7 +128,12 @@ impl Definition {
         };
         let common: Vec<String> =
             quality.overrides(&own.spec).into_iter().chain(raw.set).chain(changes.set.iter().cloned()).collect();
-        let model = raw.design.as_ref().map(|design| model(design, &axes, &source)).transpose()?;
+        let design = raw.design.as_ref();
+        let model = design.map(|design| model("interactions", &design.interactions, &axes, &source)).transpose()?;
+        let analysis = match design.and_then(|design| design.analysis.as_ref()) {
+            Some(pairs) => Some(self::model("analysis", pairs, &axes, &source)?),
+            None => model.clone(),
+        };
         let points = points(&axes, model.as_ref(), raw.design.as_ref(), &source)?;
         if points.len() * seeds.len() > MOST_CASES {
             let what = format!("{} points and {} seeds are more than {MOST_CASES} cases", points.len(), seeds.len());
@@ -148,6 +155,7 @@ impl Definition {
             axes,
             points,
             model,
+            analysis,
             efficiency,
             seeds,
             quality,
@@ -239,23 +247,24 @@ fn seeds(raw: Option<&RawSeeds>, own: u64, source: &SceneSource) -> Result<Vec<u
     }
 }
 
-fn model(design: &RawDesign, axes: &[Axis], source: &SceneSource) -> Result<Model> {
+/// The model with the interactions that this key of `[design]` names.
+fn model(key: &str, pairs: &[[String; 2]], axes: &[Axis], source: &SceneSource) -> Result<Model> {
     let place = |k: usize, name: &String| {
         axes.iter().position(|axis| axis.name == *name).ok_or_else(|| {
             let names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
-            let key = format!("design.interactions.{k}");
+            let key = format!("design.{key}.{k}");
             source.error(&key, format!("no axis is called `{name}`"), format!("axes: {}", names.join(", ")))
         })
     };
     let pair = |(k, [a, b]): (usize, &[String; 2])| {
         let pair = [place(k, a)?, place(k, b)?];
         if pair[0] == pair[1] {
-            let key = format!("design.interactions.{k}");
+            let key = format!("design.{key}.{k}");
             return Err(source.error(&key, format!("`{a}` cannot interact with itself"), "name two axes"));
         }
         Ok(pair)
     };
-    let interactions = design.interactions.iter().enumerate().map(pair).collect::<Result<Vec<_>>>()?;
+    let interactions = pairs.iter().enumerate().map(pair).collect::<Result<Vec<_>>>()?;
     Ok(Model { levels: axes.iter().map(|axis| axis.levels.len()).collect(), interactions })
 }
 
