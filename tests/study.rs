@@ -210,10 +210,22 @@ fn what_is_wrong_in_a_study_is_told_with_its_line_and_nothing_is_written() {
         ("points = 4", "points = 1", "a range has at least 2"),
         ("key = \"grip.speed\"", "", "the axis does not say what it varies"),
         ("points = 4", "points = 4\nvalues = [\"5 m/s\"]", "does not go with a range"),
-        ("points = 4", "points = 4\n[[axis]]\nname = \"speed\"\nkey = \"seed\"\nvalues = [1]", "two axes are called `speed`"),
-        ("points = 4", "points = 4\n[[axis]]\nkey = \"seed\"\nvalues = [1]\nzip = true", "`speed`, which it goes along with, has 4"),
+        (
+            "points = 4",
+            "points = 4\n[[axis]]\nname = \"speed\"\nkey = \"seed\"\nvalues = [1]",
+            "two axes are called `speed`",
+        ),
+        (
+            "points = 4",
+            "points = 4\n[[axis]]\nkey = \"seed\"\nvalues = [1]\nzip = true",
+            "`speed`, which it goes along with, has 4",
+        ),
         ("points = 4", "points = 4\n[design]\npoints = 3", "3 points cannot tell 4 parameters apart"),
-        ("points = 4", "points = 4\n[design]\npoints = 4\ninteractions = [[\"speed\", \"pich\"]]", "no axis is called `pich`"),
+        (
+            "points = 4",
+            "points = 4\n[design]\npoints = 4\ninteractions = [[\"speed\", \"pich\"]]",
+            "no axis is called `pich`",
+        ),
     ] {
         let wrong = study(folder.path(), &SPEEDS.replace(from, to), &[]);
         let said = text(&wrong.stderr);

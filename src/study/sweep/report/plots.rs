@@ -171,7 +171,9 @@ fn scatter(definition: &Definition, gathered: &Gathered, findings: &Findings) ->
     let runs = gathered.runs(0).map(|run| [run.elongation_percent, run.strength_mpa]).collect();
     figure.series.push(Series::new("this engine, one seed each", Mark::Points, runs));
     if let Some(beside) = findings.beside.first() {
-        for (name, value) in [("the paper's simulation", beside.paper), ("the experiment, calibrated on", beside.experiment)] {
+        for (name, value) in
+            [("the paper's simulation", beside.paper), ("the experiment, calibrated on", beside.experiment)]
+        {
             let point = value.map(|[strength, elongation]| [elongation, strength]);
             push(&mut figure, name, Mark::Points, point.into_iter().collect());
         }
