@@ -1,5 +1,5 @@
 //! Screening: few points of a large grid of factors, picked so that main effects and chosen interactions are told apart
-//! well ([`design`]), and the effects themselves by least squares ([`effects`]).
+//! well (`design.rs`), and the effects themselves by least squares (`effects.rs`).
 
 mod design;
 mod effects;
