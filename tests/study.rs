@@ -234,6 +234,9 @@ fn what_is_wrong_in_a_study_is_told_with_its_line_and_nothing_is_written() {
     }
     let unknown = strandsnap(folder.path(), &["study", "pich"]);
     assert!(text(&unknown.stderr).contains("did you mean `pitch`?"), "{}", text(&unknown.stderr));
+    let option = study(folder.path(), SPEEDS, &["--set", "material.yuong=3 GPa"]);
+    assert_eq!(option.status.code(), Some(2));
+    assert!(text(&option.stderr).contains("unknown key `yuong`"), "{}", text(&option.stderr));
     assert!(!folder.path().join("out").exists());
 }
 

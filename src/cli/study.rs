@@ -58,6 +58,7 @@ pub fn study(args: &Args) -> Result<Ended> {
     };
     let changes = Changes { quality: args.quality, set: args.set.clone(), seeds: args.seeds.clone() };
     let definition = Definition::load(name, &changes)?;
+    sweep::check(&definition)?;
     let out = args.out.clone().unwrap_or_else(|| folder::study(&definition.name));
     if args.dry_run {
         return dry_run(&definition, &out, jobs(args));

@@ -166,6 +166,22 @@ fn workshop<'a>(definition: &'a Definition, making: &Making<'a>) -> Workshop<'a>
     }
 }
 
+/// Refuses a study none of whose points has a scene that can be read; a single one that is refused is told as a case.
+///
+/// # Errors
+/// The error of the first point.
+pub fn check(definition: &Definition) -> Result<()> {
+    let Some(seed) = definition.seeds.first() else { return Ok(()) };
+    let mut first = None;
+    for point in 0..definition.points.len() {
+        match scene::load(&definition.base, &definition.overrides(point, *seed)) {
+            Ok(_) => return Ok(()),
+            Err(error) => first = first.or(Some(error)),
+        }
+    }
+    first.map_or(Ok(()), Err)
+}
+
 /// Makes the folder of a study; `fresh` removes the cases that are there.
 ///
 /// # Errors
