@@ -241,10 +241,24 @@ fn what_is_wrong_in_a_study_is_told_with_its_line_and_nothing_is_written() {
 }
 
 #[test]
+fn a_point_without_scatter_is_run_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let axis = "key = \"grip.speed\"\nfrom = \"5 m/s\"\nto = \"20 m/s\"\npoints = 4";
+    let scatter = SPEEDS.replace(axis, "key = \"bond.rupture.weibull_modulus\"\nvalues = [\"inf\", 12]");
+    let dry = printed(&study(folder.path(), &scatter.replace("fits = [\"elongation\"]", ""), &["--dry-run"]));
+    // Both points with seed 1, and only the one whose bonds differ with seed 2.
+    assert!(dry.contains("3 cases, 0 of them done"), "{dry}");
+}
+
+#[test]
 fn the_studies_that_come_along_have_their_cases() {
     let folder = tempfile::tempdir().unwrap();
     let list = printed(&strandsnap(folder.path(), &["study", "--list"]));
-    for part in ["pitch ", "diameter ", "seeds ", "mechanism "] {
-        assert!(list.contains(part), "{part} is not in\n{list}");
+    // 64 points of which 16 have no scatter, so that their second seed is none.
+    let cases = [("pitch", 35), ("diameter", 21), ("seeds", 16), ("mechanism", 112)];
+    for (name, count) in cases {
+        let line =
+            list.lines().find(|line| line.split_whitespace().next() == Some(name)).expect("every name is listed");
+        assert!(line.ends_with(&format!("({count} cases)")), "{line}");
     }
 }

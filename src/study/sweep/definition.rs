@@ -4,6 +4,7 @@ use super::axis::{self, Axis};
 use super::quantity::{self, Quantity};
 use super::raw::{RawDesign, RawQuality, RawSeeds, RawStudy};
 use crate::base::error::{Error, Result};
+use crate::scene::plan::Plan;
 use crate::scene::quality::Quality;
 use crate::scene::suggest::nearest;
 use crate::scene::{self, SceneSource};
@@ -20,7 +21,8 @@ macro_rules! studies {
 }
 
 /// Name and text of the studies that come with the program.
-const STUDIES: &[(&str, &str)] = studies!["pitch", "diameter", "seeds", "mechanism", "pitch-modulus-12"];
+const STUDIES: &[(&str, &str)] =
+    studies!["pitch", "diameter", "seeds", "mechanism", "pitch-modulus-12", "diameter-modulus-12"];
 
 /// The studies that come with the program: name, and TOML text.
 pub fn list() -> &'static [(&'static str, &'static str)] {
@@ -63,13 +65,11 @@ pub struct Definition {
     pub axes: Vec<Axis>,
     /// Chosen points: the level of every axis.
     pub points: Vec<Vec<usize>>,
-    /// The model that the points were picked for, when the study has a design.
+    /// The model of effects that the points were picked for, when the study has a design.
     pub model: Option<Model>,
-    /// The model of effects in the analysis.
-    pub analysis: Option<Model>,
     /// How well the design tells the model's terms apart, over the full grid [-].
     pub efficiency: Option<f64>,
-    /// Seeds of every point.
+    /// Seeds; a point whose scene has no scatter is run with the first only, since the others give the same run.
     pub seeds: Vec<u64>,
     /// Accuracy against run time.
     pub quality: Quality,
@@ -81,6 +81,8 @@ pub struct Definition {
     pub compare: Vec<Beside>,
     /// Options of every case, before those of its point.
     common: Vec<String>,
+    /// Whether a seed makes a difference, point by point.
+    scatters: Vec<bool>,
 }
 
 impl Definition {
@@ -129,11 +131,7 @@ impl Definition {
         let common: Vec<String> =
             quality.overrides(&own.spec).into_iter().chain(raw.set).chain(changes.set.iter().cloned()).collect();
         let design = raw.design.as_ref();
-        let model = design.map(|design| model("interactions", &design.interactions, &axes, &source)).transpose()?;
-        let analysis = match design.and_then(|design| design.analysis.as_ref()) {
-            Some(pairs) => Some(self::model("analysis", pairs, &axes, &source)?),
-            None => model.clone(),
-        };
+        let model = design.map(|design| model(&design.interactions, &axes, &source)).transpose()?;
         let points = points(&axes, model.as_ref(), raw.design.as_ref(), &source)?;
         if points.len() * seeds.len() > MOST_CASES {
             let what = format!("{} points and {} seeds are more than {MOST_CASES} cases", points.len(), seeds.len());
@@ -148,14 +146,13 @@ impl Definition {
         let compare = compare.collect::<Result<Vec<_>>>()?;
         let efficiency = model.as_ref().map(|model| screening::efficiency(model, &points));
         let stem = Path::new(file_name).file_stem().map_or_else(|| "study".into(), |stem| stem.to_string_lossy());
-        Ok(Self {
+        let mut definition = Self {
             name: stem.into_owned(),
             about,
             base,
             axes,
             points,
             model,
-            analysis,
             efficiency,
             seeds,
             quality,
@@ -163,7 +160,16 @@ impl Definition {
             fits,
             compare,
             common,
-        })
+            scatters: Vec::new(),
+        };
+        definition.scatters = (0..definition.points.len()).map(|point| definition.scatters(point)).collect();
+        Ok(definition)
+    }
+
+    /// Whether a seed makes a difference at a point; a scene that is refused may.
+    fn scatters(&self, point: usize) -> bool {
+        let first = self.seeds.first().copied().unwrap_or_default();
+        scene::load(&self.base, &self.overrides(point, first)).map_or(true, |scene| Plan::new(&scene.spec).scatter)
     }
 
     /// Options of a point with a seed, in the order in which they win: quality, the study's, the axes', the seed.
@@ -190,9 +196,13 @@ impl Definition {
     }
 
     /// All cases in the order in which they are made: all points with the first seed, so that a study that is cut short
-    /// has been everywhere, then with the next.
+    /// has been everywhere, then those in which scatter makes a difference with the next.
     pub fn cases(&self) -> Vec<(usize, u64)> {
-        self.seeds.iter().flat_map(|seed| (0..self.points.len()).map(move |point| (point, *seed))).collect()
+        let of_seed = |(k, seed): (usize, &u64)| {
+            let seed = *seed;
+            (0..self.points.len()).filter(move |point| k == 0 || self.scatters[*point]).map(move |point| (point, seed))
+        };
+        self.seeds.iter().enumerate().flat_map(of_seed).collect()
     }
 
     /// The axis that curves run over: the only one, when it is numeric.
@@ -247,19 +257,19 @@ fn seeds(raw: Option<&RawSeeds>, own: u64, source: &SceneSource) -> Result<Vec<u
     }
 }
 
-/// The model with the interactions that this key of `[design]` names.
-fn model(key: &str, pairs: &[[String; 2]], axes: &[Axis], source: &SceneSource) -> Result<Model> {
+/// The model with the interactions that `[design]` names.
+fn model(pairs: &[[String; 2]], axes: &[Axis], source: &SceneSource) -> Result<Model> {
     let place = |k: usize, name: &String| {
         axes.iter().position(|axis| axis.name == *name).ok_or_else(|| {
             let names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
-            let key = format!("design.{key}.{k}");
+            let key = format!("design.interactions.{k}");
             source.error(&key, format!("no axis is called `{name}`"), format!("axes: {}", names.join(", ")))
         })
     };
     let pair = |(k, [a, b]): (usize, &[String; 2])| {
         let pair = [place(k, a)?, place(k, b)?];
         if pair[0] == pair[1] {
-            let key = format!("design.{key}.{k}");
+            let key = format!("design.interactions.{k}");
             return Err(source.error(&key, format!("`{a}` cannot interact with itself"), "name two axes"));
         }
         Ok(pair)

@@ -98,7 +98,4 @@ pub(super) struct RawDesign {
     /// Pairs of axes, by name, whose interaction is wanted beside the main effects.
     #[serde(default)]
     pub interactions: Vec<[String; 2]>,
-    /// Pairs whose interaction the analysis takes in, where they are not those that the points are picked for: what was run
-    /// may ask for others.
-    pub analysis: Option<Vec<[String; 2]>>,
 }

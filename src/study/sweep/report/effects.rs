@@ -17,7 +17,7 @@ const SURE: f64 = 0.05;
 
 /// Effects on every quantity of a study with a design; none without one.
 pub fn of(definition: &Definition, gathered: &Gathered) -> Vec<Moved> {
-    let Some(model) = &definition.analysis else { return Vec::new() };
+    let Some(model) = &definition.model else { return Vec::new() };
     let one = |quantity: &&'static Quantity| {
         let row = |case: &super::super::CaseResult| {
             let value = case.measured().map(|run| (quantity.of)(run).unwrap_or(f64::NAN))?;
@@ -35,7 +35,7 @@ pub fn tables(definition: &Definition, findings: &Findings) -> Vec<Table> {
         return Vec::new();
     }
     let mut tables = vec![shares(definition, &findings.effects), means(definition, &findings.effects)];
-    let model = definition.analysis.as_ref().expect("effects come with a model");
+    let model = definition.model.as_ref().expect("effects come with a model");
     for k in 0..model.interactions.len() {
         tables.push(interaction(definition, &findings.effects, k));
     }
@@ -55,7 +55,7 @@ fn name(definition: &Definition, factors: &[usize]) -> String {
 /// Share of each term in the variance of each quantity.
 fn shares(definition: &Definition, moved: &[Moved]) -> Table {
     let found = found(moved);
-    let model = definition.analysis.as_ref().expect("effects come with a model");
+    let model = definition.model.as_ref().expect("effects come with a model");
     let cell = |term: Option<&Term>| match term {
         Some(term) if term.p < SURE => format!("{:.1} (p {})", term.share_percent, chance(term.p)),
         Some(term) => format!("{:.1}", term.share_percent),
@@ -143,7 +143,7 @@ fn signed(quantity: &Quantity, estimate: &Estimate) -> String {
 /// How the effect of one factor changes with another.
 fn interaction(definition: &Definition, moved: &[Moved], k: usize) -> Table {
     let found = found(moved);
-    let [of, with] = definition.analysis.as_ref().expect("effects come with a model").interactions[k];
+    let [of, with] = definition.model.as_ref().expect("effects come with a model").interactions[k];
     let (axis, other) = (&definition.axes[of], &definition.axes[with]);
     let here = |effects: &'_ Effects| -> Option<usize> {
         effects.interactions.iter().position(|one: &Interaction| (one.of, one.with) == (of, with))
