@@ -118,11 +118,7 @@ impl Definition {
         let base = raw.base.as_ref().ok_or_else(|| missing("base", "add it, for example base = \"ka4\""))?;
         let base = base_scene(base, folder);
         let axes = axis::axes(&raw.axis, &source)?;
-        let quality = changes.quality.unwrap_or(match raw.quality {
-            Some(RawQuality::Draft) => Quality::Draft,
-            Some(RawQuality::Fine) => Quality::Fine,
-            Some(RawQuality::Standard) | None => Quality::Standard,
-        });
+        let quality = changes.quality.unwrap_or_else(|| quality(raw.quality.as_ref()));
         let own = scene::load(&base, &[])?;
         let seeds = match changes.seeds.is_empty() {
             true => seeds(raw.seeds.as_ref(), own.spec.seed, &source)?,
@@ -137,28 +133,23 @@ impl Definition {
             let what = format!("{} points and {} seeds are more than {MOST_CASES} cases", points.len(), seeds.len());
             return Err(source.error("axis", what, "vary less, or pick points with [design]"));
         }
-        let quantities = match &raw.quantities {
-            None => quantity::ALL.iter().collect(),
-            Some(names) => quantities(names, "quantities", &source)?,
-        };
-        let fits = fits(&raw.fits, &axes, &source)?;
-        let compare = raw.compare.iter().enumerate().map(|(k, name)| beside(k, name, &source));
-        let compare = compare.collect::<Result<Vec<_>>>()?;
-        let efficiency = model.as_ref().map(|model| screening::efficiency(model, &points));
         let stem = Path::new(file_name).file_stem().map_or_else(|| "study".into(), |stem| stem.to_string_lossy());
         let mut definition = Self {
             name: stem.into_owned(),
             about,
             base,
+            efficiency: model.as_ref().map(|model| screening::efficiency(model, &points)),
+            quantities: match &raw.quantities {
+                None => quantity::ALL.iter().collect(),
+                Some(names) => quantities(names, "quantities", &source)?,
+            },
+            fits: fits(&raw.fits, &axes, &source)?,
+            compare: beside(&raw.compare, &source)?,
             axes,
             points,
             model,
-            efficiency,
             seeds,
             quality,
-            quantities,
-            fits,
-            compare,
             common,
             scatters: Vec::new(),
         };
@@ -231,6 +222,14 @@ fn builtin(name: &str) -> Result<&'static str> {
 /// A scene file is given from the study's folder, a built-in scene by its name.
 fn base_scene(base: &str, folder: &Path) -> String {
     if base.ends_with(".toml") { folder.join(base).to_string_lossy().into_owned() } else { base.to_owned() }
+}
+
+fn quality(raw: Option<&RawQuality>) -> Quality {
+    match raw {
+        Some(RawQuality::Draft) => Quality::Draft,
+        Some(RawQuality::Fine) => Quality::Fine,
+        Some(RawQuality::Standard) | None => Quality::Standard,
+    }
 }
 
 fn seeds(raw: Option<&RawSeeds>, own: u64, source: &SceneSource) -> Result<Vec<u64>> {
@@ -331,11 +330,14 @@ fn fits(names: &[String], axes: &[Axis], source: &SceneSource) -> Result<Vec<&'s
     quantities(names, "fits", source)
 }
 
-fn beside(k: usize, name: &str, source: &SceneSource) -> Result<Beside> {
-    let found = Beside::ALL.iter().find(|(known, _)| *known == name);
-    found.map(|(_, beside)| *beside).ok_or_else(|| {
-        let known: Vec<&str> = Beside::ALL.iter().map(|(name, _)| *name).collect();
-        let what = format!("`{name}` is nothing to compare with");
-        source.error(&format!("compare.{k}"), what, format!("one of: {}", known.join(", ")))
-    })
+fn beside(names: &[String], source: &SceneSource) -> Result<Vec<Beside>> {
+    let one = |(k, name): (usize, &String)| {
+        let found = Beside::ALL.iter().find(|(known, _)| known == name);
+        found.map(|(_, beside)| *beside).ok_or_else(|| {
+            let known: Vec<&str> = Beside::ALL.iter().map(|(name, _)| *name).collect();
+            let what = format!("`{name}` is nothing to compare with");
+            source.error(&format!("compare.{k}"), what, format!("one of: {}", known.join(", ")))
+        })
+    };
+    names.iter().enumerate().map(one).collect()
 }
