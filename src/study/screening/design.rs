@@ -132,7 +132,7 @@ fn exchange(rows: &[DVector<f64>], mut chosen: Vec<usize>) -> (Vec<usize>, f64) 
 mod tests {
     use super::*;
 
-    /// The mechanism study: pitch, grip, scatter, shape, friction.
+    /// The factors of the mechanism study with some of their interactions: pitch, grip, scatter, shape, friction.
     fn mechanism() -> Model {
         Model { levels: vec![2, 4, 4, 2, 3], interactions: vec![[0, 1], [0, 2], [0, 3], [0, 4], [1, 4]] }
     }

@@ -12,7 +12,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 pub enum EffectsError {
     /// Too few runs.
     #[error(
-        "{rows} runs cannot tell {parameters} parameters apart and leave scatter to judge them by: more runs, or fewer interactions"
+        "{rows} responses cannot tell {parameters} parameters apart and leave anything to judge them by: more points or seeds, or fewer interactions"
     )]
     TooFew {
         /// Runs with a value.
@@ -110,9 +110,9 @@ pub struct Term {
 /// Everything that the runs say of one response.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Effects {
-    /// Runs that have a value.
+    /// Runs, or points, that have a value.
     pub rows: usize,
-    /// Runs that have none.
+    /// Those that have none.
     pub left_out: usize,
     /// Residual degrees of freedom.
     pub freedom: usize,
@@ -128,8 +128,8 @@ pub struct Effects {
     pub terms: Vec<Term>,
 }
 
-/// Effects on a response: `rows` are the levels of each run, of which several may be alike (seeds), and its response, NaN
-/// where it has none.
+/// Effects on a response: `rows` are the levels of each run, or of each point with its mean, and the response there, NaN
+/// where there is none.
 ///
 /// # Errors
 /// Too few runs, runs that do not tell the terms apart, or a response that never changes.

@@ -1,11 +1,11 @@
 //! What each factor of a design moves: tables and figures.
 
 use super::super::definition::Definition;
-use super::super::gather::Gathered;
+use super::super::gather::{CaseResult, Gathered};
 use super::super::quantity::{self, Quantity};
 use super::{Findings, Moved};
 use crate::study::plot::{Axis, Figure, Legend, Limit, Mark, Series};
-use crate::study::screening::{Effects, Estimate, Interaction, Term, effects};
+use crate::study::screening::{Effects, Estimate, Interaction, Model, Term, effects};
 use crate::study::table::Table;
 
 /// Quantities whose effects are drawn.
@@ -18,15 +18,50 @@ const SURE: f64 = 0.05;
 /// Effects on every quantity of a study with a design; none without one.
 pub fn of(definition: &Definition, gathered: &Gathered) -> Vec<Moved> {
     let Some(model) = &definition.model else { return Vec::new() };
-    let one = |quantity: &&'static Quantity| {
-        let row = |case: &super::super::CaseResult| {
-            let value = case.measured().map(|run| (quantity.of)(run).unwrap_or(f64::NAN))?;
-            Some((definition.points[case.point].clone(), value))
-        };
-        let rows: Vec<(Vec<usize>, f64)> = gathered.cases.iter().filter_map(row).collect();
-        Moved { quantity: quantity.name, effects: effects(model, &rows).map_err(|why| why.to_string()) }
+    let one = |quantity: &&'static Quantity| Moved {
+        quantity: quantity.name,
+        by_points: by_points(definition, model),
+        seeds_deviation: seeds_deviation(definition, gathered, quantity),
+        effects: effects(model, &responses(definition, gathered, quantity, model)).map_err(|why| why.to_string()),
     };
     definition.quantities.iter().map(one).collect()
+}
+
+/// Whether effects are judged by the means of points over seeds rather than by runs. Seeds of a point share what the model
+/// leaves out there, such as interactions of three factors: taken as independent, they make intervals too narrow. Only a
+/// design without points to spare leaves nothing but the scatter of seeds to judge by.
+fn by_points(definition: &Definition, model: &Model) -> bool {
+    definition.points.len() > model.parameters()
+}
+
+/// Levels and response of each point, or of each run.
+fn responses(
+    definition: &Definition,
+    gathered: &Gathered,
+    quantity: &Quantity,
+    model: &Model,
+) -> Vec<(Vec<usize>, f64)> {
+    if by_points(definition, model) {
+        let mean = |point: usize| gathered.stat(point, quantity).map_or(f64::NAN, |stat| stat.mean);
+        return (0..definition.points.len()).map(|point| (definition.points[point].clone(), mean(point))).collect();
+    }
+    let run = |case: &CaseResult| {
+        let value = case.measured().map(|run| (quantity.of)(run).unwrap_or(f64::NAN))?;
+        Some((definition.points[case.point].clone(), value))
+    };
+    gathered.cases.iter().filter_map(run).collect()
+}
+
+/// Standard deviation from seed to seed, pooled over the points; `None` where no point has two runs.
+fn seeds_deviation(definition: &Definition, gathered: &Gathered, quantity: &Quantity) -> Option<f64> {
+    let of_points = (0..definition.points.len()).filter_map(|point| {
+        let stat = gathered.stat(point, quantity)?;
+        Some(((stat.count - 1) as f64, stat.standard_deviation?))
+    });
+    let (freedom, squares) = of_points.fold((0.0, 0.0), |(freedom, squares), (more, deviation)| {
+        (freedom + more, squares + more * deviation * deviation)
+    });
+    (freedom > 0.0).then(|| (squares / freedom).sqrt())
 }
 
 /// Which term moves what, the means of all levels, and how effects change with other factors.
@@ -69,6 +104,13 @@ fn shares(definition: &Definition, moved: &[Moved]) -> Table {
             [name(definition, factors)].into_iter().chain(found.iter().map(|(_, effects)| of(effects))).collect()
         })
         .collect();
+    let between = |one: &Moved| match (quantity::find(one.quantity), one.effects.is_ok()) {
+        (Some(quantity), true) => Some(match one.seeds_deviation {
+            Some(deviation) => format!("{deviation:.*} {}", quantity.decimals.max(1), quantity.unit),
+            None => String::new(),
+        }),
+        _ => None,
+    };
     let summary = |words: &str, value: &dyn Fn(&Quantity, &Effects) -> String| {
         [words.to_string()]
             .into_iter()
@@ -79,7 +121,10 @@ fn shares(definition: &Definition, moved: &[Moved]) -> Table {
     rows.push(summary("left over, standard deviation", &|quantity, effects| {
         format!("{:.*} {}", quantity.decimals.max(1), effects.residual, quantity.unit)
     }));
-    rows.push(summary("runs", &|_, effects| effects.rows.to_string()));
+    let seeds = "from seed to seed, standard deviation".to_string();
+    rows.push([seeds].into_iter().chain(moved.iter().filter_map(between)).collect());
+    let counted = if by_points(definition, model) { "points" } else { "runs" };
+    rows.push(summary(counted, &|_, effects| effects.rows.to_string()));
     let efficiency = definition.efficiency.map_or(String::new(), |e| format!("; D-efficiency of the design {e:.2}"));
     let constant: Vec<String> = moved
         .iter()
@@ -87,8 +132,8 @@ fn shares(definition: &Definition, moved: &[Moved]) -> Table {
         .collect();
     Table {
         title: format!(
-            "Which mechanism moves what: share of each term in the variance over runs [%], with p where it is told from \
-             scatter (p < {SURE}){efficiency}{}",
+            "Which mechanism moves what: share of each term in the variance over {counted} [%], with p where it is told \
+             from what is left over (p < {SURE}){efficiency}{}",
             constant.concat()
         ),
         heads: ["term".to_string()]

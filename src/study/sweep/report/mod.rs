@@ -50,6 +50,10 @@ pub struct Fitted {
 pub struct Moved {
     /// Name of the quantity.
     pub quantity: &'static str,
+    /// Whether effects are judged by means of points rather than by runs.
+    pub by_points: bool,
+    /// Standard deviation from seed to seed, pooled over the points; `None` where no point has two runs.
+    pub seeds_deviation: Option<f64>,
     /// Effects, or why there are none.
     pub effects: std::result::Result<Effects, String>,
 }
