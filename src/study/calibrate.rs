@@ -121,7 +121,7 @@ impl Start {
 /// Fits the scene to the target; `tell` hears of every run. Returns the trial that met it.
 ///
 /// # Errors
-/// A scene of another kind, a run that fails, an interruption, or no success within ten runs.
+/// A scene of another kind, a run that fails, an interruption, a target out of reach, or no success within ten runs.
 pub fn calibrate(
     name: &str,
     overrides: &[String],
@@ -144,12 +144,32 @@ pub fn calibrate(
             slopes = broyden(slopes, x - x_last, miss - miss_last);
         }
         last = Some((x, miss));
-        x -= slopes.inverse() * miss;
+        x = next(x, slopes, miss)?;
     }
     Err(Error::input(
         format!("no setting within {} % after {MOST_RUNS} runs", 100.0 * target.tolerance),
         "scatter between runs may be larger than that; allow more with --tolerance",
     ))
+}
+
+/// The next factor on the hardening and rupture strain.
+///
+/// # Errors
+/// When one of them would have to be below zero: what the runs give does not follow them any more.
+fn next(x: DVec2, slopes: DMat2, miss: DVec2) -> Result<DVec2> {
+    let next = x - slopes.inverse() * miss;
+    if next.cmpgt(DVec2::ZERO).all() {
+        return Ok(next);
+    }
+    let what = format!(
+        "strength and elongation do not follow hardening and rupture strain any more: the next run would need {:.3} times \
+         the hardening and a rupture strain of {:.1} %",
+        next.x,
+        100.0 * next.y
+    );
+    let help = "wires that neck before they rupture (Considère: hardening below the stress) do not get longer with the \
+                rupture strain; start with more bond.hardening.linear and less bond.hardening.saturation";
+    Err(Error::input(what, help))
 }
 
 /// Broyden's update: the least change of the slopes that explains the last step.
@@ -191,6 +211,17 @@ mod tests {
         assert!((updated * dx - dy).length() < 1e-12);
         let across = DVec2::new(0.2, 0.1);
         assert!((updated * across - slopes * across).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_target_out_of_reach_is_told() {
+        let slopes = DMat2::from_diagonal(DVec2::new(200.0, 100.0));
+        let x = DVec2::new(1.0, 0.3);
+        assert_eq!(next(x, slopes, DVec2::new(20.0, 10.0)).unwrap(), DVec2::new(0.9, 0.2));
+        // A wire that necked: 20 % more of rupture strain gave nothing, so that the slope has the other sign.
+        let flat = DMat2::from_diagonal(DVec2::new(200.0, -1.0));
+        let error = next(x, flat, DVec2::new(0.0, -2.0)).unwrap_err().to_string();
+        assert!(error.contains("a rupture strain of -170.0 %"), "{error}");
     }
 
     #[test]

@@ -21,8 +21,16 @@ macro_rules! studies {
 }
 
 /// Name and text of the studies that come with the program.
-const STUDIES: &[(&str, &str)] =
-    studies!["pitch", "diameter", "seeds", "mechanism", "pitch-modulus-12", "diameter-modulus-12"];
+const STUDIES: &[(&str, &str)] = studies![
+    "pitch",
+    "diameter",
+    "seeds",
+    "mechanism",
+    "pitch-modulus-12",
+    "diameter-modulus-12",
+    "pitch-flat-hardening",
+    "diameter-flat-hardening",
+];
 
 /// The studies that come with the program: name, and TOML text.
 pub fn list() -> &'static [(&'static str, &'static str)] {
