@@ -217,7 +217,7 @@ mod tests {
     fn a_target_out_of_reach_is_told() {
         let slopes = DMat2::from_diagonal(DVec2::new(200.0, 100.0));
         let x = DVec2::new(1.0, 0.3);
-        assert_eq!(next(x, slopes, DVec2::new(20.0, 10.0)).unwrap(), DVec2::new(0.9, 0.2));
+        assert!((next(x, slopes, DVec2::new(20.0, 10.0)).unwrap() - DVec2::new(0.9, 0.2)).length() < 1e-12);
         // A wire that necked: 20 % more of rupture strain gave nothing, so that the slope has the other sign.
         let flat = DMat2::from_diagonal(DVec2::new(200.0, -1.0));
         let error = next(x, flat, DVec2::new(0.0, -2.0)).unwrap_err().to_string();
