@@ -93,9 +93,10 @@ fn jobs(args: &Args) -> usize {
 }
 
 fn list() -> Result<Ended> {
+    let wide = definition::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     for (name, text) in definition::list() {
         let study = Definition::parse(text, &format!("{name}.toml"), Path::new("."), &Changes::default())?;
-        say!("{name:20}{} ({} cases)", study.about, study.cases().len());
+        say!("{name:wide$}  {} ({} cases)", study.about, study.cases().len());
     }
     Ok(Ended::Well)
 }
