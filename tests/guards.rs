@@ -206,7 +206,7 @@ fn a_neck_is_foretold_and_then_seen() {
 /// A strand with strong scatter that breaks wire by wire: contacts stay shallow, nothing crosses, nothing necks.
 #[test]
 fn an_ordinary_fracture_hears_nothing() {
-    for shape in ["sphere", "capsule"] {
+    for shape in ["sphere", "wire"] {
         let (ended, notices) = heard(STRAND, &[&format!("contact.shape={shape}"), "stop.strain=6 %"]);
         let outcome = ended.unwrap();
         let deepest = outcome.findings.deepest_contact.unwrap();
@@ -263,7 +263,7 @@ step = "5e-8 s"
 #[test]
 fn wires_that_pass_through_each_other_stop_the_run() {
     for (shape, spacing) in
-        [("sphere", "1"), ("capsule", "1"), ("sphere", "0.5"), ("sphere", "1.9"), ("capsule", "1.9")]
+        [("sphere", "1"), ("wire", "1"), ("sphere", "0.5"), ("sphere", "1.9"), ("wire", "1.9")]
     {
         let set = [format!("contact.shape={shape}"), format!("spacing={spacing}")];
         let mut engine = engine(CROSSED, &set.each_ref().map(String::as_str));

@@ -130,7 +130,7 @@ fn every_key_arrives_in_si() {
     let NormalSpec::Thornton { limiting_pressure } = contact.normal else { panic!("not Thornton") };
     // 3 × Swift's stress at 8 % plastic strain.
     assert_close(limiting_pressure, 3.0 * 400e6 * 0.09f64.powf(0.3));
-    assert_eq!((contact.tangential, contact.shape), (Some(TangentialSpec::MindlinDeresiewicz), Shape::Capsule));
+    assert_eq!((contact.tangential, contact.shape), (Some(TangentialSpec::MindlinDeresiewicz), Shape::Wire));
     let layers = &spec.strand.as_ref().unwrap().layers;
     assert_eq!((layers[0].name.as_str(), layers[0].lay_radius, layers[0].lay), ("layer 1", Some(0.0), -1.0));
     assert_close(layers[0].wire_diameter, 0.39e-3);
@@ -205,7 +205,7 @@ fn options_change_every_kind_of_key() {
             "strand.layer.2.lay=left",
             "strand.wire_diameter = 0.38 mm",
             "contact.friction=0.3",
-            "contact.shape=\"capsule\"",
+            "contact.shape=\"wire\"",
             "contact.hardness_strain=5 %",
             "bond.hardening.linear=600 MPa",
             "bond.damping={ axial = 0.1 }",
@@ -227,7 +227,7 @@ fn options_change_every_kind_of_key() {
     assert_eq!(strand.layers.iter().map(|l| l.lay).collect::<Vec<_>>(), [1.0, 1.0, -1.0]);
     assert!(strand.layers.iter().all(|l| l.wire_diameter == 0.38e-3));
     let contact = spec.contact.unwrap();
-    assert_eq!((contact.friction, contact.shape), (0.3, Shape::Capsule));
+    assert_eq!((contact.friction, contact.shape), (0.3, Shape::Wire));
     assert!(matches!(spec.bond.law, BondLawSpec::ElastoPlastic(HardeningSpec::Voce { linear: 600e6, .. })));
     assert_eq!(spec.bond.damping, [0.1, 0.0, 0.0, 0.0]);
     assert_eq!(spec.bond.rupture.unwrap().weibull_modulus, f64::INFINITY);

@@ -249,6 +249,8 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
             released -= 0.5 * state.dt * power(state, slot);
             (Self::AXIAL..Self::DASHPOT).for_each(|field| self.set(slot, field, 0.0));
             self.set(slot, Self::LIVE, 0.0);
+            let thinning = state.bond.get(slot, BondActions::THINNING);
+            state.parted[slot] = self.shape(slot).rest_length / (thinning * thinning);
             state.whole[slot] = false;
             state.bond.clear(slot);
         }

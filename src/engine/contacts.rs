@@ -1,12 +1,12 @@
 //! What the engine asks of contacts, whatever their laws and shape, and the one place where these are chosen.
 
 use super::bytes::Bytes;
-use super::capsules::CapsuleContacts;
 use super::neighbours::PairList;
 use super::pair::Laws;
 use super::spheres::{SecondSides, SphereContacts};
 use super::state::{Partial, State};
 use super::time_step::Stiffness;
+use super::wires::WireContacts;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{effective_modulus, effective_shear_modulus};
 use crate::law::contact::hertz::Hertz;
@@ -85,6 +85,6 @@ fn shape<N: NormalLaw, T: TangentialLaw>(
     let laws = Laws { normal, tangential, damping: spec.damping };
     match spec.shape {
         Shape::Sphere => Box::new(SphereContacts::new(laws, assembly)),
-        Shape::Capsule => Box::new(CapsuleContacts::new(laws, assembly)),
+        Shape::Wire => Box::new(WireContacts::new(laws, assembly)),
     }
 }

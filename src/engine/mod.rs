@@ -6,7 +6,6 @@
 
 pub mod bonds;
 pub mod bytes;
-pub mod capsules;
 pub mod contacts;
 pub mod crossing;
 pub mod grips;
@@ -23,6 +22,7 @@ pub mod straight;
 pub mod time_step;
 pub mod view;
 pub mod watch;
+pub mod wires;
 
 use crate::base::error::{Error, Result};
 use crate::law::bond::Moduli;

@@ -171,16 +171,16 @@ impl Neighbours {
 
     /// Extra reach for what touches between particle centres, until the next search [m].
     ///
-    /// The nearest point of a capsule's segment of length l lies nearer than its ends do: √(D² + l²/4) − D at touching
-    /// distance D, most for the thinnest pair. Spheres need none of that, but two segments that cross in the middle of
-    /// their gaps have their ends √½ l apart, and must be seen to cross ([`super::crossing`]).
+    /// Smooth wires that cross may meet half a bond from the nearest particle of either: √(D² + l²/2) − D at touching
+    /// distance D, most for the thinnest pair. Spheres need none of that, but two bonds that cross in the middle have
+    /// their ends √½ l apart, and must be seen to cross ([`super::crossing`]).
     fn needed_margin(&self) -> f64 {
         // Until it is time for the next search the affine strain grows by less than skin over reach, and particles move
         // by less than the skin beside it.
         let reach = 2.0 * self.least;
         let grown = self.longest * (1.0 + self.skin / (reach + self.skin)) + self.skin;
         match self.shape {
-            Shape::Capsule => reach.hypot(0.5 * grown.min(MOST_STRETCH * self.rest)) - reach,
+            Shape::Wire => reach.hypot(SQRT_HALF * grown.min(MOST_STRETCH * self.rest)) - reach,
             Shape::Sphere => (SQRT_HALF * self.longest.min(MOST_STRETCH * self.rest) - reach).max(0.0),
         }
     }
@@ -220,7 +220,7 @@ impl Neighbours {
         }
         if state.hold[i] != 0 && state.hold[i] == state.hold[j] {
             // Points between particles move where one of the two is free, so particles at the edge of a hold count.
-            let edge = self.shape == Shape::Capsule && (on_edge(state, i) || on_edge(state, j));
+            let edge = self.shape == Shape::Wire && (on_edge(state, i) || on_edge(state, j));
             if !edge {
                 return false;
             }
@@ -375,7 +375,7 @@ mod tests {
             [0.0, 0.6, 0.3].map(|x| DVec3::new(x, if x == 0.3 { 0.119 } else { 0.0 }, 0.0)).into_iter().collect();
         let state = State::new(&assembly, true);
         let found = |shape| Neighbours::new(&assembly, 0.01, shape).search(&state, Stretch::default()).pairs.clone();
-        assert!(found(Shape::Capsule).contains(&(0, 2)) && found(Shape::Capsule).contains(&(1, 2)));
+        assert!(found(Shape::Wire).contains(&(0, 2)) && found(Shape::Wire).contains(&(1, 2)));
     }
 
     #[test]

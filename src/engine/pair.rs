@@ -1,9 +1,9 @@
-//! A touching pair, or several at once: normal law, friction, damping, thinning. Shared by spheres and capsules.
+//! A touching pair, or several at once: normal law, friction, damping, thinning. Shared by spheres and smooth wires.
 
 use super::state::Partial;
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
-use crate::law::contact::NormalLaw;
+use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 
 /// The laws of a run.
@@ -18,7 +18,7 @@ pub struct Laws<N, T> {
 }
 
 /// Where and how two surfaces meet at this step.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Meeting<R = f64> {
     /// Unit normal from the first body to the second.
     pub normal: Triple<R>,
@@ -144,9 +144,20 @@ pub fn meet<N: NormalLaw, T: TangentialLaw, R: Real>(
     history: &mut History<N, T, R>,
     meeting: &Meeting<R>,
 ) -> (PairForce<R>, Given<R>) {
+    let answer = laws.normal.response(&mut history.normal, history.reduced_radius, meeting.overlap);
+    press(laws, history, meeting, &answer)
+}
+
+/// What follows from the normal law's answer: thinning, friction, damping.
+#[inline(always)]
+pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
+    laws: &Laws<N, T>,
+    history: &mut History<N, T, R>,
+    meeting: &Meeting<R>,
+    answer: &NormalResponse<R>,
+) -> (PairForce<R>, Given<R>) {
     let zero = meeting.overlap.like(0.0);
     let touches = meeting.overlap.above(zero);
-    let answer = laws.normal.response(&mut history.normal, history.reduced_radius, meeting.overlap);
     let mean = (history.normal_force + answer.force) * 0.5;
     let thinner = R::choose(touches & history.touching(), meeting.thinner, zero);
     let mut given = Given { plastic: answer.plastic_work, thinning: mean * thinner, friction: zero, damping: zero };

@@ -311,7 +311,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             let mass = reduced_mass(state.mass[i], state.mass[j]);
             let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
             let nodes = [i as u32, j as u32, 0];
-            out.contact(nodes, 0.0, k, [state.radius[i], state.radius[j]], viscosity);
+            out.contact(nodes, [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j]], viscosity);
         }
     }
 

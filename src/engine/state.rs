@@ -100,6 +100,8 @@ pub struct State {
     pub bond: BondActions,
     /// Whether each bond slot holds.
     pub whole: Vec<bool>,
+    /// Length without stress that the bond of each slot had when it broke [m]; 0 where none did.
+    pub parted: Vec<f64>,
     /// Current contact radii [m].
     pub radius: Vec<f64>,
     /// By how much each has shrunk in the last step [m].
@@ -142,6 +144,7 @@ impl State {
             contact_torque: Vectors::default(),
             bond: BondActions::new(n, turn),
             whole: (0..n).map(|i| a.is_bond(i)).collect(),
+            parted: vec![0.0; n],
             radius: a.radius.clone(),
             thinned: vec![0.0; n],
             radius0: a.radius.clone(),
@@ -288,18 +291,17 @@ pub struct Deepest {
     pub pair: [u32; 2],
     /// Normal force [N].
     pub force: f64,
-    /// Area πR*δ of the contact [m²].
+    /// Area of the contact [m²]: πR*δ of a circle, Σ √(2R*δ) ds of a patch along a wire.
     pub area: f64,
 }
 
 impl Deepest {
-    /// Takes in a touching pair with its overlap, the smaller radius [m], R* [m] and the normal force [N]. No division
-    /// unless it is the deepest so far: every contact comes by at every step.
+    /// Takes in a touching pair with its overlap, the smaller radius [m], the area [m²] and the normal force [N]. No
+    /// division unless it is the deepest so far: every contact comes by at every step.
     #[inline(always)]
-    pub fn meet(&mut self, pair: [u32; 2], overlap: f64, radius: f64, reduced_radius: f64, force: f64) {
+    pub fn meet(&mut self, pair: [u32; 2], overlap: f64, radius: f64, area: impl FnOnce() -> f64, force: f64) {
         if overlap > self.ratio * radius {
-            let area = std::f64::consts::PI * reduced_radius * overlap;
-            *self = Self { ratio: overlap / radius, pair, force, area };
+            *self = Self { ratio: overlap / radius, pair, force, area: area() };
         }
     }
 }

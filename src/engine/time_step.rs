@@ -15,8 +15,8 @@ use rayon::prelude::*;
 #[derive(Debug, Clone, Copy)]
 struct Element {
     nodes: [u32; 3],
-    /// Share of the second side's displacement that the third node carries [-].
-    third: f64,
+    /// Share of the element's displacement that each node carries [-].
+    weights: [f64; 3],
     /// Stiffness along the normal or axis, and across it [N/m].
     normal: f64,
     across: f64,
@@ -33,7 +33,7 @@ struct Element {
 impl Element {
     /// Share of the element's displacement that a node carries [-].
     fn weight(&self, node: usize) -> f64 {
-        [1.0, 1.0 - self.third, self.third][node]
+        self.weights[node]
     }
 
     /// Lever arm of a node [m].
@@ -137,7 +137,7 @@ impl Stiffness {
         let viscous = if turn { [axial.max(across), turning] } else { [axial, 0.0] };
         self.elements.push(Element {
             nodes: [slot as u32, slot as u32 + 1, 0],
-            third: 0.0,
+            weights: [1.0, 1.0, 0.0],
             normal: k.axial,
             across: shear,
             arm: [arm; 2],
@@ -148,14 +148,15 @@ impl Stiffness {
         });
     }
 
-    /// Adds a contact of the first node with the second and third, the latter with the share `third`; `arm` are the lever
+    /// Adds a contact of the first node with the second and third; `weights` are the shares of the point of contact that
+    /// each carries [-], `arm` the lever
     /// arms of friction on the two sides [m] (0 when nothing turns), `viscosity` the viscous coefficient along the normal
     /// [N s/m].
-    pub fn contact(&mut self, nodes: [u32; 3], third: f64, stiffness: [f64; 2], arm: [f64; 2], viscosity: f64) {
+    pub fn contact(&mut self, nodes: [u32; 3], weights: [f64; 3], stiffness: [f64; 2], arm: [f64; 2], viscosity: f64) {
         let [normal, across] = stiffness;
         self.elements.push(Element {
             nodes,
-            third,
+            weights,
             normal,
             across,
             arm,

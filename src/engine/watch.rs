@@ -338,7 +338,7 @@ impl Engine {
             format!("{a} has passed through {b} at z = {:.1} mm, {}", found.position.z * 1e3, self.when()),
             &format!(
                 "contacts were too soft or too sparse for what pressed on them: {}, raise contact.hardness_factor, lower \
-                 spacing to 1 or less, or use contact.shape = \"capsule\"",
+                 spacing to 1 or less, or use contact.shape = \"wire\"",
                 self.press_less()
             ),
         ))

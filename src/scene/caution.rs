@@ -49,7 +49,7 @@ fn gaps(spec: &Spec) -> Option<String> {
     (spheres && wires > 1 && spec.spacing > GAP).then(|| {
         format!(
             "with spacing = {} the spheres of a wire leave gaps through which another wire fits; lower it to 1, or use \
-             contact.shape = \"capsule\"",
+             contact.shape = \"wire\"",
             spec.spacing
         )
     })

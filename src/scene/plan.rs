@@ -155,7 +155,7 @@ fn contact_component(spec: &Spec, contacts: &(ContactPlan, String)) -> Component
     let law = spec.contact.as_ref().map(|c| {
         let shape = match c.shape {
             Shape::Sphere => "spheres",
-            Shape::Capsule => "capsules",
+            Shape::Wire => "smooth wires",
         };
         match c.normal {
             NormalSpec::Hertz => format!("; {shape}, hertz"),

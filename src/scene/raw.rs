@@ -220,7 +220,7 @@ pub struct RawContact {
     pub tangential: Option<RawTangential>,
     /// Coulomb friction coefficient [-]. Default 0.2; without effect when `tangential = "none"`.
     pub friction: Option<Scalar>,
-    /// Shape of a wire in contact: `sphere` (default), a chain of them, or `capsule`, a smooth wire.
+    /// Shape of a wire in contact: `sphere` (default), a chain of them, or `wire`, smooth.
     pub shape: Option<RawShape>,
     /// Thornton: limiting pressure over yield stress [-]. Default 2.8. Needs an elasto-plastic bond law.
     pub hardness_factor: Option<Scalar>,
@@ -265,8 +265,8 @@ pub enum RawTangential {
 pub enum RawShape {
     /// A chain of spheres.
     Sphere,
-    /// Swept segments.
-    Capsule,
+    /// Smooth.
+    Wire,
 }
 
 /// `[strand]`.

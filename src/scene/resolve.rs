@@ -81,7 +81,7 @@ fn refuse_gaps(at: &At, spacing: f64, contact: Option<&ContactSpec>) -> Result<(
     let what = format!("spheres {spacing} diameters apart leave gaps that another wire passes through");
     Err(at
         .key("spacing")
-        .error(what, format!("take a spacing below {GAP}, or smooth wires: contact.shape = \"capsule\"")))
+        .error(what, format!("take a spacing below {GAP}, or smooth wires: contact.shape = \"wire\"")))
 }
 
 fn scene_name(at: &At, raw: &RawScene, file: &str) -> Result<String> {
@@ -216,7 +216,7 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
         friction,
         shape: match raw.shape.unwrap_or(RawShape::Sphere) {
             RawShape::Sphere => Shape::Sphere,
-            RawShape::Capsule => Shape::Capsule,
+            RawShape::Wire => Shape::Wire,
         },
         damping,
         skin,

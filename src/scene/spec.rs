@@ -167,8 +167,8 @@ pub enum TangentialSpec {
 pub enum Shape {
     /// A chain of spheres.
     Sphere,
-    /// The swept segment between bonded neighbours.
-    Capsule,
+    /// Smooth: the centreline runs through the particles without corners.
+    Wire,
 }
 
 /// A strand: helical layers around the z axis, from z = 0 to z = length.

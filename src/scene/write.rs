@@ -177,7 +177,7 @@ fn contact(out: &mut Lines, contact: Option<&ContactSpec>) {
     out.entry("friction", number(contact.friction));
     let shape = match contact.shape {
         Shape::Sphere => "sphere",
-        Shape::Capsule => "capsule",
+        Shape::Wire => "wire",
     };
     out.entry("shape", text(shape));
     out.entry("damping", number(contact.damping));

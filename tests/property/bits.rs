@@ -86,7 +86,7 @@ fn wire() -> impl Strategy<Value = Vec<String>> {
             vec!["bond.law=elastic".into(), "bond.hardening=".into(), "contact.normal=hertz".into(), "contact.hardness_strain=".into(), rupture]
         }),
     ];
-    let rest = (6.0..20.0, 0.0..0.3, prop_oneof![Just("sphere"), Just("capsule")], 0.6..1.5, 2.0..12.0);
+    let rest = (6.0..20.0, 0.0..0.3, prop_oneof![Just("sphere"), Just("wire")], 0.6..1.5, 2.0..12.0);
     (law, rest).prop_map(|(mut set, (length, damping, shape, spacing, speed))| {
         set.extend([
             format!("wire.0.to=[\"0 mm\", \"0 mm\", \"{length} mm\"]"),
@@ -123,7 +123,7 @@ proptest! {
     #[test]
     fn threads_do_not_change_a_bit_of_any_strand(
         wires in 4..8usize,
-        shape in prop_oneof![Just("sphere"), Just("capsule")],
+        shape in prop_oneof![Just("sphere"), Just("wire")],
         tangential in prop_oneof![Just("mindlin"), Just("mindlin-deresiewicz")],
         elastic in any::<bool>(),
         pressure in 30.0..120.0,
@@ -190,7 +190,7 @@ fn an_elastic_bar_needs_no_rotations() {
 /// fixed, because pairs of the list that are about to meet limit it.
 #[test]
 fn a_skin_changes_nothing_but_the_number_of_searches() {
-    for shape in ["sphere", "capsule"] {
+    for shape in ["sphere", "wire"] {
         let run = |skin: &str| {
             let (skin, shape) = (format!("contact.skin={skin}"), format!("contact.shape={shape}"));
             let mut engine = engine(

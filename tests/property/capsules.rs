@@ -52,7 +52,7 @@ fn slide(shape: &str) -> Vec<DVec3> {
 
 #[test]
 fn a_smooth_wire_slides_freely_and_a_chain_of_spheres_does_not() {
-    let smooth = slide("capsule");
+    let smooth = slide("wire");
     let press = smooth[0].x;
     assert!(press > 0.0);
     for f in &smooth {
@@ -82,7 +82,7 @@ law = "elastic"
 [contact]
 normal = "hertz"
 tangential = "none"
-shape = "capsule"
+shape = "wire"
 [[wire]]
 diameter = "0.4 mm"
 from = ["0 mm", "0 mm", "0 mm"]
@@ -144,7 +144,7 @@ law = "elastic"
 [contact]
 normal = "hertz"
 tangential = "none"
-shape = "capsule"
+shape = "wire"
 [[wire]]
 diameter = "0.4 mm"
 from = ["0 mm", "0 mm", "0 mm"]
@@ -174,7 +174,7 @@ time = "1 ms"
 #[test]
 fn a_strand_of_three_layers_keeps_its_ledger() {
     let set = [
-        "contact.shape=capsule",
+        "contact.shape=wire",
         "strand.layer.0.wires=5",
         "strand.layer.0.pitch=39 mm",
         "strand.layer.1.name=middle",

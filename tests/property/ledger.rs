@@ -17,7 +17,7 @@ fn greatest(engine: &mut Engine, steps: u64) -> f64 {
 
 #[test]
 fn a_strand_pulled_past_rupture() {
-    for shape in ["sphere", "capsule"] {
+    for shape in ["sphere", "wire"] {
         for tangential in ["mindlin", "mindlin-deresiewicz"] {
             let (shape, tangential) = (format!("contact.shape={shape}"), format!("contact.tangential={tangential}"));
             let mut engine = engine(STRAND, &[&shape, &tangential]);
@@ -33,7 +33,7 @@ fn a_strand_pulled_past_rupture() {
 /// With a spacing below a diameter, neighbours overlap, and do so still when their bond has broken.
 #[test]
 fn rupture_between_overlapping_particles() {
-    for shape in ["sphere", "capsule"] {
+    for shape in ["sphere", "wire"] {
         let shape = format!("contact.shape={shape}");
         let mut engine = engine(STRAND, &[&shape, "spacing=0.5"]);
         let worst = greatest(&mut engine, 4000);
@@ -98,7 +98,7 @@ fn case() -> impl Strategy<Value = Case> {
     let shape = (4..8usize, prop_oneof![Just(1.0), Just(0.7)], 8.0..30.0);
     let laws = (
         prop_oneof![Just("elasto-plastic"), Just("elastic")],
-        prop_oneof![Just("sphere"), Just("capsule")],
+        prop_oneof![Just("sphere"), Just("wire")],
         prop_oneof![Just("thornton"), Just("hertz")],
         prop_oneof![Just("mindlin"), Just("mindlin-deresiewicz"), Just("none")],
     );

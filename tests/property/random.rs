@@ -42,7 +42,7 @@ fn body() -> impl Strategy<Value = Body> {
 fn pile() -> impl Strategy<Value = Pile> {
     let laws = (
         prop_oneof![Just("elasto-plastic"), Just("elastic")],
-        prop_oneof![Just("sphere"), Just("capsule")],
+        prop_oneof![Just("sphere"), Just("wire")],
         prop_oneof![Just("thornton"), Just("hertz")],
         prop_oneof![2 => Just("mindlin"), 1 => Just("mindlin-deresiewicz")],
     );

@@ -214,7 +214,8 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         for k in 0..R::COUNT {
             let pair = [(i + k) as u32, (j + k) as u32];
             let (reduced, force) = (history.reduced_radius.at(k), history.normal_force.at(k));
-            self.deepest.meet(pair, deep.at(k), least.at(k), reduced, force);
+            let area = || std::f64::consts::PI * reduced * deep.at(k);
+            self.deepest.meet(pair, deep.at(k), least.at(k), area, force);
         }
     }
 

@@ -1,5 +1,6 @@
 //! Elastic contact of two spheres: F = (4/3) E* √R* δ^(3/2) (Hertz 1882; Johnson, Contact Mechanics, eq. 4.23).
 
+use super::line::{LineResponse, Stretch, respond};
 use super::{NormalLaw, NormalResponse};
 use crate::base::lanes::Real;
 
@@ -46,6 +47,15 @@ impl NormalLaw for Hertz {
     fn response<R: Real>(&self, (): &mut (), reduced_radius: R, overlap: R) -> NormalResponse<R> {
         let overlap = overlap.greater(overlap.like(0.0));
         hertzian(self.effective_modulus, reduced_radius * overlap, overlap)
+    }
+
+    #[inline(always)]
+    fn line_response(&self, (): &mut (), stretch: &Stretch) -> LineResponse {
+        respond(stretch, f64::INFINITY, &mut 0.0)
+    }
+
+    fn effective_modulus(&self) -> f64 {
+        self.effective_modulus
     }
 
     #[inline(always)]

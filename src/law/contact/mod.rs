@@ -4,13 +4,17 @@
 //! | --- | --- | --- |
 //! | `hertz` | F = 4/3 E* √R* δ^(3/2) | Hertz 1882 |
 //! | `thornton` | Hertz to p_y, then F_y + π p_y R* (δ − δ_y); unloading with R_p | Thornton 1997 |
+//!
+//! Both also answer for a stretch of a smooth wire, by force per length: [`line`].
 
 pub mod constants;
 pub mod geometry;
 pub mod hertz;
+pub mod line;
 pub mod thornton;
 
 use crate::base::lanes::Real;
+use line::{LineResponse, Stretch};
 
 /// What a normal law answers for one contact, or for several.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -44,6 +48,12 @@ pub trait NormalLaw: Copy + Send + Sync + 'static {
 
     /// Response at overlap `overlap` [m] (> 0 or not: no force at ≤ 0) for reduced radius `reduced_radius` R* [m].
     fn response<R: Real>(&self, state: &mut Self::State<R>, reduced_radius: R, overlap: R) -> NormalResponse<R>;
+
+    /// Response of a stretch of a smooth wire against another; see [`line`].
+    fn line_response(&self, state: &mut Self::State<f64>, stretch: &Stretch) -> LineResponse;
+
+    /// Effective modulus E* of the pair [Pa].
+    fn effective_modulus(&self) -> f64;
 
     /// Energy that would come back on unloading from `overlap` [J].
     fn elastic_energy(&self, state: &Self::State<f64>, reduced_radius: f64, overlap: f64) -> f64;

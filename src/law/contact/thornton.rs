@@ -12,6 +12,7 @@
 use std::f64::consts::PI;
 
 use super::hertz::{hertzian, hertzian_energy};
+use super::line::{LineResponse, Stretch, respond};
 use super::{NormalLaw, NormalResponse};
 use crate::base::lanes::{Mask, Real};
 
@@ -155,6 +156,15 @@ impl NormalLaw for Thornton {
             plastic_work: R::choose(yields, plastic_work, zero),
             ..answer
         }
+    }
+
+    #[inline(always)]
+    fn line_response(&self, state: &mut ThorntonState, stretch: &Stretch) -> LineResponse {
+        respond(stretch, self.limiting_pressure, &mut state.greatest_overlap)
+    }
+
+    fn effective_modulus(&self) -> f64 {
+        self.effective_modulus
     }
 
     #[inline(always)]

@@ -114,7 +114,7 @@ pub const KNOBS: &[Knob] = &[
     Knob {
         name: "shape",
         key: "contact.shape",
-        trades: "spheres or smooth wires (capsules), also with fewer particles",
+        trades: "spheres or smooth wires, also with fewer particles",
         ladder: shape,
     },
     Knob {
@@ -292,15 +292,15 @@ fn shape(spec: &Spec) -> Ladders {
         level.value.shown = format!("{shape}, spacing {spacing}");
         level
     };
-    let coarse = [1.5, 2.0, 3.0].into_iter().map(|spacing| with_spacing("capsule", spacing));
+    let coarse = [1.5, 2.0, 3.0].into_iter().map(|spacing| with_spacing("wire", spacing));
     let (now, other) = match contact.shape {
-        Shape::Sphere => ("sphere", word("contact.shape", "capsule", 1.0)),
-        Shape::Capsule => ("capsule", with_spacing("sphere", 1.0)),
+        Shape::Sphere => ("sphere", word("contact.shape", "wire", 1.0)),
+        Shape::Wire => ("wire", with_spacing("sphere", 1.0)),
     };
     // Coarse capsules in a scene of capsules belong to its spacing.
     let levels = match contact.shape {
         Shape::Sphere => std::iter::once(other).chain(coarse).collect(),
-        Shape::Capsule => vec![other],
+        Shape::Wire => vec![other],
     };
     Ok(Ladder { role: Role::Model, base: Value { number: None, shown: now.into() }, levels })
 }
@@ -417,7 +417,7 @@ mod tests {
     fn every_level_is_a_scene_of_its_own() {
         for (name, options) in [
             ("ka4", &[][..]),
-            ("strand-1x7", &["contact.shape=capsule", "time.inertia_scale=4", "bond.rupture.weibull_modulus=inf"]),
+            ("strand-1x7", &["contact.shape=wire", "time.inertia_scale=4", "bond.rupture.weibull_modulus=inf"]),
             ("single-wire", &["bond.damping={ axial = 0.1, bending = 0.05 }"]),
             ("single-wire", &["bond.damping=0"]),
         ] {
@@ -449,9 +449,9 @@ mod tests {
     fn spacing_means_what_the_scene_makes_it_mean() {
         let role = |name: &str, options: &[&str]| spacing(&spec(name, options)).unwrap().role;
         assert_eq!(role("ka4", &[]), Role::Model);
-        assert_eq!(role("ka4", &["contact.shape=capsule"]), Role::Neutral);
+        assert_eq!(role("ka4", &["contact.shape=wire"]), Role::Neutral);
         let even = "bond.rupture.weibull_modulus=inf";
-        assert_eq!(role("ka4", &["contact.shape=capsule", even]), Role::Refines);
+        assert_eq!(role("ka4", &["contact.shape=wire", even]), Role::Refines);
     }
 
     #[test]

@@ -144,7 +144,7 @@ impl Seen {
         let interlock = match shape {
             // A crest in the saddle between two spheres, as far apart as they are now.
             Shape::Sphere => 1.0 - (1.0 - 0.25 * self.widest().min(2.0).powi(2)).sqrt(),
-            Shape::Capsule => 0.0,
+            Shape::Wire => 0.0,
         };
         let told = self.notices.iter().any(|notice| notice.contains("of the radius deep"));
         let crushed = if told { 0.5 } else { GREATEST_OVERLAP + interlock };

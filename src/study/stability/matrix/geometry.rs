@@ -11,7 +11,7 @@ pub fn cases() -> Vec<Case> {
 
 fn spacing() -> Vec<Case> {
     let mut cases = Vec::new();
-    for shape in ["sphere", "capsule"] {
+    for shape in ["sphere", "wire"] {
         for value in [0.25, 0.5, 2.0, 4.0] {
             let case = Case::new(
                 format!("spacing-{value}d-{shape}"),
@@ -21,7 +21,7 @@ fn spacing() -> Vec<Case> {
             .set([format!("spacing={value}"), format!("contact.shape={shape}")])
             .quick(["stop.strain=2 %"]);
             cases.push(match shape {
-                "sphere" if value >= 2.0 => case.told(&["gaps", "capsule"]),
+                "sphere" if value >= 2.0 => case.told(&["gaps", "wire"]),
                 _ => case.gives(pulled_strand),
             });
         }
@@ -76,7 +76,7 @@ fn numbers() -> Vec<Case> {
         Case::new("wires-1", "one wire", WIRE).gives(pulled_wire),
         Case::new("wires-2", "two wires around each other", SEVEN).set([two]).gives(pulled_strand),
         Case::new("wires-7", "one and six wires with capsule contacts", SEVEN)
-            .set(["contact.shape=capsule"])
+            .set(["contact.shape=wire"])
             .gives(pulled_strand),
         Case::new("wires-34", "the KA4 strand, 12 mm long", ka4).set(short).gives(pulled_strand),
         Case::new("wires-200", "200 wires in nine layers", SEVEN).set([many]).gives(pulled_layers),

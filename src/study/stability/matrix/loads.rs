@@ -15,7 +15,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 fn rest() -> Vec<Case> {
-    ["sphere", "capsule"]
+    ["sphere", "wire"]
         .map(|shape| {
             Case::new(
                 format!("rest-{shape}"),
@@ -102,7 +102,7 @@ fn compression() -> Vec<Case> {
         Case::new("compressed-capsules", "the same with capsule contacts", SEVEN).set([
             "grip.speed=-2 m/s",
             "stop.strain=20 %",
-            "contact.shape=capsule",
+            "contact.shape=wire",
         ]),
     ]
 }
@@ -123,14 +123,14 @@ fn torsion() -> Vec<Case> {
             SEVEN,
         )
         .set(ten)
-        .told(&["passed through", "capsule"]),
+        .told(&["passed through", "wire"]),
         Case::new("torsion-unlay", "ten turns of seven wires against their lay, chains of spheres", SEVEN)
             .set(ten)
             .set(["grip.rotation_rate=-5000 rad/s"])
-            .told(&["passed through", "capsule"]),
+            .told(&["passed through", "wire"]),
         Case::new("torsion-smooth", "two turns of seven smooth wires", SEVEN)
             .set(ten)
-            .set(["contact.shape=capsule", "stop.time=2.513 ms"])
+            .set(["contact.shape=wire", "stop.time=2.513 ms"])
             .warns(DEEP),
     ]
 }
@@ -143,7 +143,7 @@ fn breaking() -> Vec<Case> {
         Case::new("broken-together", "every bond breaks at one plastic strain, without scatter", SEVEN)
             .set([at("2 %"), "stop.strain=20 %".into()]),
     ];
-    for shape in ["sphere", "capsule"] {
+    for shape in ["sphere", "wire"] {
         cases.push(
             Case::new(
                 format!("after-the-break-{shape}"),

@@ -65,7 +65,7 @@ fn yields() -> Vec<Case> {
 
 fn friction() -> Vec<Case> {
     let mut cases = Vec::new();
-    for shape in ["sphere", "capsule"] {
+    for shape in ["sphere", "wire"] {
         for value in [0.0, 0.2, 1.0, 10.0] {
             let case = Case::new(
                 format!("friction-{value}-{shape}"),

@@ -56,7 +56,7 @@ pub fn cases() -> Vec<Case> {
                 .critical(Critical::DISSIPATIVE),
         );
     }
-    for shape in ["sphere", "capsule"] {
+    for shape in ["sphere", "wire"] {
         cases.push(
             Case::new(
                 format!("step-crossing-{shape}"),

@@ -1,0 +1,261 @@
+//! Contact of smooth wires along a stretch of their length: force per length, integrated over the part that overlaps.
+//!
+//! Two round wires near their closest points have the gap g(s) = g₀ + κ s²/2 along one of them, κ = sin²θ/(r₁ + r₂) for
+//! straight wires that cross at θ, κ = 0 where they run side by side. With a force per length f = k δ(s), the whole
+//! patch gives F = (4/3) k √(2/κ) δ₀^(3/2); that is Hertz's ellipse, (4/3) E* √R_e δ₀^(3/2) F₂^(−3/2), when
+//!
+//! k(τ) = ½ E* √(sin τ) F₂^(−3/2), sin²τ = 4 R* κ, R* = r₁r₂/(r₁ + r₂)
+//!
+//! (Johnson, *Contact Mechanics*, 1985, equations 4.18, 4.25 and 4.26, where cos τ = (B − A)/(B + A); R_e = ½ (AB)^(−½)).
+//! A stretch of wire integrates over its own part of the patch only, so the result does not depend on how many stretches
+//! share the patch: the contact of a point and of a line are one law.
+//!
+//! *Convention for lines.* The approach of two parallel cylinders grows with the logarithm of the length that is looked
+//! at, δ = f/(πE*) (2 ln(4r/b) − 1) for centres of wires of radius r and a half-width b (Johnson, section 5.6). Hertz's k
+//! falls with the logarithm of the patch's length; below τ = 2° it passes to the line's k = 0.3 E*, which is the value at
+//! b/r = 0.013 (0.26 E* at 0.005, 0.33 E* at 0.02).
+//!
+//! *Limiting pressure.* Thornton's law (see [`super::thornton`]) for the whole patch, F' = πp_yR_e beyond
+//! δ_y = (πp_y/2E*)²R_e for a circle, is the integral of the force per length
+//!
+//! f = k δ for δ ≤ δ_y, f = (2k/π) [δ asin √(δ_y/δ) + √(δ_y(δ − δ_y))] beyond, δ_y = π² p_y² R*/(8 k²)
+//!
+//! (Abel's inversion; the limit is p_y times the width √(2R*δ), whatever the angle). Each place keeps the dent
+//! δ_p = δ_m − f_m/k that its greatest overlap δ_m has left, and unloads along f = k (δ − δ_p). The greatest overlap is
+//! kept for a stretch as a whole, as that of its deepest place.
+
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
+
+/// Stiffness per length of a line contact over E* [-]; see the convention above.
+pub const LINE: f64 = 0.3;
+/// sin τ below which two wires are parallel, and above which Hertz's ellipse holds [-]: 1° and 2°.
+const PARALLEL: [f64; 2] = [0.017_452_406, 0.034_899_497];
+
+/// k/E* over sin τ; tabulated once, because it takes elliptic integrals.
+#[derive(Debug, Clone)]
+pub struct LineStiffness {
+    /// At sin τ = i/(len − 1) [-].
+    table: Vec<f64>,
+}
+
+impl Default for LineStiffness {
+    fn default() -> Self {
+        const INTERVALS: usize = 1024;
+        let at = |i: usize| hertz_stiffness((i as f64 / INTERVALS as f64).max(1e-3));
+        Self { table: (0..=INTERVALS).map(at).collect() }
+    }
+}
+
+impl LineStiffness {
+    /// k/E* [-] for reduced radius R* [m] where the gap has the curvature κ [1/m].
+    #[inline(always)]
+    pub fn at(&self, reduced_radius: f64, curvature: f64) -> f64 {
+        let sine = (4.0 * reduced_radius * curvature).clamp(0.0, 1.0).sqrt();
+        if sine <= PARALLEL[0] {
+            return LINE;
+        }
+        let place = sine * (self.table.len() - 1) as f64;
+        let i = (place as usize).min(self.table.len() - 2);
+        let hertz = self.table[i] + (self.table[i + 1] - self.table[i]) * (place - i as f64);
+        let t = ((sine - PARALLEL[0]) / (PARALLEL[1] - PARALLEL[0])).min(1.0);
+        LINE + (hertz - LINE) * t * t * (3.0 - 2.0 * t)
+    }
+}
+
+/// ½ √(sin τ) F₂^(−3/2) [-].
+fn hertz_stiffness(sine: f64) -> f64 {
+    // F₂ = (2/π) √(b/a) K/F₁ and F₁³ = 4/(πe²) (b/a)^(3/2) √{[(a/b)²E − K][K − E]}.
+    let parts = |slim: f64| {
+        let [k, e] = complete_elliptic(slim);
+        (k, e / (slim * slim) - k, k - e)
+    };
+    let cosine = (1.0 - sine * sine).max(0.0).sqrt();
+    let ratio = (1.0 + cosine) / (1.0 - cosine);
+    if ratio <= 1.0 + 1e-9 {
+        return 0.5;
+    }
+    let (mut low, mut high) = (1e-9f64, 1.0 - 1e-9);
+    for _ in 0..100 {
+        let slim = (low * high).sqrt();
+        let (_, above, below) = parts(slim);
+        if above / below > ratio { low = slim } else { high = slim }
+    }
+    let slim = (low * high).sqrt();
+    let (k, above, below) = parts(slim);
+    let f1 = (4.0 / (PI * (1.0 - slim * slim)) * slim.powf(1.5) * (above * below).sqrt()).cbrt();
+    0.5 * sine.sqrt() * (FRAC_2_PI * slim.sqrt() * k / f1).powf(-1.5)
+}
+
+/// Complete elliptic integrals K and E of modulus √(1 − slim²) by the arithmetic-geometric mean (DLMF 19.8).
+fn complete_elliptic(slim: f64) -> [f64; 2] {
+    let (mut a, mut b) = (1.0, slim);
+    let mut sum = 0.5 * (1.0 - slim * slim);
+    let mut power = 1.0;
+    for _ in 0..40 {
+        let c = 0.5 * (a - b);
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+        sum += power * c * c;
+        power *= 2.0;
+        if c < 1e-17 {
+            break;
+        }
+    }
+    let k = FRAC_PI_2 / a;
+    [k, k * (1.0 - sum)]
+}
+
+/// How a stretch of one wire lies against the other: overlap δ(x) = δ₀ + m x − κ x²/2 around its deepest place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Reduced radius R* of the two circular sections [m].
+    pub reduced_radius: f64,
+    /// Stiffness per length k [Pa].
+    pub stiffness: f64,
+    /// Overlap at the deepest place δ₀ [m].
+    pub overlap: f64,
+    /// Slope m of the overlap there [-]; not 0 at an end only.
+    pub slope: f64,
+    /// Curvature κ of the gap [1/m].
+    pub curvature: f64,
+    /// Where the stretch begins and ends, from the deepest place [m].
+    pub ends: [f64; 2],
+}
+
+/// What a law answers for a stretch.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LineResponse {
+    /// Repulsive force, never negative [N].
+    pub force: f64,
+    /// Elastic stiffness: k times the length that pushes [N/m].
+    pub stiffness: f64,
+    /// Where the force acts, from the deepest place [m].
+    pub centre: f64,
+    /// Area over which it acts [m²], in the geometric sense of Thornton's law: Σ √(2R*δ) ds.
+    pub area: f64,
+    /// Elastic energy [J].
+    pub energy: f64,
+    /// Plastic work since the last call [J].
+    pub plastic_work: f64,
+}
+
+/// Nodes and weights of the Gauss-Legendre rule with four points on [−1, 1].
+const GAUSS: [[f64; 2]; 4] = [
+    [-0.861_136_311_594_052_6, 0.347_854_845_137_453_85],
+    [-0.339_981_043_584_856_26, 0.652_145_154_862_546_1],
+    [0.339_981_043_584_856_26, 0.652_145_154_862_546_1],
+    [0.861_136_311_594_052_6, 0.347_854_845_137_453_85],
+];
+
+/// The last two coefficients of the force per length beyond yield, 2√x − 1/(3√x) − x^(−3/2)/20 − c x^(−5/2) − d x^(−9/2):
+/// the first three are those of its series, these two make force and slope continuous at yield. Within 0.8 % of the
+/// closed form everywhere.
+const BEYOND: [f64; 2] = [-0.061_356_565_352_632_15, 0.107_226_905_224_402_29];
+
+/// Force per length over k δ_y at overlap x δ_y on the limit [-].
+#[inline(always)]
+fn limit(x: f64) -> f64 {
+    if x <= 1.0 {
+        return x;
+    }
+    let (root, y) = (x.sqrt(), 1.0 / x);
+    let [c, d] = BEYOND;
+    FRAC_2_PI * root * (2.0 - y * (1.0 / 3.0 + y * (0.05 + y * (c + y * y * d))))
+}
+
+/// Plastic work per length over k δ_y² done on the way to x along the limit [-]: ∫ f dδ − f²/(2k).
+#[inline(always)]
+fn plastic_work(x: f64) -> f64 {
+    if x <= 1.0 {
+        return 0.0;
+    }
+    let [c, d] = BEYOND;
+    let integral = |x: f64| {
+        let (root, y) = (x.sqrt(), 1.0 / x);
+        FRAC_2_PI * root * (4.0 / 3.0 * x - 2.0 / 3.0 + y * (0.1 + y * (2.0 / 3.0 * c + y * y * (2.0 / 7.0) * d)))
+    };
+    let force = limit(x);
+    0.5 + integral(x) - integral(1.0) - 0.5 * force * force
+}
+
+/// The overlap over δ_y at which the limit is `force` k δ_y [-], a little below it: from f ≈ (2/π)(2√x − 1/(3√x)).
+#[inline(always)]
+fn limit_reached(force: f64) -> f64 {
+    if force <= 1.0 {
+        return force;
+    }
+    let (slope, fall) = (2.0 * FRAC_2_PI, FRAC_2_PI / 3.0);
+    let root = (force + (force * force + 4.0 * slope * fall).sqrt()) / (2.0 * slope);
+    (root * root).max(1.0)
+}
+
+/// Response of a stretch whose deepest place has been as deep as `greatest` [m] (updated) under a limiting pressure
+/// `pressure` [Pa], infinite for elastic wires.
+#[inline(always)]
+pub fn respond(stretch: &Stretch, pressure: f64, greatest: &mut f64) -> LineResponse {
+    let Stretch { reduced_radius, stiffness: k, overlap, slope, curvature, ends } = *stretch;
+    let ratio = PI * pressure / k;
+    let yield_overlap = 0.125 * ratio * ratio * reduced_radius;
+    let before = *greatest;
+    let elastic = yield_overlap.is_infinite();
+    if !elastic {
+        *greatest = before.max(overlap);
+    }
+    // What the stretch has come back from its deepest.
+    let back = if elastic { 0.0 } else { *greatest - overlap };
+    let inverse = if elastic { 0.0 } else { 1.0 / yield_overlap };
+    // Places that lie in their dent do not push.
+    let dent = (limit_reached(back * inverse) * yield_overlap.min(f64::MAX) - back).max(0.0);
+    let above = overlap - dent;
+    if above <= 0.0 {
+        return LineResponse::default();
+    }
+    let [from, to] = edges(above, slope, curvature);
+    let (from, to) = (from.max(ends[0]), to.min(ends[1]));
+    let half = 0.5 * (to - from);
+    if half <= 0.0 {
+        return LineResponse::default();
+    }
+    let middle = 0.5 * (from + to);
+    let loads = overlap > before;
+    let mut sum = LineResponse { stiffness: 2.0 * half * k, ..LineResponse::default() };
+    for [node, weight] in GAUSS {
+        let x = middle + half * node;
+        let weight = half * weight;
+        let depth = (overlap + x * (slope - 0.5 * curvature * x)).max(0.0);
+        let force = if elastic {
+            k * depth
+        } else {
+            let deepest = (depth + back) * inverse;
+            if loads {
+                let earlier = deepest - (overlap - before.max(0.0)) * inverse;
+                let unit = k * yield_overlap * yield_overlap;
+                sum.plastic_work += weight * unit * (plastic_work(deepest) - plastic_work(earlier));
+            }
+            k * (limit(deepest) * yield_overlap - back).max(0.0)
+        };
+        sum.force += weight * force;
+        sum.centre += weight * force * x;
+        sum.energy += weight * 0.5 * force * force / k;
+        sum.area += weight * (2.0 * reduced_radius * depth).sqrt();
+    }
+    sum.centre = if sum.force > 0.0 { sum.centre / sum.force } else { 0.0 };
+    sum
+}
+
+/// Where D + m x − κ x²/2 becomes 0 to either side of x = 0, for D > 0; infinite where it never does.
+#[inline(always)]
+fn edges(depth: f64, slope: f64, curvature: f64) -> [f64; 2] {
+    let square = slope * slope + 2.0 * curvature * depth;
+    if square < 0.0 {
+        return [f64::NEG_INFINITY, f64::INFINITY];
+    }
+    let root = square.sqrt();
+    let edge = |divisor: f64| if divisor > 0.0 { 2.0 * depth / divisor } else { f64::INFINITY };
+    [-edge(root + slope), edge(root - slope)]
+}
+
+/// Greatest length of a patch of depth `overlap` [m] within a stretch of `length` [m], where the gap has the curvature
+/// `curvature` [1/m].
+pub fn patch_length(overlap: f64, curvature: f64, length: f64) -> f64 {
+    if curvature > 0.0 { length.min(2.0 * (2.0 * overlap.max(0.0) / curvature).sqrt()) } else { length }
+}
