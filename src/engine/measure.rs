@@ -1,59 +1,108 @@
 //! What is measured: nominal stress, stresses per wire and layer, energies, snapshots for those who draw and record.
 
 use super::Engine;
+use super::bonds::Bonds;
 use super::grips::{Holds, Reaction};
 use super::view::{BondState, Energy, RunInfo, Sample, Snapshot, WireInfo};
 use crate::reference::helix;
 use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, RuptureCriterion, Spec};
 use crate::strand::assembly::Assembly;
+use std::ops::Range;
 
-/// Running means of the grip forces, and who is broken.
+/// Running means of what a row of the curve says, and who is broken.
+///
+/// Everything goes through one causal filter, ẏ = (x − y)/T: strain, grip forces, torque and the forces in the wires. A
+/// mean lags behind what it is the mean of, by T when that grows evenly. Since strain lags as stress does, the curve keeps
+/// its phase: modulus and yield can be read from it at any speed. T is a quarter of an elastic wave's way along the body,
+/// L/(4c): long enough to take the worst of its ringing out, short against everything that is measured.
 pub struct Measures {
-    /// Time constant of the running means [s]: a quarter of an elastic wave's way along the body, long enough to
-    /// take its ringing out, short against everything that is measured.
+    /// T [s].
     window: f64,
     area: f64,
-    mean: Reaction,
+    mean: Mean,
     seen: bool,
-    /// Bonds in the middle of each wire, whose mean is the wire's stress.
-    middle: Vec<Vec<usize>>,
+    /// Bonds in the middle of each wire, whose mean is the wire's stress; wire by wire.
+    middle: Vec<usize>,
+    /// Those of each wire among them.
+    of_wire: Vec<Range<usize>>,
+    /// Running mean of the axial force of each [N].
+    force: Vec<f64>,
     broken: Vec<bool>,
+}
+
+/// What the grips do to the body.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    strain: f64,
+    reaction: Reaction,
 }
 
 impl Measures {
     /// For `assembly` between `holds`.
     pub fn new(spec: &Spec, assembly: &Assembly, holds: &Holds) -> Self {
-        let wave = (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt();
         let gauge = holds.stretch.gauge;
+        let (mut slots, mut of_wire) = (Vec::new(), Vec::new());
+        for w in 0..assembly.wires.len() {
+            let first = slots.len();
+            slots.extend(middle(assembly, w, gauge));
+            of_wire.push(first..slots.len());
+        }
         Self {
-            window: 0.25 * assembly.length / wave,
+            window: 0.25 * passage(spec, assembly),
             area: assembly.area,
-            mean: Reaction::default(),
+            mean: Mean::default(),
             seen: false,
-            middle: (0..assembly.wires.len()).map(|w| middle(assembly, w, gauge)).collect(),
+            force: vec![0.0; slots.len()],
+            middle: slots,
+            of_wire,
             broken: vec![false; assembly.wires.len()],
         }
     }
 
-    /// Takes in the reactions of a step.
-    pub fn grip(&mut self, now: &Reaction, dt: f64) {
+    /// Takes in a step of `dt` [s]: the grips' reactions, the strain [-] and the bonds' forces, all at one instant.
+    pub fn take(&mut self, strain: f64, now: &Reaction, bonds: Option<&dyn Bonds>, dt: f64) {
         let share = if self.seen && self.window > 0.0 { (dt / self.window).min(1.0) } else { 1.0 };
         self.seen = true;
         let blend = |mean: &mut f64, now: f64| *mean += (now - *mean) * share;
-        blend(&mut self.mean.force[0], now.force[0]);
-        blend(&mut self.mean.force[1], now.force[1]);
-        blend(&mut self.mean.torque, now.torque);
+        let reaction = &mut self.mean.reaction;
+        blend(&mut self.mean.strain, strain);
+        blend(&mut reaction.force[0], now.force[0]);
+        blend(&mut reaction.force[1], now.force[1]);
+        blend(&mut reaction.torque, now.torque);
+        if let Some(bonds) = bonds {
+            for (mean, slot) in self.force.iter_mut().zip(&self.middle) {
+                blend(mean, bonds.axial_force(*slot));
+            }
+        }
+    }
+
+    /// Strain of the body: grip displacement over the length that is free between the grips [-].
+    pub fn strain(&self) -> f64 {
+        self.mean.strain
     }
 
     /// Nominal stress: upper grip force over the copper area [Pa].
     pub fn stress(&self) -> f64 {
-        if self.area > 0.0 { self.mean.force[1] / self.area } else { 0.0 }
+        if self.area > 0.0 { self.mean.reaction.force[1] / self.area } else { 0.0 }
+    }
+
+    /// Axial force of a wire [N]: mean over the bonds in the middle of the gauge, in which a broken one counts with zero
+    /// from the moment at which it broke, whatever it carried before.
+    fn wire_force(&self, wire: usize, whole: &[bool]) -> f64 {
+        let range = self.of_wire[wire].clone();
+        let count = range.len().max(1) as f64;
+        range.filter(|i| whole[self.middle[*i]]).map(|i| self.force[i]).sum::<f64>() / count
     }
 
     /// Marks a wire as broken; true when it was whole.
     pub fn mark_broken(&mut self, wire: usize) -> bool {
         !std::mem::replace(&mut self.broken[wire], true)
     }
+}
+
+/// Time in which an elastic wave runs along the body [s].
+fn passage(spec: &Spec, assembly: &Assembly) -> f64 {
+    assembly.length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt()
 }
 
 /// Bonds of wire `w` within a fortieth of the gauge around its middle, at least one.
@@ -92,8 +141,8 @@ impl Engine {
             time: self.state.time,
             strain: self.strain(),
             stress: self.stress(),
-            grip_force: self.measures.mean.force,
-            torque: self.measures.mean.torque,
+            grip_force: self.measures.mean.reaction.force,
+            torque: self.measures.mean.reaction.torque,
             layer_stress,
             wire_stress,
             wires_broken: self.measures.broken.iter().filter(|b| **b).count(),
@@ -104,15 +153,10 @@ impl Engine {
         }
     }
 
-    /// Nominal axial stress of a wire at mid-gauge [Pa].
-    fn wire_stress(&self, wire: usize) -> f64 {
-        let Some(bonds) = &self.bonds else { return 0.0 };
-        let slots = &self.measures.middle[wire];
-        if slots.is_empty() {
-            return 0.0;
-        }
-        let force: f64 = slots.iter().map(|s| bonds.axial_force(*s)).sum();
-        force / slots.len() as f64 / self.assembly.wires[wire].area()
+    /// Nominal axial stress of a wire at mid-gauge [Pa]: the mean over its bonds in the middle twentieth of the gauge, of
+    /// which those that are broken carry nothing. A wire that broke there reports what its pieces still carry by friction.
+    pub fn wire_stress(&self, wire: usize) -> f64 {
+        self.measures.wire_force(wire, &self.state.whole) / self.assembly.wires[wire].area()
     }
 
     /// The energy ledger now.
@@ -200,6 +244,8 @@ impl Engine {
             speed_range: [0.0, self.greatest_speed() as f32],
             contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
             strain_end: self.strain_end(),
+            negligible_energy: self.negligible_energy(),
+            wave_passage: passage(&self.spec, a),
         }
     }
 
