@@ -7,35 +7,47 @@ use super::view::{BondState, Energy, RunInfo, Sample, Snapshot, WireInfo};
 use crate::reference::helix;
 use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, RuptureCriterion, Spec};
 use crate::strand::assembly::Assembly;
+use std::collections::VecDeque;
 use std::ops::Range;
+
+/// Window of the running means, over the time in which an elastic wave runs along the body [-].
+const WINDOW: f64 = 0.125;
 
 /// Running means of what a row of the curve says, and who is broken.
 ///
-/// Everything goes through one causal filter, ẏ = (x − y)/T: strain, grip forces, torque and the forces in the wires. A
-/// mean lags behind what it is the mean of, by T when that grows evenly. Since strain lags as stress does, the curve keeps
-/// its phase: modulus and yield can be read from it at any speed. T is a quarter of an elastic wave's way along the body,
-/// L/(4c): long enough to take the worst of its ringing out, short against everything that is measured.
+/// Everything is the mean over the same last L/(8c), an eighth of an elastic wave's way along the body: strain, grip forces,
+/// torque and the forces in the wires. A mean lags by half its window behind what grows evenly. Since strain lags as stress
+/// does, the curve keeps its phase, and modulus can be read from it at any speed; it rounds off a yield point by half the
+/// strain that the grip brings in a window, v/(16c). A window takes out what neighbouring particles ring; the ringing of
+/// the body as a whole, of a period of 2L/c, stays.
 pub struct Measures {
-    /// T [s].
+    /// Length of the window [s].
     window: f64,
     area: f64,
-    mean: Mean,
-    seen: bool,
+    /// The steps in the window.
+    steps: VecDeque<Step>,
+    /// Sums over them of length, and of values times length.
+    sum: Step,
     /// Bonds in the middle of each wire, whose mean is the wire's stress; wire by wire.
     middle: Vec<usize>,
     /// Those of each wire among them.
     of_wire: Vec<Range<usize>>,
-    /// Running mean of the axial force of each [N].
-    force: Vec<f64>,
     broken: Vec<bool>,
 }
 
-/// What the grips do to the body.
-#[derive(Debug, Clone, Copy, Default)]
-struct Mean {
-    strain: f64,
-    reaction: Reaction,
+/// What was measured at one step, times its length.
+#[derive(Default, Clone)]
+struct Step {
+    /// [s]
+    length: f64,
+    /// Strain [-], force of the lower and upper grip [N], torque [N m], axial force of each middle bond [N]; each times s.
+    values: Vec<f64>,
 }
+
+const STRAIN: usize = 0;
+const FORCE: usize = 1;
+const TORQUE: usize = 3;
+const BONDS: usize = 4;
 
 impl Measures {
     /// For `assembly` between `holds`.
@@ -48,11 +60,10 @@ impl Measures {
             of_wire.push(first..slots.len());
         }
         Self {
-            window: 0.25 * passage(spec, assembly),
+            window: WINDOW * passage(spec, assembly),
             area: assembly.area,
-            mean: Mean::default(),
-            seen: false,
-            force: vec![0.0; slots.len()],
+            steps: VecDeque::new(),
+            sum: Step { length: 0.0, values: vec![0.0; BONDS + slots.len()] },
             middle: slots,
             of_wire,
             broken: vec![false; assembly.wires.len()],
@@ -61,29 +72,38 @@ impl Measures {
 
     /// Takes in a step of `dt` [s]: the grips' reactions, the strain [-] and the bonds' forces, all at one instant.
     pub fn take(&mut self, strain: f64, now: &Reaction, bonds: Option<&dyn Bonds>, dt: f64) {
-        let share = if self.seen && self.window > 0.0 { (dt / self.window).min(1.0) } else { 1.0 };
-        self.seen = true;
-        let blend = |mean: &mut f64, now: f64| *mean += (now - *mean) * share;
-        let reaction = &mut self.mean.reaction;
-        blend(&mut self.mean.strain, strain);
-        blend(&mut reaction.force[0], now.force[0]);
-        blend(&mut reaction.force[1], now.force[1]);
-        blend(&mut reaction.torque, now.torque);
-        if let Some(bonds) = bonds {
-            for (mean, slot) in self.force.iter_mut().zip(&self.middle) {
-                blend(mean, bonds.axial_force(*slot));
-            }
+        let mut step = Step::default();
+        while self.steps.front().is_some_and(|first| self.sum.length + dt - first.length >= self.window) {
+            step = self.steps.pop_front().unwrap_or_default();
+            self.sum.length -= step.length;
+            self.sum.values.iter_mut().zip(&step.values).for_each(|(sum, value)| *sum -= value);
         }
+        if self.steps.is_empty() {
+            // No rounding is left of what has gone.
+            self.sum.length = 0.0;
+            self.sum.values.fill(0.0);
+        }
+        step.length = dt;
+        step.values.clear();
+        step.values.extend([strain, now.force[0], now.force[1], now.torque].map(|value| value * dt));
+        step.values.extend(self.middle.iter().map(|slot| bonds.map_or(0.0, |bonds| bonds.axial_force(*slot) * dt)));
+        self.sum.length += dt;
+        self.sum.values.iter_mut().zip(&step.values).for_each(|(sum, value)| *sum += value);
+        self.steps.push_back(step);
+    }
+
+    fn mean(&self, value: usize) -> f64 {
+        if self.sum.length > 0.0 { self.sum.values[value] / self.sum.length } else { 0.0 }
     }
 
     /// Strain of the body: grip displacement over the length that is free between the grips [-].
     pub fn strain(&self) -> f64 {
-        self.mean.strain
+        self.mean(STRAIN)
     }
 
     /// Nominal stress: upper grip force over the copper area [Pa].
     pub fn stress(&self) -> f64 {
-        if self.area > 0.0 { self.mean.reaction.force[1] / self.area } else { 0.0 }
+        if self.area > 0.0 { self.mean(FORCE + 1) / self.area } else { 0.0 }
     }
 
     /// Axial force of a wire [N]: mean over the bonds in the middle of the gauge, in which a broken one counts with zero
@@ -91,7 +111,7 @@ impl Measures {
     fn wire_force(&self, wire: usize, whole: &[bool]) -> f64 {
         let range = self.of_wire[wire].clone();
         let count = range.len().max(1) as f64;
-        range.filter(|i| whole[self.middle[*i]]).map(|i| self.force[i]).sum::<f64>() / count
+        range.filter(|i| whole[self.middle[*i]]).map(|i| self.mean(BONDS + i)).sum::<f64>() / count
     }
 
     /// Marks a wire as broken; true when it was whole.
@@ -141,8 +161,8 @@ impl Engine {
             time: self.state.time,
             strain: self.strain(),
             stress: self.stress(),
-            grip_force: self.measures.mean.reaction.force,
-            torque: self.measures.mean.reaction.torque,
+            grip_force: [0, 1].map(|grip| self.measures.mean(FORCE + grip)),
+            torque: self.measures.mean(TORQUE),
             layer_stress,
             wire_stress,
             wires_broken: self.measures.broken.iter().filter(|b| **b).count(),

@@ -445,7 +445,7 @@ impl Engine {
         self.state.step
     }
 
-    /// Nominal stress, smoothed over a quarter of a wave's way along the strand [Pa].
+    /// Nominal stress, the mean over an eighth of a wave's way along the strand [Pa].
     pub fn stress(&self) -> f64 {
         self.measures.stress()
     }

@@ -83,7 +83,7 @@ pub struct Sample {
     pub step: u64,
     /// Simulated time [s].
     pub time: f64,
-    /// Grip displacement over gauge length [-]. Like stress, forces and torque it is a running mean over a quarter of an
+    /// Grip displacement over gauge length [-]. Like stress, forces and torque it is a running mean over an eighth of an
     /// elastic wave's passage ([`crate::engine::measure::Measures`]): all of them lag alike, so none is shifted against
     /// another. Energies and counts are those of the instant.
     pub strain: f64,
