@@ -215,7 +215,8 @@ fn a_strand_that_is_pushed_has_a_compressive_peak_and_no_strength() {
     assert_eq!((summary.tensile_strength_mpa, summary.greatest_stress_mpa), (None, None));
     let peak = summary.compressive_peak_mpa.unwrap();
     let least = all.rows.iter().map(|row| row.stress * 1e-6).fold(0.0, f64::min);
-    assert!(peak <= least && (-100.0..-94.0).contains(&peak), "{peak} MPa, least row {least}");
+    // The wires yield at 100 MPa before they buckle.
+    assert!(peak <= least && (-102.0..-95.0).contains(&peak), "{peak} MPa, least row {least}");
     assert!(summary.strain_at_compressive_peak_percent.unwrap() < 0.0);
 }
 
