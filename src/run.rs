@@ -2,6 +2,7 @@
 //!
 //! [`run`] writes a folder; [`simulate`] shows a run to observers and writes nothing.
 
+pub mod cautions;
 pub mod cost;
 mod drive;
 pub mod estimate;

@@ -3,8 +3,9 @@
 use super::say::say;
 use super::values::SceneArgs;
 use crate::base::error::Result;
-use crate::run;
-use crate::scene::{caution, plan::Plan};
+use crate::run::{self, cautions};
+use crate::scene::plan::Plan;
+use crate::strand;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -24,8 +25,9 @@ pub fn plan(args: &Args) -> Result<()> {
     };
     say!("quality: {} ({preset})\n", args.scene.quality.word());
     say!("{}", Plan::new(&scene.spec));
-    caution::cautions(&scene.spec).iter().for_each(|caution| say!("WARNING: {caution}\n"));
     let assembly = run::assemble(&scene)?;
+    cautions::of_scene(&scene, &assembly)?.iter().for_each(|caution| say!("WARNING: {caution}\n"));
+    strand::caution::deviation(&scene.spec).iter().for_each(|line| say!("{line}\n"));
     let threads = args.threads.map(usize::from);
     let estimate = run::in_pool(threads, || run::estimate::estimate(&scene.spec, assembly))??;
     say!("{estimate}");

@@ -8,7 +8,7 @@ use super::{Ended, interrupt};
 use crate::base::error::Result;
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{ANIMATION, FRAMES, RECORDING};
-use crate::run::{self, RunOptions, RunSummary, outputs};
+use crate::run::{self, RunOptions, RunSummary, cautions, outputs};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -61,6 +61,8 @@ pub fn run(args: Args) -> Result<Ended> {
         live: args.live,
         quiet: args.quiet,
     };
+    let before = cautions::of_run(&scene, &run::assemble(&scene)?)?;
+    before.iter().for_each(|caution| eprintln!("WARNING: {caution}"));
     let stop = interrupt::install()?;
     let summary = run::run(&scene, &options, stop)?;
     print(&summary, &options);

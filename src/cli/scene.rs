@@ -3,8 +3,9 @@
 use super::say::{self, say};
 use super::values::SceneArgs;
 use crate::base::error::Result;
-use crate::run;
-use crate::scene::{builtin, caution};
+use crate::run::{self, cautions};
+use crate::scene::builtin;
+use crate::strand;
 
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
@@ -51,6 +52,7 @@ fn check(args: &SceneArgs) -> Result<()> {
         assembly.len(),
         assembly.bond_count()
     );
-    caution::cautions(&scene.spec).iter().for_each(|caution| say!("WARNING: {caution}"));
+    strand::caution::deviation(&scene.spec).iter().for_each(|line| say!("{line}"));
+    cautions::of_scene(&scene, &assembly)?.iter().for_each(|caution| say!("WARNING: {caution}"));
     Ok(())
 }

@@ -59,6 +59,9 @@ pub fn study(args: &Args) -> Result<Ended> {
     let changes = Changes { quality: args.quality, set: args.set.clone(), seeds: args.seeds.clone() };
     let definition = Definition::load(name, &changes)?;
     sweep::check(&definition)?;
+    for one in &definition.merged {
+        eprintln!("note: {} {} is {}, and is not run twice", one.axis, one.same, one.kept);
+    }
     let out = args.out.clone().unwrap_or_else(|| folder::study(&definition.name));
     if args.dry_run {
         return dry_run(&definition, &out, jobs(args));

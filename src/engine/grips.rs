@@ -7,6 +7,7 @@ use super::straight::{Straight, runs};
 use crate::base::error::{Error, Result};
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
 use crate::strand::assembly::Assembly;
+use crate::strand::held::Gripped;
 use glam::{DMat2, DVec2, DVec3};
 use pulp::Arch;
 use std::collections::BTreeMap;
@@ -113,27 +114,10 @@ impl Holds {
         let (low, high) = z.iter().fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(*z), b.max(*z)));
         self.stretch.gauge = [low + grip.length, high - grip.length];
         let outer = assembly.layers.len().saturating_sub(1);
-        let jaw = matches!(grip.kind, GripKind::Jaw { .. });
-        let mut faces = [0.0; 2];
+        let gripped = Gripped::of(grip, assembly);
         for driven in [false, true] {
-            let mut particles = Vec::new();
-            let (mut last_held, mut wires) = (0.0, 0.0);
-            for wire in assembly.wires.iter().filter(|w| !jaw || w.layer == outer) {
-                // The particle nearest to the grip's face is the last one held, so that what is free between the grips
-                // is on average as long as the gauge.
-                let half = if wire.len > 1 { 0.5 * (z[wire.first + 1] - z[wire.first]).abs() } else { 0.0 };
-                let inside = |p: &usize| {
-                    if driven { z[*p] >= high - grip.length - half } else { z[*p] <= low + grip.length + half }
-                };
-                let held: Vec<usize> = wire.particles().filter(inside).collect();
-                let nearer = if driven { f64::min } else { f64::max };
-                if let Some(face) = held.iter().map(|p| z[*p]).reduce(nearer) {
-                    last_held += face;
-                    wires += 1.0;
-                }
-                particles.extend(held.into_iter().map(|p| p as u32));
-            }
-            faces[usize::from(driven)] = last_held / wires;
+            let held = gripped.particles[usize::from(driven)].iter().flatten();
+            let particles: Vec<u32> = held.map(|p| *p as u32).collect();
             if particles.is_empty() {
                 return Err(nothing_to_hold(&assembly.layers[outer].name, driven));
             }
@@ -146,7 +130,7 @@ impl Holds {
             };
             self.groups.push(Group { runs: runs(&particles), particles, kind, driven });
         }
-        self.free_length = faces[1] - faces[0];
+        self.free_length = gripped.free_length();
         Ok(())
     }
 

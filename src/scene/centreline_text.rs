@@ -2,11 +2,18 @@
 //!
 //! One block per wire, blocks parted by blank lines; one point `x y z` per line in mm; `#` begins a comment. A comment
 //! `# wire 3 layer outer diameter 0.39 mm` at the head of a block names the wire's layer and its diameter.
+//!
+//! What other programs write is read where it has one meaning: UTF-8 and UTF-16 with a byte order mark, any line ends,
+//! blanks of any kind, commas, semicolons and tabs between numbers, rows of empty cells as blank lines, a row of column
+//! names, and decimal commas where something else parts the numbers.
+
+mod words;
 
 use crate::base::error::{Error, Result};
 use glam::DVec3;
 use std::fmt::Write;
 use std::path::Path;
+use words::{Commas, Row};
 
 /// Layer of a wire whose block names none.
 const DEFAULT_LAYER: &str = "wire";
@@ -22,15 +29,36 @@ pub struct CentrelineWire {
     pub points: Vec<DVec3>,
 }
 
+/// Text of a file's bytes: UTF-8, or UTF-16 where a byte order mark says so; `None` when it is neither.
+pub fn decode(bytes: &[u8]) -> Option<String> {
+    let utf16 = |unit: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes[2..].chunks(2).map(|b| unit([b[0], *b.get(1).unwrap_or(&0)])).collect();
+        String::from_utf16(&units).ok()
+    };
+    match bytes {
+        [0xFF, 0xFE, ..] => utf16(u16::from_le_bytes),
+        [0xFE, 0xFF, ..] => utf16(u16::from_be_bytes),
+        _ => String::from_utf8(bytes.to_vec()).ok(),
+    }
+}
+
 /// Reads centrelines. `path` serves the messages only.
 ///
-/// Errors name file and line: a line that is not three finite numbers, a point that repeats the one before, a wire of
-/// one point, a broken header, a text without wires.
+/// Errors name file and line: a line that is not three finite numbers, a wire of one point, a broken header, a text without
+/// wires.
 pub fn parse(text: &str, path: &Path) -> Result<Vec<CentrelineWire>> {
-    let mut reader = Reader { path, wires: Vec::new(), header: Header::default(), points: Vec::new(), line: 0 };
-    for (index, line) in text.lines().enumerate() {
+    let lines: Vec<&str> = words::lines(text).collect();
+    let mut reader = Reader {
+        path,
+        commas: Commas::of(&lines),
+        wires: Vec::new(),
+        header: Header::default(),
+        points: Vec::new(),
+        line: 0,
+    };
+    for (index, line) in lines.iter().enumerate() {
         reader.line = index + 1;
-        reader.read(line.trim())?;
+        reader.read(line)?;
     }
     reader.end_block()?;
     match reader.wires.is_empty() {
@@ -67,6 +95,7 @@ struct Header {
 
 struct Reader<'a> {
     path: &'a Path,
+    commas: Commas,
     wires: Vec<CentrelineWire>,
     header: Header,
     points: Vec<DVec3>,
@@ -75,28 +104,17 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn read(&mut self, line: &str) -> Result<()> {
-        let (data, comment) = line.split_once('#').unwrap_or((line, ""));
-        if line.is_empty() {
-            return self.end_block();
-        }
-        if data.trim().is_empty() {
-            return self.read_comment(comment.trim());
-        }
-        let point = self.read_point(data)?;
-        if self.points.last() == Some(&point) {
-            return Err(self.error("this point repeats the one before it", "remove one of the two"));
-        }
-        self.points.push(point);
-        Ok(())
-    }
-
-    fn read_point(&self, data: &str) -> Result<DVec3> {
-        let numbers: Vec<Option<f64>> =
-            data.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty()).map(from_millimetres).collect();
-        match numbers[..] {
-            [Some(x), Some(y), Some(z)] => Ok(DVec3::new(x, y, z)),
-            _ => Err(self.error(
-                &format!("`{}` is not three finite numbers", data.trim()),
+        match words::row(line, self.commas) {
+            Row::Blank => self.end_block(),
+            Row::Comment(comment) => self.read_comment(comment),
+            // Above a block only: between points it would be a torn line.
+            Row::ColumnNames if self.points.is_empty() => Ok(()),
+            Row::Point([x, y, z]) => {
+                self.points.push(DVec3::new(x, y, z));
+                Ok(())
+            }
+            Row::ColumnNames | Row::Other => Err(self.error(
+                &format!("`{}` is not three finite numbers", words::shown(line)),
                 "write x y z in mm, for example 1.165 0 12.5",
             )),
         }
@@ -104,10 +122,10 @@ impl Reader<'_> {
 
     /// Takes `wire N [layer NAME] [diameter D mm]`; any other comment is for people.
     fn read_comment(&mut self, comment: &str) -> Result<()> {
-        let Some(rest) = comment.strip_prefix("wire ") else {
+        let mut words = comment.split_whitespace();
+        if !words.next().is_some_and(|word| word.eq_ignore_ascii_case("wire")) {
             return Ok(());
-        };
-        let mut words = rest.split_whitespace();
+        }
         let number = words.next().map(str::parse::<usize>);
         if !matches!(number, Some(Ok(_))) {
             return Ok(());
@@ -118,7 +136,7 @@ impl Reader<'_> {
             );
         }
         let words: Vec<&str> = words.collect();
-        let diameter_at = words.iter().rposition(|word| *word == "diameter").unwrap_or(words.len());
+        let diameter_at = words.iter().rposition(|word| word.eq_ignore_ascii_case("diameter")).unwrap_or(words.len());
         let (layer, diameter) = words.split_at(diameter_at);
         self.header = Header { layer: self.header_layer(layer)?, diameter: self.header_diameter(diameter)? };
         Ok(())
@@ -127,7 +145,7 @@ impl Reader<'_> {
     fn header_layer(&self, words: &[&str]) -> Result<Option<String>> {
         match words {
             [] => Ok(None),
-            ["layer", name @ ..] if !name.is_empty() => Ok(Some(name.join(" "))),
+            [layer, name @ ..] if layer.eq_ignore_ascii_case("layer") && !name.is_empty() => Ok(Some(name.join(" "))),
             _ => Err(self.bad_header()),
         }
     }
@@ -135,10 +153,11 @@ impl Reader<'_> {
     fn header_diameter(&self, words: &[&str]) -> Result<Option<f64>> {
         match words {
             [] => Ok(None),
-            ["diameter", number, "mm"] => match from_millimetres(number).filter(|diameter| *diameter > 0.0) {
-                Some(diameter) => Ok(Some(diameter)),
-                None => Err(self.bad_header()),
-            },
+            [_, number, unit] if unit.eq_ignore_ascii_case("mm") => {
+                // Nothing else in a header has a comma, so that it can only be a decimal one.
+                let diameter = from_millimetres(&number.replace(',', "."));
+                diameter.filter(|diameter| *diameter > 0.0).map(Some).ok_or_else(|| self.bad_header())
+            }
             _ => Err(self.bad_header()),
         }
     }
@@ -221,12 +240,66 @@ mod tests {
     fn errors_name_file_and_line() {
         assert!(line_of("0 0 0\n0 0 x\n").starts_with("wires.txt, line 2: `0 0 x`"));
         assert!(line_of("0 0 0\n0 0\n").contains("line 2"));
-        assert!(line_of("0 0 0\n0 0 0\n").contains("line 2: this point repeats"));
         assert!(line_of("0 0 0\n\n0 0 0\n0 0 1\n").contains("line 2: the wire that ends here"));
         assert!(line_of("# wire 1 layer a diameter 0.39\n0 0 0\n0 0 1\n").contains("line 1: the header"));
         assert!(line_of("0 0 0\n0 0 1\n# wire 2\n0 1 0\n0 1 1").contains("line 3: a new wire"));
         assert!(line_of("0 0 0\n0 0 inf\n").contains("line 2"));
         assert!(line_of("# nothing\n").contains("no wires"));
+        // A row of column names stands above points, in mm.
+        assert!(line_of("0 0 0\nx y z\n0 0 1\n").contains("line 2: `x y z`"));
+        assert!(line_of("x [in] y [in] z [in]\n0 0 0\n0 0 1\n").contains("line 1"));
+    }
+
+    /// Each text says the same, whatever program wrote it.
+    #[test]
+    fn text_that_has_one_meaning_is_read() {
+        let right = [DVec3::ZERO, DVec3::new(0.5e-3, 0.0, 4e-3), DVec3::new(3e-3, 0.0, 12e-3)];
+        for text in [
+            "0 0 0\n0.5 0 4\n3 0 12\n",
+            "\u{feff}0 0 0\n0.5 0 4\n3 0 12\n",
+            "0 0 0\r0.5 0 4\r3 0 12",
+            "0 0 0\r\n0.5 0 4\r\n3 0 12\r\n",
+            "0\u{a0}0\u{a0}0\n0.5\u{202f}0\u{2009}4\n3\u{200b} 0 12\n",
+            "0;0;0\n0,5;0;4\n3;0;12\n",
+            "0\t0\t0\n0,5\t0\t4\n3,0\t0\t12,0\n",
+            "0,0 0,0 0,0\n0,5 0,0 4,0\n3,0 0,0 12,0\n",
+            "0, 0, 0\n0.5, 0, 4\n3, 0, 12\n",
+            "0,0,0,,\n0.5,0,4,,\n3,0,12,,\n",
+            "X,Y,Z\n0,0,0\n0.5,0,4\n3,0,12\n",
+            "x [mm];Y [MM];z (mm)\n0;0;0\n0,5;0;4\n3;0;12\n",
+        ] {
+            let wires = parse(text, Path::new("w")).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+            assert_eq!((wires.len(), &wires[0].points[..]), (1, &right[..]), "{text:?}");
+        }
+        let two = parse("0,0,0\n0,0,1\n,,\n1,0,0\n1,0,1\n", Path::new("w")).unwrap();
+        assert_eq!(two.len(), 2, "a row of empty cells is blank");
+        let header = parse("#WIRE 1 Layer Outer Left DIAMETER 0,39 MM\n0 0 0\n0 0 1\n", Path::new("w")).unwrap();
+        assert_eq!((header[0].layer.as_str(), header[0].diameter), ("Outer Left", Some(0.39e-3)));
+    }
+
+    #[test]
+    fn utf_16_is_told_by_its_mark() {
+        let text = "0 0 0\n0 0 1\n";
+        let little: Vec<u8> = [0xFEFF].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = [0xFEFF].into_iter().chain(text.encode_utf16()).flat_map(u16::to_be_bytes).collect();
+        assert_eq!([decode(&little), decode(&big), decode(text.as_bytes())], [0; 3].map(|_| Some(text.to_owned())));
+        assert_eq!(decode(&[b'0', 0xE9]), None);
+    }
+
+    /// Commas that part numbers in one line do not part digits in the next.
+    #[test]
+    fn a_comma_has_one_meaning_throughout() {
+        assert!(line_of("0;0;0\n0,5;0;4\n1,2\n").contains("line 3: `1,2`"));
+        assert!(line_of("0,5;0;4\n1,0,2\n").contains("line 2: `1,0,2`"));
+        assert!(line_of("0,0,0\n0,5;0;4\n").contains("line 2: `0,5;0;4`"));
+        assert!(line_of("0,5;1.5;4\n0,5;1;5\n").contains("line 1"));
+    }
+
+    #[test]
+    fn what_cannot_be_seen_is_shown() {
+        assert!(line_of("0 0 0\n0 0\u{7}1 1\n").contains("line 2: `0 0\\u{7}1 1`"));
+        assert!(line_of("0 0 0\n0 0 1\u{ad}0\n").contains("`0 0 1\\u{ad}0`"));
+        assert!(line_of("0 0\u{a0}x\n").contains("`0 0\\u{a0}x`"));
     }
 
     proptest! {

@@ -8,6 +8,7 @@ pub mod caution;
 pub mod centreline_text;
 mod construction;
 pub mod hardening;
+mod idle;
 pub mod look;
 mod overrides;
 pub mod plan;
@@ -21,6 +22,7 @@ pub mod spec;
 pub mod suggest;
 pub mod write;
 
+pub use idle::Idle;
 pub use source::SceneSource;
 
 use crate::base::error::{Error, Result};
@@ -39,6 +41,8 @@ pub struct Scene {
     pub spec: Spec,
     /// Its text, for errors that later floors find.
     pub source: SceneSource,
+    /// Keys that it gives without effect.
+    pub idle: Vec<Idle>,
 }
 
 /// Loads a scene by built-in name or by path, with `--set` options.
@@ -77,7 +81,8 @@ pub fn parse(text: &str, file_name: &str, folder: &Path, overrides: &[String]) -
     let raw: raw::RawScene = read_tables(&changed.to_string(), &source, "a scene")?;
     let stem = Path::new(file_name).file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
     let spec = resolve::resolve(&At::root(&source), &raw, &stem, folder)?;
-    Ok(Scene { spec, source })
+    let idle = idle::check(&source, &raw, &spec)?;
+    Ok(Scene { spec, source, idle })
 }
 
 /// Reads tables of another kind than a scene, with errors of the same kind: `whole` says what it is, "a study".

@@ -41,6 +41,11 @@ impl Override {
         &self.path
     }
 
+    /// Whether it gives a value, and does not remove a key.
+    pub(super) fn gives_a_value(&self) -> bool {
+        !self.value.is_empty()
+    }
+
     /// An error at this option's key or value.
     pub(super) fn error(&self, part: Part, what: String, help: String) -> Error {
         let span = match part {

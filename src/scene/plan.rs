@@ -74,7 +74,8 @@ impl Plan {
                 state: on(spec.grip.is_some() || !spec.holds.is_empty()),
                 reason: match &spec.grip {
                     Some(g) => match g.kind {
-                        GripKind::All => "every wire is held at both ends".into(),
+                        GripKind::All if spec.wires.is_empty() => "every wire is held at both ends".into(),
+                        GripKind::All => "every wire is held where it reaches into a grip".into(),
                         GripKind::Jaw { pressure } => format!("outer layer clamped at {} MPa", pressure / 1e6),
                     },
                     None if spec.holds.is_empty() => "free bodies".into(),

@@ -195,6 +195,9 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
     let friction = at.ratio_or("friction", &raw.friction, FRICTION, Range::NotNegative)?;
     let damping = at.ratio_or("damping", &raw.damping, 0.0, Range::NotNegative)?;
     let skin = at.ratio_or("skin", &raw.skin, SKIN, Range::Positive)?;
+    at.optional("hardness_factor", &raw.hardness_factor, Dimension::Ratio, Range::Positive)?;
+    at.optional("hardness_strain", &raw.hardness_strain, Dimension::Ratio, Range::NotNegative)?;
+    at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?;
     let normal = match raw.normal.ok_or_else(|| at.missing("normal", "\"thornton\""))? {
         RawNormal::None => return Ok(None),
         RawNormal::Hertz => {

@@ -6,9 +6,11 @@ use super::construction;
 use super::raw::{RawLay, RawLayer, RawSphere, RawStrand, RawWire, Scalar};
 use super::spec::{LayerSpec, PathSpec, SphereSpec, StrandSpec, WireSpec};
 use crate::base::error::Result;
-use crate::base::units::Dimension;
+use crate::base::units::{self, Dimension};
 use std::path::{Path, PathBuf};
 
+/// Relative difference up to which two diameters are one, written with other units [-].
+const SAME_DIAMETER: f64 = 1e-9;
 /// Layer of a wire that names none.
 const DEFAULT_LAYER: &str = "wire";
 
@@ -22,6 +24,9 @@ pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
     if raw.layer.is_empty() {
         return Err(at.error("the strand has no layer", "add [[strand.layer]] with `wires`, or a `construction`"));
     }
+    // Checked even where every layer has its own.
+    at.optional("pitch", &raw.pitch, Dimension::Length, Range::PositiveOrInfinite)?;
+    at.optional("wire_diameter", &raw.wire_diameter, Dimension::Length, Range::Positive)?;
     let mut layers: Vec<LayerSpec> = Vec::with_capacity(raw.layer.len());
     for (index, layer) in raw.layer.iter().enumerate() {
         let here = at.key("layer").element(index);
@@ -151,11 +156,26 @@ fn wires_of_file(at: &At, raw: &RawWire, file: &str, folder: &Path) -> Result<Ve
     numbers
         .map(|index| {
             let CentrelineWire { layer, diameter, points } = &centrelines[index];
+            refuse_two_diameters(at, given, *diameter, index)?;
             let diameter = given.or(*diameter).ok_or_else(|| at.missing("diameter", "\"0.39 mm\""))?;
             let path = PathSpec::File { file: path.clone(), index, points: points.clone() };
             wire(at, raw, layer, diameter, path)
         })
         .collect()
+}
+
+/// Refuses a diameter that differs from the one in the file's header.
+fn refuse_two_diameters(at: &At, scene: Option<f64>, header: Option<f64>, index: usize) -> Result<()> {
+    match (scene, header) {
+        (Some(scene), Some(header)) if (scene - header).abs() > SAME_DIAMETER * header => {
+            let [scene, header] = [scene, header].map(|d| units::format(d, Dimension::Length));
+            let what = format!("`diameter` is {scene}, but the header of wire {} of the file says {header}", index + 1);
+            Err(at
+                .key("diameter")
+                .error(what, "remove one of the two: the layout of the wires belongs to one diameter"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The file's full path, so that the resolved scene may be kept in any folder, and its wires.
@@ -166,7 +186,11 @@ fn read_centrelines(at: &At, file: &str, folder: &Path) -> Result<(PathBuf, Vec<
     };
     let given = folder.join(file);
     let path = std::path::absolute(&given).map_err(|source| unreadable(&given, source))?;
-    let text = std::fs::read_to_string(&path).map_err(|source| unreadable(&path, source))?;
+    let bytes = std::fs::read(&path).map_err(|source| unreadable(&path, source))?;
+    let text = centreline_text::decode(&bytes).ok_or_else(|| {
+        let what = format!("{} is no text in UTF-8, nor in UTF-16 with its mark", path.display());
+        at.key("file").error(what, "save it as plain text")
+    })?;
     let wires = centreline_text::parse(&text, &path)?;
     Ok((path, wires))
 }

@@ -155,7 +155,11 @@ fn refuse_idle(at: &At, hold: &HoldSpec) -> Result<()> {
             return Err(at.key(key).element(axis).error(what, help));
         }
     }
-    let idle = hold.fixed == [false; 6] && hold.force == DVec3::ZERO && hold.moment == DVec3::ZERO;
+    let unloaded = hold.force == DVec3::ZERO && hold.moment == DVec3::ZERO;
+    if hold.ramp > 0.0 && unloaded {
+        return Err(at.key("ramp").refused("has no effect without `force` or `moment`"));
+    }
+    let idle = hold.fixed == [false; 6] && unloaded;
     match idle {
         true => Err(at.error("this hold neither prescribes nor loads anything", "give `fix`, `force` or `moment`")),
         false => Ok(()),

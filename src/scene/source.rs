@@ -34,6 +34,17 @@ impl SceneSource {
         self.error_at(&path, Part::Value, what.into(), help.into())
     }
 
+    /// Path of the last `--set` option that gives the key at `key_path`, or one below it; `None` when none does.
+    pub(super) fn option_below(&self, key_path: &str) -> Option<String> {
+        let path: Vec<&str> = key_path.split('.').collect();
+        let below = |option: &&Override| {
+            option.gives_a_value()
+                && option.path().len() >= path.len()
+                && option.path().iter().zip(&path).all(|(own, key)| own == key)
+        };
+        self.overrides.iter().rev().find(below).map(|option| option.path().join("."))
+    }
+
     pub(super) fn error_at(&self, path: &[String], part: Part, what: String, help: String) -> Error {
         let place = find(self.document.as_item(), path, part);
         let in_file = place.as_ref().is_some_and(|place| place.exact);

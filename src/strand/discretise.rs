@@ -4,6 +4,7 @@ use crate::base::vectors::Vectors;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::{Assembly, Layer, Wire};
 use crate::strand::error::{BuildError, BuildErrorKind, mm};
+use crate::strand::held;
 use crate::strand::lay_radius::GREATEST_OVERLAP;
 use crate::strand::overlap::{self, Body};
 use crate::strand::strung::{Strung, lay_up, string_wire};
@@ -24,7 +25,8 @@ const GREATEST_TURN: f64 = FRAC_PI_4;
 ///
 /// # Errors
 /// [`BuildError`] when the scene has no body, a layer does not fit, bodies overlap by more than
-/// [`GREATEST_OVERLAP`] of a diameter, or a wire is shorter than its spacing or bent too sharply for it.
+/// [`GREATEST_OVERLAP`] of a diameter, a wire is shorter than its spacing or bent too sharply for it, two holds prescribe
+/// one component, or the grips never strain the body as far as the run is to go.
 pub fn build(spec: &Spec) -> Result<Assembly, BuildError> {
     let mut layers = Vec::new();
     let mut strung = Vec::new();
@@ -41,7 +43,10 @@ pub fn build(spec: &Spec) -> Result<Assembly, BuildError> {
         check_turns(w, wire)?;
     }
     check_overlaps(spec, &strung, &layers)?;
-    Ok(assemble(spec, layers, &strung))
+    let assembly = assemble(spec, layers, &strung);
+    held::check_holds(spec, &assembly)?;
+    held::check_stop(spec, &assembly)?;
+    Ok(assembly)
 }
 
 fn nothing_there() -> BuildError {
@@ -413,18 +418,12 @@ mod tests {
     }
 
     #[test]
-    fn a_point_given_twice_is_refused_by_file_and_number() {
+    fn a_line_of_one_point_is_refused_by_file_and_number() {
         let mut spec = empty();
-        spec.wires.push(wire(
-            1e-3,
-            PathSpec::File {
-                file: PathBuf::from("cable.txt"),
-                index: 4,
-                points: vec![DVec3::ZERO, DVec3::Z * 0.01, DVec3::Z * 0.01],
-            },
-        ));
+        let path = PathSpec::File { file: PathBuf::from("cable.txt"), index: 4, points: vec![DVec3::ZERO] };
+        spec.wires.push(wire(1e-3, path));
         let error = refused(&spec);
         assert_eq!(error.kind, BuildErrorKind::BadPath);
-        assert!(error.message.contains("wire 5 of cable.txt: point 3"), "{}", error.message);
+        assert!(error.message.contains("wire 5 of cable.txt has fewer than two points"), "{}", error.message);
     }
 }

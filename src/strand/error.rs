@@ -18,8 +18,12 @@ pub enum BuildErrorKind {
     TooShort,
     /// A wire that turns too far between neighbouring particles.
     TooFewParticles,
-    /// A centre line that is none: fewer than two points, a point twice, a value that is not finite.
+    /// A centre line that is none: fewer than two points, a value that is not finite.
     BadPath,
+    /// A component that two holds prescribe, or a hold and a grip.
+    HeldTwice,
+    /// A run that would go on for ever.
+    NeverEnds,
 }
 
 /// Geometry that cannot be built.

@@ -1,9 +1,11 @@
 //! Floor 3: geometry. Helices and layers, lay radii, centreline text in and out, discretisation into particles.
 
 pub mod assembly;
+pub mod caution;
 pub mod centrelines;
 pub mod discretise;
 pub mod error;
+pub mod held;
 pub mod helix;
 pub mod lay_radius;
 pub mod overlap;

@@ -13,8 +13,6 @@ use glam::DVec3;
 pub enum PathTrouble {
     /// Fewer than two points.
     TooFewPoints,
-    /// Point `0` (from 0) equals the one before it.
-    RepeatedPoint(usize),
     /// Point `0` (from 0) has a coordinate that is not finite.
     NotFinite(usize),
     /// The line is shorter than the spacing: its length [m].
@@ -28,7 +26,16 @@ pub struct Chain {
     pub points: Vec<DVec3>,
     /// Arc length between neighbours [m]: one fewer than points.
     pub arcs: Vec<f64>,
+    /// Greatest distance between the particles' polygon and the one through the points given [m]: of a particle from the
+    /// line between the two points that it lies between, or of a point from the line between two particles.
+    pub deviation: f64,
+    /// Number of given points that were left out because they lie upon the one before.
+    pub merged: usize,
 }
+
+/// Distance over the spacing within which a point counts as a repetition of the one before it [-]. Between points so close
+/// the direction of a line is noise, and a curve that follows it bulges by a quarter of the distance to the next point.
+const REPEATED: f64 = 0.01;
 
 /// Unevenness over the mean spacing up to which points count as equally spaced [-]. Text files of CAD models carry few
 /// digits.
@@ -55,36 +62,90 @@ pub fn straight(from: DVec3, to: DVec3, spacing: f64) -> Result<Chain, PathTroub
     Ok(Chain {
         points: (0..=n).map(|i| from.lerp(to, i as f64 / n as f64)).collect(),
         arcs: vec![length / n as f64; n],
+        deviation: 0.0,
+        merged: 0,
     })
 }
 
 /// Particles along a line through `points` [m], at equal arc spacing nearest to `spacing` [m], ends included.
 ///
-/// Points that already have that spacing are taken as they are, so that an exported wire comes back unchanged.
+/// Points that already have that spacing are taken as they are, so that an exported wire comes back unchanged. A point
+/// nearer to the one before than a hundredth of the spacing repeats it and is left out.
 ///
 /// # Errors
 /// See [`PathTrouble`].
 pub fn resample(points: &[DVec3], spacing: f64) -> Result<Chain, PathTrouble> {
     check(points)?;
+    let given = points;
+    let points = &without_repeated(given, REPEATED * spacing);
+    if points.len() < 2 {
+        return Err(PathTrouble::TooShort(given[0].distance(given[given.len() - 1])));
+    }
+    let merged = given.len() - points.len();
     let spline = Spline::through(points);
     let total: f64 = spline.arcs.iter().sum();
     let n = pieces(total, spacing).ok_or(PathTrouble::TooShort(total))?;
     if has_spacing(&spline.chords, spacing) {
-        return Ok(Chain { points: points.to_vec(), arcs: spline.arcs });
+        let deviation = farthest(given, points);
+        return Ok(Chain { points: points.to_vec(), arcs: spline.arcs, deviation, merged });
     }
     let mut resampled = Vec::with_capacity(n + 1);
     resampled.push(points[0]);
     let (mut span, mut before) = (0, 0.0);
+    let mut deviation = 0.0_f64;
     for i in 1..n {
         let target = total * i as f64 / n as f64;
         while span + 1 < spline.arcs.len() && before + spline.arcs[span] < target {
             before += spline.arcs[span];
             span += 1;
         }
-        resampled.push(spline.point_at_arc(span, target - before));
+        let particle = spline.point_at_arc(span, target - before);
+        deviation = deviation.max(distance_to_segment(particle, points[span], points[span + 1]));
+        resampled.push(particle);
     }
     resampled.push(points[points.len() - 1]);
-    Ok(Chain { points: resampled, arcs: vec![total / n as f64; n] })
+    let deviation = deviation.max(farthest(given, &resampled));
+    Ok(Chain { points: resampled, arcs: vec![total / n as f64; n], deviation, merged })
+}
+
+/// Points without those that are nearer than `least` [m] to the one kept before them; both ends stay.
+fn without_repeated(points: &[DVec3], least: f64) -> Vec<DVec3> {
+    let mut kept: Vec<DVec3> = Vec::with_capacity(points.len());
+    for point in points {
+        if kept.last().is_none_or(|last| last.distance(*point) > least) {
+            kept.push(*point);
+        }
+    }
+    // The wire ends where it was said to.
+    let end = points[points.len() - 1];
+    if kept.len() > 1 && kept.last() != Some(&end) {
+        kept.pop();
+        kept.push(end);
+    }
+    kept
+}
+
+/// Greatest distance of `points` from the polygon through `corners`, both in order along one line [m].
+fn farthest(points: &[DVec3], corners: &[DVec3]) -> f64 {
+    let mut at = 0;
+    let mut greatest = 0.0_f64;
+    for point in points {
+        let distance = |k: usize| distance_to_segment(*point, corners[k], corners[k + 1]);
+        // Both run along the same line, so that the nearest segment moves on with the points.
+        while at + 2 < corners.len() && distance(at + 1) <= distance(at) {
+            at += 1;
+        }
+        greatest = greatest.max(distance(at));
+    }
+    greatest
+}
+
+/// Distance of `p` from the segment from `a` to `b` [m].
+fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let along = b - a;
+    let length_squared = along.length_squared();
+    let t = if length_squared > 0.0 { ((p - a).dot(along) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+    p.distance(a + along * t)
 }
 
 fn check(points: &[DVec3]) -> Result<(), PathTrouble> {
@@ -94,10 +155,7 @@ fn check(points: &[DVec3]) -> Result<(), PathTrouble> {
     if points.len() < 2 {
         return Err(PathTrouble::TooFewPoints);
     }
-    match points.windows(2).position(|pair| pair[0] == pair[1]) {
-        Some(i) => Err(PathTrouble::RepeatedPoint(i + 1)),
-        None => Ok(()),
-    }
+    Ok(())
 }
 
 /// Whether points with these distances are spaced evenly and as a wire of this spacing would be.
@@ -201,6 +259,7 @@ fn tangents(points: &[DVec3], chords: &[f64]) -> Vec<DVec3> {
 mod tests {
     use super::*;
     use crate::strand::helix::Helix;
+    use glam::DVec2;
 
     fn helix() -> Helix {
         Helix { radius: 1.165e-3, pitch: 39e-3, lay: 1.0, phase: 0.2 }
@@ -266,11 +325,46 @@ mod tests {
         }
     }
 
+    /// A point that repeats another but for 1 nm does not tell where the wire goes: it stays as straight as it was.
+    #[test]
+    fn a_point_that_is_nearly_repeated_does_not_bend_the_wire() {
+        let at = |x: f64, z: f64| DVec3::new(x, 0.0, z);
+        let nearly = [at(0.0, 0.0), at(0.0, 5e-3), at(1e-9, 5e-3), at(0.0, 10e-3)];
+        let chain = resample(&nearly, 0.4e-3).unwrap();
+        assert_eq!((chain.points.len(), chain.merged), (26, 1));
+        let off = chain.points.iter().map(|p| p.truncate().length()).fold(0.0, f64::max);
+        assert!(off < 1.1e-9, "{off}");
+        assert!((chain.deviation - 1e-9).abs() < 1e-12, "{}", chain.deviation);
+        // At an end too, where the end itself stays; and repeated exactly.
+        let at_end = [at(0.0, 0.0), at(0.0, 10e-3), at(1e-9, 10e-3)];
+        let chain = resample(&at_end, 0.4e-3).unwrap();
+        assert_eq!((chain.points[25], chain.merged), (at_end[2], 1));
+        let twice = [at(0.0, 0.0), at(0.0, 5e-3), at(0.0, 5e-3), at(0.0, 10e-3)];
+        assert_eq!(
+            resample(&twice, 0.4e-3).unwrap(),
+            Chain { merged: 1, ..resample(&[twice[0], twice[1], twice[3]], 0.4e-3).unwrap() }
+        );
+    }
+
+    /// The deviation is what a circle has from its chords, r − √(r² − c²/4), seen from both sides: points far apart let the
+    /// curve bulge from the lines between them, and points close together stick out of the particles' polygon.
+    #[test]
+    fn the_deviation_is_that_of_a_circle_from_its_chords() {
+        let arc = |n: usize| -> Vec<DVec3> {
+            (0..=n).map(|i| DVec3::from((DVec2::from_angle(i as f64 / n as f64) * 10e-3, 0.0))).collect()
+        };
+        let sagitta = |angle: f64| 10e-3 * (1.0 - (0.5 * angle).cos());
+        let sparse = resample(&arc(5), 0.05e-3).unwrap().deviation;
+        assert!((sparse / sagitta(0.2) - 1.0).abs() < 0.02, "{sparse} {}", sagitta(0.2));
+        let dense = resample(&arc(1000), 2e-3).unwrap().deviation;
+        assert!((dense / sagitta(0.2) - 1.0).abs() < 0.02, "{dense} {}", sagitta(0.2));
+    }
+
     #[test]
     fn lines_that_are_none_are_refused() {
         let (a, b) = (DVec3::ZERO, DVec3::Z);
         assert_eq!(resample(&[a], 0.1), Err(PathTrouble::TooFewPoints));
-        assert_eq!(resample(&[a, b, b], 0.1), Err(PathTrouble::RepeatedPoint(2)));
+        assert_eq!(resample(&[a, a], 0.1), Err(PathTrouble::TooShort(0.0)));
         assert_eq!(resample(&[a, b * f64::NAN], 0.1), Err(PathTrouble::NotFinite(1)));
         assert!(matches!(
             resample(&[a, b], 1.1),

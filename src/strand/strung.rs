@@ -79,6 +79,8 @@ fn string_helix(helix: &Helix, length: f64, spacing: f64) -> Result<Chain, PathT
     Ok(Chain {
         points: (0..=n).map(|i| helix.point(length * (i as f64 / n as f64))).collect(),
         arcs: vec![arc / n as f64; n],
+        deviation: 0.0,
+        merged: 0,
     })
 }
 
@@ -124,11 +126,6 @@ fn path_error(trouble: PathTrouble, who: &str, key: String, layer: Option<usize>
             BuildErrorKind::BadPath,
             format!("{who} has fewer than two points"),
             "a centre line needs at least its two ends".to_owned(),
-        ),
-        PathTrouble::RepeatedPoint(i) => (
-            BuildErrorKind::BadPath,
-            format!("{who}: point {} equals the one before it", i + 1),
-            "remove one of the two".to_owned(),
         ),
         PathTrouble::NotFinite(i) => (
             BuildErrorKind::BadPath,

@@ -45,13 +45,14 @@ impl Comparison {
 pub fn compare(points: &[[f64; 2]]) -> Comparison {
     let one = |model| Compared { model, fit: fit(model, points), cross_validation: cross_validate(model, points) };
     let models: Vec<Compared> = Model::ALL.into_iter().map(one).collect();
-    let known = models.iter().filter_map(|one| Some((one.model, one.cross_validation.as_ref().ok()?.mean)));
-    // The simpler one of equals.
-    let best = known.fold(None, |best: Option<(Model, f64)>, (model, mean)| match best {
-        Some((_, least)) if least <= mean => best,
-        _ => Some((model, mean)),
-    });
-    Comparison { points: points.to_vec(), best: best.map(|(model, _)| model), models }
+    let best = best(models.iter().filter_map(|one| Some((one.model, one.cross_validation.as_ref().ok()?.mean))));
+    Comparison { points: points.to_vec(), best, models }
+}
+
+/// The model of least mean squared error, the first one of equals; one whose error is no number is not in the running.
+fn best(known: impl Iterator<Item = (Model, f64)>) -> Option<Model> {
+    let finite = known.filter(|(_, mean)| mean.is_finite());
+    finite.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(model, _)| model)
 }
 
 fn cross_validate(model: Model, points: &[[f64; 2]]) -> Result<CrossValidation, FitError> {
@@ -62,9 +63,26 @@ fn cross_validate(model: Model, points: &[[f64; 2]]) -> Result<CrossValidation, 
         let others: Vec<[f64; 2]> =
             points.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, point)| *point).collect();
         let [x, y] = points[k];
-        Ok((y - fit(model, &others)?.value(x)).powi(2))
+        let squared = (y - fit(model, &others)?.value(x)).powi(2);
+        if squared.is_finite() { Ok(squared) } else { Err(FitError::Overflow) }
     };
     let folds = (0..points.len()).map(fold).collect::<Result<Vec<f64>, FitError>>()?;
     let mean = folds.iter().sum::<f64>() / folds.len() as f64;
     Ok(CrossValidation { folds, mean })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sign of a NaN is what the processor made it: neither may win.
+    #[test]
+    fn what_is_no_number_never_wins() {
+        for nan in [f64::NAN, -f64::NAN] {
+            assert_eq!(best([(Model::Constant, nan), (Model::Line, 2.0)].into_iter()), Some(Model::Line));
+            assert_eq!(best([(Model::Line, 2.0), (Model::Exponential, nan)].into_iter()), Some(Model::Line));
+            assert_eq!(best([(Model::Line, nan)].into_iter()), None);
+        }
+        assert_eq!(best([(Model::Line, 2.0), (Model::Parabola, 2.0)].into_iter()), Some(Model::Line));
+    }
 }

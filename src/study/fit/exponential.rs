@@ -1,7 +1,9 @@
 //! A exp(B x) + C: start values by variable projection, then Levenberg–Marquardt.
 //!
-//! The search runs in v = α + β (e^{bu} − 1)/b, which goes over into a line where b goes to zero, so that nearly straight
-//! points do not send A and C to infinity on the way. A, B and C follow from it exactly.
+//! The search runs in v = α + β (e^{b(u − u₀)} − 1)/b, which goes over into a line where b goes to zero, so that nearly
+//! straight points do not send A and C to infinity on the way. u₀ is the end at which the curve is steepest, so that the
+//! exponential is 1 there and less everywhere else: points that crowd together at one end of a long axis make b large, and
+//! e^{bu} from the middle of the axis would overflow. A, B and C follow from it exactly.
 
 use super::{FitError, Scaled};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
@@ -24,12 +26,13 @@ pub(super) fn parameters(scaled: &Scaled) -> Result<Vec<f64>, FitError> {
     }
     let steepest = steepest(scaled);
     let is_step = |b: f64| b.abs() >= (1.0 - 1e-9) * steepest[usize::from(b > 0.0)];
-    let start = start(scaled, &steepest);
+    let start = start(scaled, &steepest).ok_or(FitError::Overflow)?;
     // There the search would go on towards ever sharper bends.
     if is_step(start[2]) {
         return Err(FitError::Step);
     }
-    let [alpha, beta, b] = polish(scaled, start)?.into();
+    let foot = foot(start[2]);
+    let [alpha, beta, b] = polish(scaled, start, foot)?.into();
     if b.abs() < STRAIGHT {
         return Err(FitError::Straight);
     }
@@ -38,8 +41,13 @@ pub(super) fn parameters(scaled: &Scaled) -> Result<Vec<f64>, FitError> {
     }
     let ([middle, half], [mean, height]) = (scaled.x, scaled.y);
     let rate = b / half;
-    let amplitude = height * beta / b * (-rate * middle).exp();
+    let amplitude = height * beta / b * (-rate * (middle + half * foot)).exp();
     Ok(vec![amplitude, rate, mean + height * (alpha - beta / b)])
+}
+
+/// u₀, the end at which a curve of this b is steepest: the first point of falling ones, the last of rising ones.
+fn foot(b: f64) -> f64 {
+    if b < 0.0 { -1.0 } else { 1.0 }
 }
 
 /// (e^{bu} − 1)/b.
@@ -66,21 +74,23 @@ fn steepest(scaled: &Scaled) -> [f64; 2] {
     [gap(u[0], u[1]), gap(u[u.len() - 2], u[u.len() - 1])]
 }
 
-/// The best of many b, each with its best α and β (Golub & Pereyra 1973).
-fn start(scaled: &Scaled, steepest: &[f64; 2]) -> Vector3<f64> {
+/// The best of many b, each with its best α and β (Golub & Pereyra 1973); `None` when numbers do not hold any.
+fn start(scaled: &Scaled, steepest: &[f64; 2]) -> Option<Vector3<f64>> {
     let trial = |sign: f64, limit: f64| {
         let ratio = (limit / LEAST).ln();
         (0..TRIALS).map(move |k| sign * LEAST * (ratio * k as f64 / (TRIALS - 1) as f64).exp())
     };
     let trials = trial(-1.0, steepest[0]).chain(trial(1.0, steepest[1]));
-    let best = trials.map(|b| projected(scaled, b)).min_by(|a, b| a.1.total_cmp(&b.1));
-    best.expect("there are trials").0
+    // A sum that is no number is no best one, whatever its sign.
+    let sums = trials.map(|b| projected(scaled, b)).filter(|(_, left)| left.is_finite());
+    let best = sums.min_by(|a, b| a.1.total_cmp(&b.1));
+    best.map(|(at, _)| at)
 }
 
 /// α and β nearest to the points at this b, and the sum of squares that is left.
 fn projected(scaled: &Scaled, b: f64) -> (Vector3<f64>, f64) {
     let n = scaled.u.len() as f64;
-    let bends: Vec<f64> = scaled.u.iter().map(|u| bend(b, *u)).collect();
+    let bends: Vec<f64> = scaled.u.iter().map(|u| bend(b, *u - foot(b))).collect();
     let (mean_g, mean_v) = (bends.iter().sum::<f64>() / n, scaled.v.iter().sum::<f64>() / n);
     let pairs = || bends.iter().zip(&scaled.v).map(|(g, v)| (g - mean_g, v - mean_v));
     let beta = pairs().map(|(g, v)| g * v).sum::<f64>() / pairs().map(|(g, _)| g * g).sum::<f64>();
@@ -88,8 +98,8 @@ fn projected(scaled: &Scaled, b: f64) -> (Vector3<f64>, f64) {
     (Vector3::new(mean_v - beta * mean_g, beta, b), left)
 }
 
-fn polish(scaled: &Scaled, start: Vector3<f64>) -> Result<Vector3<f64>, FitError> {
-    let problem = Problem { scaled, at: start };
+fn polish(scaled: &Scaled, start: Vector3<f64>, foot: f64) -> Result<Vector3<f64>, FitError> {
+    let problem = Problem { scaled, foot, at: start };
     let (problem, report) = LevenbergMarquardt::new().with_tol(4.0 * f64::EPSILON).minimize(problem);
     match report.termination {
         // The tolerances are those of the arithmetic, so that this is the end, too.
@@ -101,6 +111,8 @@ fn polish(scaled: &Scaled, start: Vector3<f64>) -> Result<Vector3<f64>, FitError
 
 struct Problem<'a> {
     scaled: &'a Scaled,
+    /// u₀.
+    foot: f64,
     /// α, β and b.
     at: Vector3<f64>,
 }
@@ -120,9 +132,10 @@ impl LeastSquaresProblem<f64, Dyn, U3> for Problem<'_> {
 
     fn residuals(&self) -> Option<DVector<f64>> {
         let [alpha, beta, b] = self.at.into();
-        let residual = |(u, v): (&f64, &f64)| alpha + beta * bend(b, *u) - v;
+        let residual = |(u, v): (&f64, &f64)| alpha + beta * bend(b, *u - self.foot) - v;
         let all: Vec<f64> = self.scaled.u.iter().zip(&self.scaled.v).map(residual).collect();
-        Some(DVector::from_vec(all))
+        // A trial step that goes beyond what numbers hold ends the search instead of leading it astray.
+        all.iter().all(|r| r.is_finite()).then(|| DVector::from_vec(all))
     }
 
     fn jacobian(&self) -> Option<OMatrix<f64, Dyn, U3>> {
@@ -130,8 +143,8 @@ impl LeastSquaresProblem<f64, Dyn, U3> for Problem<'_> {
         let u = &self.scaled.u;
         Some(OMatrix::<f64, Dyn, U3>::from_fn(u.len(), |row, column| match column {
             0 => 1.0,
-            1 => bend(b, u[row]),
-            _ => beta * bend_by_b(b, u[row]),
+            1 => bend(b, u[row] - self.foot),
+            _ => beta * bend_by_b(b, u[row] - self.foot),
         }))
     }
 }

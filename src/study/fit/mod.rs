@@ -101,6 +101,11 @@ pub enum FitError {
     /// The best curve is flat but for one end.
     #[error("the bend is sharper than the points are apart: all but one lie on a constant, so B cannot be told")]
     Step,
+    /// The curve needs numbers beyond those that there are.
+    #[error(
+        "A, or the curve itself, is beyond the range of numbers: count x from nearer to the points, or in a larger unit"
+    )]
+    Overflow,
     /// Levenberg–Marquardt gave up.
     #[error("Levenberg–Marquardt did not converge: {0}")]
     NotConverged(String),
@@ -141,27 +146,33 @@ impl Fit {
         let residuals: Vec<f64> = points.iter().map(|[x, y]| y - model.value(&parameters, *x)).collect();
         let squares: f64 = residuals.iter().map(|r| r * r).sum();
         let freedom = points.len().saturating_sub(parameters.len());
-        let variances = (freedom > 0).then(|| variances(model, &parameters, points)).flatten();
-        let errors = variances.map(|v| v.iter().map(|v| (v * squares / freedom as f64).sqrt()).collect::<Vec<_>>());
+        let units = (freedom > 0).then(|| unit_errors(model, &parameters, points)).flatten();
+        let s = (squares / freedom as f64).sqrt();
+        let errors = units.map(|units| units.iter().map(|unit| unit * s).collect::<Vec<_>>());
         let interval_95 = errors.as_ref().map(|errors| errors.iter().map(|e| t_95(freedom) * e).collect());
         let rms = (squares / points.len() as f64).sqrt();
         Self { model, parameters, errors, interval_95, residuals, rms }
     }
 }
 
-/// Diagonal of (JᵀJ)⁻¹; `None` when J does not tell the parameters apart. Columns are scaled, so that powers of x of very
+/// Standard errors of the parameters for s = 1, the roots of the diagonal of (JᵀJ)⁻¹; `None` when J does not tell the
+/// parameters apart, or when numbers do not hold them. Columns are scaled, so that powers and exponentials of x of very
 /// different size do not spoil the inverse.
-fn variances(model: Model, parameters: &[f64], points: &[[f64; 2]]) -> Option<Vec<f64>> {
+fn unit_errors(model: Model, parameters: &[f64], points: &[[f64; 2]]) -> Option<Vec<f64>> {
     let rows: Vec<f64> = points.iter().flat_map(|[x, _]| model.gradient(parameters, *x)).collect();
     let mut jacobian = DMatrix::from_row_slice(points.len(), parameters.len(), &rows);
-    let norms: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
-    for (mut column, norm) in jacobian.column_iter_mut().zip(&norms) {
-        column /= *norm;
+    // By their greatest entry and not their norm, whose squares may vanish.
+    let scales: Vec<f64> = jacobian.column_iter().map(|column| column.amax()).collect();
+    if !scales.iter().all(|scale| *scale > 0.0 && scale.is_finite()) {
+        return None;
+    }
+    for (mut column, scale) in jacobian.column_iter_mut().zip(&scales) {
+        column /= *scale;
     }
     // Through R of J = Q R, whose condition is the root of that of JᵀJ.
     let inverse = jacobian.qr().r().try_inverse()?;
-    let variance = |(row, norm): (usize, &f64)| inverse.row(row).norm_squared() / norm.powi(2);
-    Some(norms.iter().enumerate().map(variance).collect())
+    let errors: Vec<f64> = scales.iter().enumerate().map(|(row, scale)| inverse.row(row).norm() / scale).collect();
+    errors.iter().all(|error| error.is_finite()).then_some(errors)
 }
 
 /// The curve of a kind through points (x, y), by least squares.
@@ -182,7 +193,10 @@ pub fn fit(model: Model, points: &[[f64; 2]]) -> Result<Fit, FitError> {
         Model::Exponential => exponential::parameters(&scaled)?,
         _ => polynomial::parameters(&scaled, need),
     };
-    Ok(Fit::new(model, parameters, points))
+    let fit = Fit::new(model, parameters, points);
+    // The formula itself, as people will use it, has to hold too: A exp(B x) may be ∞ × 0 far from zero.
+    let holds = fit.parameters.iter().chain(&fit.residuals).chain([&fit.rms]).all(|value| value.is_finite());
+    if holds { Ok(fit) } else { Err(FitError::Overflow) }
 }
 
 /// Number of different abscissae.

@@ -171,3 +171,54 @@ fn overfitting_shows() {
     let rms = |model| found.model(model).fit.as_ref().map(|fit| fit.rms);
     assert!(rms(Model::Parabola).unwrap() < rms(Model::Constant).unwrap());
 }
+
+/// An axis in decades, where most points crowd together at one end: e^{bu} from its middle would overflow, and the best of
+/// many b that are no numbers is none.
+#[test]
+fn axes_of_any_scale_have_their_exponential() {
+    let decades = [2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1000.0];
+    for scale in [1e-9, 1.0, 1e6] {
+        let xs = decades.map(|x| x * scale);
+        for parameters in [[-60.0, -0.28 / scale, 200.95], [3.0, -0.5 / scale, -7.0], [2.0, 0.004 / scale, 1.0]] {
+            let found = fit(Model::Exponential, &on_curve(parameters, &xs)).unwrap();
+            for (value, right) in found.parameters.iter().zip(parameters) {
+                assert!((value - right).abs() < 1e-6 * right.abs(), "{:?} instead of {parameters:?}", found.parameters);
+            }
+        }
+    }
+}
+
+/// A curve whose A no number holds is refused with a word, and cross-validation does not take it for the best.
+#[test]
+fn a_curve_beyond_the_range_of_numbers_is_refused() {
+    let far: Vec<[f64; 2]> = even(1e4, 1e4 + 10.0, 7).iter().map(|x| [*x, 5.0 + (-(*x - 1e4)).exp()]).collect();
+    assert_eq!(fit(Model::Exponential, &far), Err(FitError::Overflow));
+    let found = compare(&far);
+    assert!(found.model(Model::Exponential).cross_validation.is_err());
+    assert!(found.best.is_some_and(|best| best != Model::Exponential));
+    assert!(found.models.iter().flat_map(|one| &one.cross_validation).all(|one| one.mean.is_finite()));
+}
+
+/// Strength [MPa] of a wire over the Weibull modulus of its bonds (tests/studies/fit-log-axis). Right values by
+/// scipy.optimize.curve_fit 1.x, and by a search in B alone with A and C by linear least squares: 161.62298, −0.28022553,
+/// 200.96152, standard errors 16.39133, 0.03896311, 2.61414647, rms 3.53212072.
+#[test]
+fn a_study_in_decades_has_the_exponential_that_scipy_finds() {
+    let points = [
+        [2.0, 295.97511369288753],
+        [3.0, 267.4738511405922],
+        [5.0, 238.5218128211608],
+        [10.0, 217.01992752407057],
+        [30.0, 203.43232378639271],
+        [100.0, 198.9040005458643],
+        [1000.0, 197.06269792056983],
+    ];
+    let found = fit(Model::Exponential, &points).unwrap();
+    let near = |value: f64, right: f64| assert!((value / right - 1.0).abs() < 1e-6, "{value} instead of {right}");
+    let right = [161.62298097, -0.28022553, 200.96151671];
+    found.parameters.iter().zip(right).for_each(|(value, right)| near(*value, right));
+    let errors = [16.39133242, 0.03896311, 2.61414647];
+    found.errors.as_ref().unwrap().iter().zip(errors).for_each(|(value, right)| near(*value, right));
+    near(found.rms, 3.5321207204);
+    assert_eq!(compare(&points).best, Some(Model::Exponential));
+}

@@ -2,6 +2,7 @@
 
 use super::raw::{RawAxis, RawLevel};
 use crate::base::error::Result;
+use crate::base::units::{self, Dimension};
 use crate::scene::SceneSource;
 use toml::Value;
 
@@ -23,6 +24,8 @@ pub struct Axis {
 pub struct Level {
     /// As people read it: "39 mm".
     pub name: String,
+    /// As it stands in the study, which may be in another unit.
+    pub written: String,
     /// As a number in the axis' unit, if it is one.
     pub number: Option<f64>,
     /// What it changes.
@@ -45,8 +48,19 @@ impl Axis {
     }
 }
 
-/// Resolves all axes; those that zip are taken into the one before them.
-pub(super) fn axes(raw: &[RawAxis], source: &SceneSource) -> Result<Vec<Axis>> {
+/// Levels of one meaning that were taken as one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Merged {
+    /// Name of the axis.
+    pub axis: String,
+    /// The level that stays, as it is told.
+    pub kept: String,
+    /// The one that says the same, as it was written.
+    pub same: String,
+}
+
+/// Resolves all axes, and says which levels were taken as one; those that zip are taken into the one before them.
+pub(super) fn axes(raw: &[RawAxis], source: &SceneSource) -> Result<(Vec<Axis>, Vec<Merged>)> {
     let mut axes: Vec<Axis> = Vec::new();
     for (index, raw) in raw.iter().enumerate() {
         let at = format!("axis.{index}");
@@ -63,7 +77,29 @@ pub(super) fn axes(raw: &[RawAxis], source: &SceneSource) -> Result<Vec<Axis>> {
             axes.push(axis);
         }
     }
-    Ok(axes)
+    let merged = axes.iter_mut().flat_map(merge).collect();
+    Ok((axes, merged))
+}
+
+/// Takes levels that change the same keys to the same values as one: the first.
+fn merge(axis: &mut Axis) -> Vec<Merged> {
+    // Levels of several keys were written and named one by one; two of them that say the same are an error, which shows
+    // when their scenes are compared.
+    if axis.key.is_none() {
+        return Vec::new();
+    }
+    let mut kept: Vec<Level> = Vec::new();
+    let mut merged = Vec::new();
+    for level in std::mem::take(&mut axis.levels) {
+        match kept.iter().find(|before| before.set == level.set) {
+            Some(before) => {
+                merged.push(Merged { axis: axis.name.clone(), kept: before.name.clone(), same: level.written });
+            }
+            None => kept.push(level),
+        }
+    }
+    axis.levels = kept;
+    merged
 }
 
 /// Takes `along` into `axis`, level by level.
@@ -104,7 +140,8 @@ fn axis(raw: &RawAxis, at: &str, source: &SceneSource) -> Result<Axis> {
             if values.is_empty() {
                 return error("values", "the axis has no value", "give at least one");
             }
-            values.iter().map(|value| level(key, value)).collect::<Vec<_>>()
+            let values = in_one_unit(&values);
+            values.iter().map(|(value, written)| level(key, value, written)).collect::<Vec<_>>()
         }
     };
     let key = raw.key.as_deref().expect("the other cases have returned");
@@ -125,7 +162,7 @@ fn several(name: &str, raw: &[RawLevel], at: &str, source: &SceneSource) -> Resu
             return Err(source.error(&here, format!("two levels are called `{name}`"), "give each its own `name`"));
         }
         let number = name.trim().parse().ok().filter(|number: &f64| number.is_finite());
-        levels.push(Level { name: name.clone(), number, set: level.set.clone() });
+        levels.push(Level { name: name.clone(), written: name.clone(), number, set: level.set.clone() });
     }
     if levels.is_empty() {
         return Err(source.error(&format!("{at}.levels"), "the axis has no level", "give at least one"));
@@ -133,15 +170,53 @@ fn several(name: &str, raw: &[RawLevel], at: &str, source: &SceneSource) -> Resu
     Ok(Axis { name: name.to_owned(), key: None, unit: String::new(), levels })
 }
 
+/// Values, each with how it was written: numbers in the unit of the first of them, and the same text for the same number.
+/// Values that have no kind of quantity in common stay as they are.
+fn in_one_unit(values: &[Value]) -> Vec<(Value, Value)> {
+    let numbers: Vec<(f64, String)> = values.iter().filter_map(number_and_unit).collect();
+    let si = |(number, unit): &(f64, String), dimension| units::parse(&format!("{number} {unit}"), dimension).ok();
+    let fits = |dimension: &&Dimension| numbers.iter().all(|number| si(number, **dimension).is_some());
+    let (Some((_, unit)), Some(dimension)) = (numbers.first(), Dimension::ALL.iter().find(fits)) else {
+        return values.iter().map(|value| (value.clone(), value.clone())).collect();
+    };
+    let one = si(&(1.0, unit.clone()), *dimension).expect("the unit fits");
+    let mut seen: Vec<(f64, Value)> = Vec::new();
+    let mut convert = |value: &Value| {
+        let Some((number, own)) = number_and_unit(value) else { return (value.clone(), value.clone()) };
+        let (number, text) = match own == *unit {
+            true => (number, value.clone()),
+            false => {
+                let number = figures(si(&(number, own), *dimension).expect("every number fits") / one);
+                (number, with_unit(number, unit))
+            }
+        };
+        let text = match seen.iter().find(|(before, _)| *before == number) {
+            Some((_, before)) => before.clone(),
+            None => {
+                seen.push((number, text.clone()));
+                text
+            }
+        };
+        (text, value.clone())
+    };
+    values.iter().map(&mut convert).collect()
+}
+
+/// A number as it stands in a scene.
+fn with_unit(number: f64, unit: &str) -> Value {
+    if unit.is_empty() { Value::Float(number) } else { Value::String(format!("{number} {unit}")) }
+}
+
 /// A level of one key, and its unit.
-fn level(key: &str, value: &Value) -> (Level, Option<String>) {
+fn level(key: &str, value: &Value, written: &Value) -> (Level, Option<String>) {
     let split = number_and_unit(value);
-    let shown = match value {
+    let shown = |value: &Value| match value {
         Value::String(text) => text.clone(),
         other => other.to_string(),
     };
     let (number, unit) = split.map_or((None, None), |(number, unit)| (Some(number), Some(unit)));
-    (Level { name: shown, number, set: vec![format!("{key}={value}")] }, unit)
+    let (name, written) = (shown(value), shown(written));
+    (Level { name, written, number, set: vec![format!("{key}={value}")] }, unit)
 }
 
 /// The unit that all levels share; `None` when they do not.
@@ -182,9 +257,12 @@ fn range(from: &Value, to: &Value, points: i64, at: &str, source: &SceneSource) 
     }
     let value = |k: i64| {
         let exact = first + (last - first) * k as f64 / (points - 1) as f64;
-        // Twelve figures, so that 41.5 does not become 41.50000000000001.
-        let number: f64 = format!("{exact:.11e}").parse().expect("it was written as a number");
-        if unit.is_empty() { Value::Float(number) } else { Value::String(format!("{number} {unit}")) }
+        with_unit(figures(exact), &unit)
     };
     Ok((0..points).map(value).collect())
+}
+
+/// Twelve figures, so that 41.5 does not become 41.50000000000001.
+fn figures(exact: f64) -> f64 {
+    format!("{exact:.11e}").parse().expect("it was written as a number")
 }

@@ -1,14 +1,18 @@
 //! A study as it was read: base scene, axes, points and cases.
 
-use super::axis::{self, Axis};
+use super::axis::{self, Axis, Merged};
+use super::conflicts;
 use super::quantity::{self, Quantity};
 use super::raw::{RawDesign, RawQuality, RawSeeds, RawStudy};
 use crate::base::error::{Error, Result};
 use crate::scene::plan::Plan;
 use crate::scene::quality::Quality;
+use crate::scene::spec::Spec;
 use crate::scene::suggest::nearest;
 use crate::scene::{self, SceneSource};
+use crate::study::cases::record::Identity;
 use crate::study::screening::{self, Model};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Most cases of a study: more is a typing error.
@@ -71,6 +75,8 @@ pub struct Definition {
     pub base: String,
     /// What it varies.
     pub axes: Vec<Axis>,
+    /// Values of axes that say the same as another.
+    pub merged: Vec<Merged>,
     /// Chosen points: the level of every axis.
     pub points: Vec<Vec<usize>>,
     /// The model of effects that the points were picked for, when the study has a design.
@@ -125,7 +131,8 @@ impl Definition {
         let about = raw.about.clone().ok_or_else(|| missing("about", "say in a sentence what the study asks"))?;
         let base = raw.base.as_ref().ok_or_else(|| missing("base", "add it, for example base = \"ka4\""))?;
         let base = base_scene(base, folder);
-        let axes = axis::axes(&raw.axis, &source)?;
+        let (axes, merged) = axis::axes(&raw.axis, &source)?;
+        conflicts::check(&axes, &raw, changes, &source)?;
         let quality = changes.quality.unwrap_or_else(|| quality(raw.quality.as_ref()));
         let own = scene::load(&base, &[])?;
         let seeds = match changes.seeds.is_empty() {
@@ -154,6 +161,7 @@ impl Definition {
             fits: fits(&raw.fits, &axes, &source)?,
             compare: beside(&raw.compare, &source)?,
             axes,
+            merged,
             points,
             model,
             seeds,
@@ -161,14 +169,40 @@ impl Definition {
             common,
             scatters: Vec::new(),
         };
-        definition.scatters = (0..definition.points.len()).map(|point| definition.scatters(point)).collect();
+        definition.look_at_points(&source)?;
         Ok(definition)
     }
 
-    /// Whether a seed makes a difference at a point; a scene that is refused may.
-    fn scatters(&self, point: usize) -> bool {
+    /// Finds out at which points a seed makes a difference; a scene that is refused may.
+    ///
+    /// # Errors
+    /// When two points have the same scene, so that what is varied between them changes nothing.
+    fn look_at_points(&mut self, source: &SceneSource) -> Result<()> {
         let first = self.seeds.first().copied().unwrap_or_default();
-        scene::load(&self.base, &self.overrides(point, first)).map_or(true, |scene| Plan::new(&scene.spec).scatter)
+        let mut seen: HashMap<String, usize> = HashMap::new();
+        for point in 0..self.points.len() {
+            let scene = scene::load(&self.base, &self.overrides(point, first));
+            self.scatters.push(scene.as_ref().map_or(true, |scene| Plan::new(&scene.spec).scatter));
+            let Ok(scene) = scene else { continue };
+            // A name or a sentence makes no other run.
+            let bare = Spec { name: String::new(), about: String::new(), ..scene.spec };
+            if let Some(before) = seen.insert(Identity::of(&bare, None, false).name(), point) {
+                let [one, other] = [before, point].map(|point| self.point_name(point));
+                let what = format!("`{one}` and `{other}` are the same scene, so that they would be one run twice");
+                let key = format!("axis.{}", self.differs(before, point));
+                return Err(source.error(
+                    &key,
+                    what,
+                    "what the axis changes has no effect in this scene: vary another key",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// The first axis in which two points differ, as it is numbered in the study file where no axis zips.
+    fn differs(&self, a: usize, b: usize) -> usize {
+        (0..self.axes.len()).find(|k| self.points[a][*k] != self.points[b][*k]).unwrap_or(0)
     }
 
     /// Options of a point with a seed, in the order in which they win: quality, the study's, the axes', the seed.

@@ -5,6 +5,7 @@
 pub mod axis;
 pub mod beside;
 pub mod breaks;
+mod conflicts;
 pub mod definition;
 pub mod gather;
 pub mod quantity;
