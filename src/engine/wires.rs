@@ -39,7 +39,7 @@ use meeting::Meets;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-/// Movement of a particle moves points of a centreline by up to this [-]: the weights of a cubic or a parabola.
+/// Movement of a particle moves points of a centreline by up to this [-]: the weights of a cubic or a quartic.
 const SPREAD: f64 = 1.25;
 
 /// What meets.
@@ -81,7 +81,7 @@ struct Contact<N: NormalLaw, T: TangentialLaw> {
     /// Lever arms of the two sides [m].
     arm: [f64; 2],
     /// Where the force acts on the two sides.
-    near: Weights<3>,
+    near: Weights<5>,
     far: Weights<4>,
 }
 

@@ -1,13 +1,11 @@
 //! Smooth centrelines through the particles of a wire.
 //!
 //! Between two bonded particles the centreline is a Catmull-Rom cubic: its tangents are half the way between the
-//! neighbours, so that it has no corners, and points of it are weighted means of four particles. Around a particle the
-//! wire of that particle is the parabola through it and its two neighbours. On a circle of radius R with an angle φ from
-//! one particle to the next the cubic lies (3/8) t²(1 − t)² R φ⁴ inside, the parabola (1/8)(u² − u⁴) R φ⁴ (a chord:
-//! ½ t(1 − t) R φ²). Both are moved outwards by that much of their own curvature, the parabola but for u⁴: what is left
-//! is of the order φ⁶, and 0.008 R φ⁴ of gap at half a bond.
+//! neighbours, so that it has no corners, and points of it are weighted means of four particles. On a helix that goes by
+//! an angle φ from one particle to the next it departs from the lay radius R by 0.023 R φ⁴ at most (a chord: 0.125 R φ²).
+//! Around a particle the wire of that particle is the quartic through it and its four next neighbours, good to R φ⁶/700.
 //!
-//! Where a neighbour is missing, the parabola of the three last particles goes on; two particles make a straight piece.
+//! Where neighbours are missing, the parabola of the three last particles goes on; two particles make a straight piece.
 //!
 //! A force at a point of a centreline goes to the particles with the weights of the point, so that its power is that of
 //! the particles, and neither momentum nor energy is lost.
@@ -129,71 +127,91 @@ fn before(state: &State, p: usize) -> bool {
     p > 0 && state.whole[p - 1]
 }
 
-/// The wire around a particle: a parabola.
+/// The wire around a particle: a quartic, or less where neighbours are missing.
 #[derive(Debug, Clone, Copy)]
 pub struct Around {
-    nodes: [u32; 3],
-    /// Place of the particle, from the middle node [-].
+    /// The first of the particles that it goes through, and their number.
+    first: u32,
+    count: u32,
+    /// Place of the particle, from the middle one of these [-].
     shift: f64,
-    /// Position of the middle node, and derivatives there [m].
-    middle: DVec3,
-    along: DVec3,
-    bend: DVec3,
-    /// By how much the second derivative is less than that of the parabola [-].
-    rounding: f64,
+    /// Coefficients of its powers [m].
+    powers: [DVec3; 5],
 }
 
 impl Around {
     /// Around particle `i`, which has a bond.
     #[inline(always)]
-    pub fn new(state: &State, i: usize) -> Self {
-        let (left, right) = (before(state, i), state.whole[i]);
-        // The middle of three that are joined; of two, the first twice.
-        let middle = match (left, right) {
-            (true, true) => i,
-            (false, _) => i + 1,
-            (true, false) => i - 1,
-        };
-        let whole = before(state, middle) && state.whole[middle];
-        let at = |p: usize| state.x.get(p);
-        if whole {
-            let (a, b, c) = (at(middle - 1), at(middle), at(middle + 1));
-            let nodes = [middle - 1, middle, middle + 1].map(|p| p as u32);
-            let shift = i as f64 - middle as f64;
-            let (along, bend) = ((c - a) * 0.5, a - b * 2.0 + c);
-            let rounding = 1.0 - 0.25 * bend.length_squared() / along.length_squared();
-            return Self { nodes, shift, middle: b, along, bend: bend * rounding, rounding };
+    pub fn new(state: &State, chains: &Chains, i: usize) -> Self {
+        let whole = &state.whole;
+        let inner = i >= 2 && whole.get(i - 2..i + 2).is_some_and(|near| near.iter().all(|w| *w));
+        // Bonds that hold one after the other to either side, as far as they matter.
+        let before = || whole[..i].iter().rev().take(4).take_while(|w| **w).count();
+        let after = || whole[i..].iter().take(4).take_while(|w| **w).count();
+        let (left, right) = if inner { (2, 2) } else { (before(), after()) };
+        // Beyond a break the curve goes on for half a bond: a quartic would swing there.
+        let [low, high] = chains.reach(i);
+        let swings = left == 0 && low < 0.0 || right == 0 && high > 0.0;
+        let half = if left + right >= 4 && !swings { 2 } else { usize::from(left + right >= 2) };
+        let first = if right < half { i + right - 2 * half } else { i - left.min(half) };
+        if half == 0 {
+            let first = i - left.min(1);
+            let (a, b) = (state.x.get(first), state.x.get(first + 1));
+            let zero = DVec3::ZERO;
+            return Self { first: first as u32, count: 2, shift: (i - first) as f64, powers: [a, b - a, zero, zero, zero] };
         }
-        let first = if left { i - 1 } else { i };
-        let (a, b) = (at(first), at(first + 1));
-        let nodes = [first, first, first + 1].map(|p| p as u32);
-        Self { nodes, shift: (i - first) as f64, middle: a, along: b - a, bend: DVec3::ZERO, rounding: 1.0 }
+        let shift = i as f64 - (first + half) as f64;
+        let x = |k: usize| state.x.get(first + k);
+        let powers = if half == 1 {
+            let (a, b, c) = (x(0), x(1), x(2));
+            [b, (c - a) * 0.5, (a + c) * 0.5 - b, DVec3::ZERO, DVec3::ZERO]
+        } else {
+            let (b, near, far) = (x(2), [x(1), x(3)], [x(0), x(4)]);
+            let (odd, even) = ([near[1] - near[0], far[1] - far[0]], [near[0] + near[1], far[0] + far[1]]);
+            [
+                b,
+                (odd[0] * 8.0 - odd[1]) * (1.0 / 12.0),
+                (even[0] * 16.0 - even[1] - b * 30.0) * (1.0 / 24.0),
+                (odd[1] - odd[0] * 2.0) * (1.0 / 12.0),
+                (even[1] - even[0] * 4.0 + b * 6.0) * (1.0 / 24.0),
+            ]
+        };
+        Self { first: first as u32, count: 2 * half as u32 + 1, shift, powers }
     }
 
-    /// The point at `u` bonds from the particle, and the first derivative there [m].
+    /// The point at `u` bonds from the particle, and the first and second derivative there [m].
     #[inline(always)]
-    pub fn at(&self, u: f64) -> [DVec3; 2] {
+    pub fn at(&self, u: f64) -> [DVec3; 3] {
         let u = u + self.shift;
-        [self.middle + (self.along + self.bend * (0.5 * u)) * u, self.along + self.bend * u]
-    }
-
-    /// Second derivative [m].
-    #[inline(always)]
-    pub fn bend(&self) -> DVec3 {
-        self.bend
+        let [a, b, c, d, e] = self.powers;
+        [
+            a + (b + (c + (d + e * u) * u) * u) * u,
+            b + (c * 2.0 + (d * 3.0 + e * (4.0 * u)) * u) * u,
+            c * 2.0 + (d * 6.0 + e * (12.0 * u)) * u,
+        ]
     }
 
     /// The weights of the point at `u` bonds from the particle.
     #[inline(always)]
-    pub fn weights(&self, u: f64) -> Weights<3> {
+    pub fn weights(&self, u: f64) -> Weights<5> {
         let u = u + self.shift;
-        let shares = if self.nodes[0] == self.nodes[1] {
-            [0.0, 1.0 - u, u]
-        } else {
-            let square = u * u * self.rounding;
-            [0.5 * (square - u), 1.0 - square, 0.5 * (square + u)]
+        let square = u * u;
+        let shares = match self.count {
+            2 => [1.0 - u, u, 0.0, 0.0, 0.0],
+            3 => [0.5 * (square - u), 1.0 - square, 0.5 * (square + u), 0.0, 0.0],
+            _ => {
+                let (near, far) = (square - 1.0, square - 4.0);
+                [
+                    u * (u - 2.0) * near * (1.0 / 24.0),
+                    -u * (u - 1.0) * far * (1.0 / 6.0),
+                    near * far * 0.25,
+                    -u * (u + 1.0) * far * (1.0 / 6.0),
+                    u * (u + 2.0) * near * (1.0 / 24.0),
+                ]
+            }
         };
-        Weights { nodes: self.nodes, shares }
+        let last = self.count - 1;
+        Weights { nodes: [0, 1, 2, 3, 4].map(|k: u32| self.first + k.min(last)), shares }
     }
 }
 
@@ -235,14 +253,6 @@ impl Cubic {
         let [a, b, c, d] = self.coefficients;
         [a + (b + (c + d * t) * t) * t, b + (c * 2.0 + d * (3.0 * t)) * t, c * 2.0 + d * (6.0 * t)]
     }
-
-    /// How much of its second derivative a point lies too far inside [-]. Beyond the ends of the bond the curve goes on
-    /// by itself.
-    #[inline(always)]
-    fn inside(t: f64, along: DVec3, bend: DVec3) -> f64 {
-        let bulge = (t * (1.0 - t)).max(0.0);
-        0.375 * bulge * bulge * bend.length_squared() / along.length_squared()
-    }
 }
 
 /// The weights of the point `t` of bond `slot`.
@@ -255,10 +265,6 @@ pub fn cubic_weights(state: &State, slot: usize, t: f64) -> Weights<4> {
         0.5 * (4.0 * t2 - 3.0 * t3 + t),
         0.5 * (t3 - t2),
     ];
-    let [_, along, bend] = Cubic::new(state, slot).at(t);
-    let inside = Cubic::inside(t, along, bend);
-    let second = [2.0 - 3.0 * t, 9.0 * t - 5.0, 4.0 - 9.0 * t, 3.0 * t - 1.0];
-    shares.iter_mut().zip(second).for_each(|(share, second)| *share -= inside * second);
     let (left, right) = (before(state, slot), state.whole[slot + 1]);
     let mut nodes = [slot.saturating_sub(1), slot, slot + 1, slot + 2].map(|p| p as u32);
     let [first, last] = [shares[0], shares[3]];
@@ -402,7 +408,6 @@ impl Other<'_> {
             }
         }
         let [point, along, bend] = cubic.at(place.t);
-        let point = point - bend * Cubic::inside(place.t, along, bend);
         let slip = (p - point).dot(along) / along.length_squared();
         let [low, high] = self.range(place.j as usize);
         let at_end = place.t <= low && slip < -CLOSE || place.t >= high && slip > CLOSE;

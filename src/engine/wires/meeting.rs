@@ -14,7 +14,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// sin² of the angle between two wires below which the gap is expanded around the particle, and above which around the
-/// narrowest place [-]: 2.5° and 8°. Below, a parabola around the particle is good to 1e-4 of the radius.
+/// narrowest place [-]: 2.5° and 8°. Below, the gap of straight wires is a parabola to 1e-4 of the radius.
 const CROSSING: [f64; 2] = [0.002, 0.02];
 /// Bonds along the other wire per bond along this one, below which the end of the other wire cuts nothing off [-]: the
 /// two cross.
@@ -44,7 +44,7 @@ struct Gap {
 
 impl Gap {
     #[inline(always)]
-    fn new([point, along]: [DVec3; 2], bend: DVec3, foot: &Foot) -> Self {
+    fn new([point, along, bend]: [DVec3; 3], foot: &Foot) -> Self {
         let away = point - foot.point;
         let (mut rate, mut second) = (0.0, away.dot(bend) + along.length_squared());
         if !foot.at_end {
@@ -112,11 +112,11 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
     fn lie(&self, c: &mut Contact<N, T>) -> Option<Lie> {
         let i = c.i as usize;
         let other = self.other(c);
-        let around = Around::new(self.state, i);
+        let around = Around::new(self.state, self.chains, i);
         let ends = self.chains.reach(i);
         let (mut u, mut at) = (0.0, around.at(0.0));
         let mut foot = other.foot(at[0], &mut c.place);
-        let mut gap = Gap::new(at, around.bend(), &foot);
+        let mut gap = Gap::new(at, &foot);
         let crossing = gap.second / at[1].length_squared();
         let t = ((crossing - CROSSING[0]) / (CROSSING[1] - CROSSING[0])).clamp(0.0, 1.0);
         if t > 0.0 {
@@ -127,7 +127,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
                 other.settle(&mut c.place);
             }
             foot = other.foot(at[0], &mut c.place);
-            gap = Gap::new(at, around.bend(), &foot);
+            gap = Gap::new(at, &foot);
         }
         let (distance, bond) = (gap.away.length(), at[1].length());
         let rise = gap.first / distance;
@@ -175,7 +175,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             let foot = self.other(c).foot(x.get(i), &mut c.place);
             (foot.point, self.state.radius[i] + c.place.between(&self.state.radius))
         };
-        c.near = Weights { nodes: [c.i; 3], shares: [1.0, 0.0, 0.0] };
+        c.near = Weights { nodes: [c.i; 5], shares: [1.0, 0.0, 0.0, 0.0, 0.0] };
         c.far = c.place.weights(self.state);
         let d = point - x.get(i);
         let distance = d.length();
