@@ -262,9 +262,7 @@ step = "5e-8 s"
 
 #[test]
 fn wires_that_pass_through_each_other_stop_the_run() {
-    for (shape, spacing) in
-        [("sphere", "1"), ("wire", "1"), ("sphere", "0.5"), ("sphere", "1.9"), ("wire", "1.9")]
-    {
+    for (shape, spacing) in [("sphere", "1"), ("wire", "1"), ("sphere", "0.5"), ("sphere", "1.9"), ("wire", "1.9")] {
         let set = [format!("contact.shape={shape}"), format!("spacing={spacing}")];
         let mut engine = engine(CROSSED, &set.each_ref().map(String::as_str));
         let trouble = until_trouble(&mut engine, 800).unwrap_or_else(|| panic!("{shape} {spacing}: nothing was seen"));

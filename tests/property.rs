@@ -2,8 +2,6 @@
 
 #[path = "property/bits.rs"]
 mod bits;
-#[path = "property/capsules.rs"]
-mod capsules;
 #[path = "property/conservation.rs"]
 mod conservation;
 #[path = "common/drive.rs"]
@@ -16,3 +14,5 @@ mod pace;
 mod random;
 #[path = "property/time.rs"]
 mod time;
+#[path = "property/wires.rs"]
+mod wires;

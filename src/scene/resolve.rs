@@ -79,9 +79,7 @@ fn refuse_gaps(at: &At, spacing: f64, contact: Option<&ContactSpec>) -> Result<(
         return Ok(());
     }
     let what = format!("spheres {spacing} diameters apart leave gaps that another wire passes through");
-    Err(at
-        .key("spacing")
-        .error(what, format!("take a spacing below {GAP}, or smooth wires: contact.shape = \"wire\"")))
+    Err(at.key("spacing").error(what, format!("take a spacing below {GAP}, or smooth wires: contact.shape = \"wire\"")))
 }
 
 fn scene_name(at: &At, raw: &RawScene, file: &str) -> Result<String> {

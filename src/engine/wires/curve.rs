@@ -158,7 +158,12 @@ impl Around {
             let first = i - left.min(1);
             let (a, b) = (state.x.get(first), state.x.get(first + 1));
             let zero = DVec3::ZERO;
-            return Self { first: first as u32, count: 2, shift: (i - first) as f64, powers: [a, b - a, zero, zero, zero] };
+            return Self {
+                first: first as u32,
+                count: 2,
+                shift: (i - first) as f64,
+                powers: [a, b - a, zero, zero, zero],
+            };
         }
         let shift = i as f64 - (first + half) as f64;
         let x = |k: usize| state.x.get(first + k);
@@ -239,12 +244,8 @@ impl Cubic {
             }
             (false, false) => (x1 * 2.0 - x2, x2 * 2.0 - x1),
         };
-        let coefficients = [
-            x1,
-            (x2 - x0) * 0.5,
-            x0 - x1 * 2.5 + x2 * 2.0 - x3 * 0.5,
-            ((x1 - x2) * 3.0 + x3 - x0) * 0.5,
-        ];
+        let coefficients =
+            [x1, (x2 - x0) * 0.5, x0 - x1 * 2.5 + x2 * 2.0 - x3 * 0.5, ((x1 - x2) * 3.0 + x3 - x0) * 0.5];
         Self { coefficients }
     }
 

@@ -88,12 +88,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
     }
 
     fn other(&self, c: &Contact<N, T>) -> Other<'_> {
-        Other {
-            chains: self.chains,
-            state: self.state,
-            i: c.i as usize,
-            own: self.chains.one_wire(c.i, c.place.j),
-        }
+        Other { chains: self.chains, state: self.state, i: c.i as usize, own: self.chains.one_wire(c.i, c.place.j) }
     }
 
     /// Overlap at the deepest place, counted in full [m]; negative where the bodies are apart.

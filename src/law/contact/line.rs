@@ -259,3 +259,145 @@ fn edges(depth: f64, slope: f64, curvature: f64) -> [f64; 2] {
 pub fn patch_length(overlap: f64, curvature: f64, length: f64) -> f64 {
     if curvature > 0.0 { length.min(2.0 * (2.0 * overlap.max(0.0) / curvature).sqrt()) } else { length }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::contact::NormalLaw;
+    use crate::law::contact::hertz::Hertz;
+    use crate::law::contact::thornton::Thornton;
+    use proptest::prelude::*;
+
+    const MODULUS: f64 = 65e9;
+    /// Of two wires of 0.4 mm.
+    const RADIUS: f64 = 0.1e-3;
+
+    fn near(value: f64, expected: f64, tolerance: f64) {
+        assert!((value - expected).abs() <= tolerance * expected.abs(), "{value} is not {expected}");
+    }
+
+    /// A patch of wires that cross at `angle` [rad], wholly within the stretch.
+    fn crossing(angle: f64, overlap: f64) -> Stretch {
+        let curvature = angle.sin().powi(2) / (4.0 * RADIUS);
+        let stiffness = MODULUS * LineStiffness::default().at(RADIUS, curvature);
+        Stretch { reduced_radius: RADIUS, stiffness, overlap, slope: 0.0, curvature, ends: [-1.0, 1.0] }
+    }
+
+    /// F₂ for a/b = 1, 2.07, 5.54, 21.26 (axes of the ellipses of cylinders that cross at 90, 60, 30, 10 degrees) from
+    /// the table of E and K in Abramowitz & Stegun, 17.
+    #[test]
+    fn stiffness_is_that_of_hertz_ellipses_and_of_the_line() {
+        let table = LineStiffness::default();
+        for (degrees, f2) in [(90.0f64, 1.0f64), (60.0, 0.98364), (30.0, 0.91509), (10.0, 0.76718), (2.0, 0.54871)] {
+            let sine = degrees.to_radians().sin();
+            near(table.at(RADIUS, sine * sine / (4.0 * RADIUS)), 0.5 * sine.sqrt() * f2.powf(-1.5), 1e-3);
+        }
+        for curvature in [-10.0, 0.0, 0.1] {
+            assert_eq!(table.at(RADIUS, curvature), LINE);
+        }
+        // δ = f/(πE*) (2 ln(4r/b) − 1) at b/r = 0.013.
+        near(LINE, PI / (2.0 * (4.0f64 / 0.013).ln() - 1.0), 0.01);
+    }
+
+    #[test]
+    fn a_round_patch_is_hertz_and_beyond_yield_thornton() {
+        let right = std::f64::consts::FRAC_PI_2;
+        let hertz = Hertz { effective_modulus: MODULUS };
+        // Crossed wires of radius r are a ball of radius r on a plane: twice R*.
+        let ball = 2.0 * RADIUS;
+        for overlap in [1e-9, 1e-6, 2e-5] {
+            let line = hertz.line_response(&mut (), &crossing(right, overlap));
+            near(line.force, hertz.response(&mut (), ball, overlap).force, 1e-12);
+            near(line.stiffness, hertz.response(&mut (), ball, overlap).stiffness, 1e-12);
+            near(line.energy, hertz.elastic_energy(&(), ball, overlap), 1e-12);
+        }
+        let law = Thornton { effective_modulus: MODULUS, limiting_pressure: 1e9 };
+        let at = law.yield_overlap(ball);
+        for multiple in [0.5, 0.99, 1.5, 3.0, 10.0, 1e3, 1e5] {
+            let line = law.line_response(&mut Default::default(), &crossing(right, multiple * at));
+            near(line.force, law.response(&mut Default::default(), ball, multiple * at).force, 1.5e-2);
+        }
+    }
+
+    #[test]
+    fn the_limit_is_that_of_the_closed_form_and_smooth_at_yield() {
+        for i in 1..400 {
+            let x = 1.0 + 0.02 * f64::from(i * i) / 40.0;
+            let exact = FRAC_2_PI * (x * (1.0 / x.sqrt()).asin() + (x - 1.0f64).sqrt());
+            near(limit(x), exact, 8e-3);
+            // The plastic work is ∫ f dδ − f²/2k.
+            let h = 1e-4 * x;
+            let slope = (plastic_work(x + h) - plastic_work(x - h)) / (2.0 * h);
+            let rate = limit(x) * (1.0 - (limit(x + h) - limit(x - h)) / (2.0 * h));
+            assert!((slope - rate).abs() < 1e-5 * limit(x), "at {x}: {slope} {rate}");
+            assert!(limit(limit_reached(limit(x))) <= limit(x) * 1.02);
+        }
+        near(limit(1.0 + 1e-9), 1.0, 1e-8);
+    }
+
+    /// A patch cut into pieces carries what the whole one does.
+    #[test]
+    fn a_patch_may_be_shared_by_stretches() {
+        for (angle, pressure) in [(0.05, f64::INFINITY), (0.3, f64::INFINITY), (0.05, 4e8), (1.2, 4e8)] {
+            let whole = crossing(angle, 3e-6);
+            let force = respond(&whole, pressure, &mut 0.0).force;
+            let half = (2.0 * whole.overlap / whole.curvature).sqrt();
+            for cut in [-0.9f64, -0.4, 0.0, 0.3] {
+                // Each piece with its own deepest place: the vertex, or the cut.
+                let at = cut * half;
+                let side = |from: f64, to: f64| {
+                    let deepest = 0.0f64.clamp(from, to);
+                    let overlap = whole.overlap - 0.5 * whole.curvature * deepest * deepest;
+                    let slope = -whole.curvature * deepest;
+                    respond(
+                        &Stretch { overlap, slope, ends: [from - deepest, to - deepest], ..whole },
+                        pressure,
+                        &mut 0.0,
+                    )
+                };
+                let (left, right) = (side(-1.0, at), side(at, 1.0));
+                near(left.force + right.force, force, if pressure.is_finite() { 1e-2 } else { 1e-12 });
+            }
+        }
+    }
+
+    #[test]
+    fn on_the_way_back_a_dent_does_not_push_and_energy_is_the_work() {
+        let mut state = 0.0;
+        let turns = [0.0, 2e-6, 1.9e-6, 3e-6, 0.0, 3e-6, 4e-6, 0.0];
+        let (mut work, mut plastic, mut before) = (0.0, 0.0, 0.0);
+        for pair in turns.windows(2) {
+            let steps = 20_000;
+            let step = (pair[1] - pair[0]) / f64::from(steps);
+            for i in 1..=steps {
+                let overlap = pair[0] + f64::from(i) * step;
+                let answer = respond(&crossing(0.2, overlap), 4e8, &mut state);
+                assert!(answer.plastic_work >= 0.0 && answer.force >= 0.0);
+                work += 0.5 * (before + answer.force) * step;
+                plastic += answer.plastic_work;
+                before = answer.force;
+            }
+        }
+        assert_eq!((before, state), (0.0, 4e-6));
+        near(work, plastic, 1e-2);
+        let dent = respond(&crossing(0.2, 3.5e-6), 4e8, &mut state.clone());
+        assert_eq!(dent.force, 0.0, "what has sprung back no longer touches");
+    }
+
+    proptest! {
+        #[test]
+        fn the_force_is_continuous_and_never_pulls(
+            overlap in 1e-9..1e-5f64, slope in -0.01..0.01f64, curvature in -5.0..2000.0f64, back in 0.0..1e-6f64,
+        ) {
+            let ends = [-0.2e-3, 0.2e-3];
+            let answer = |overlap: f64| {
+                let stiffness = MODULUS * LINE;
+                let stretch = Stretch { reduced_radius: RADIUS, stiffness, overlap, slope, curvature, ends };
+                respond(&stretch, 5e8, &mut (overlap + back))
+            };
+            let (here, there) = (answer(overlap), answer(overlap * (1.0 + 1e-7)));
+            prop_assert!(here.force >= 0.0 && here.energy >= 0.0 && here.centre.abs() <= 0.2e-3);
+            prop_assert!((here.force - there.force).abs() <= 1e-3 * here.force.max(1e-6), "{here:?} {there:?}");
+        }
+    }
+}

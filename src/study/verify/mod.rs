@@ -3,7 +3,7 @@
 
 mod beams;
 mod capstan;
-mod capsules;
+
 mod conservation;
 mod contacts;
 mod critical_step;
@@ -24,6 +24,7 @@ mod strands;
 pub mod support;
 mod vibration;
 mod waves;
+mod wires;
 mod written;
 
 use crate::base::error::{Error, Result};
@@ -73,9 +74,9 @@ pub const CASES: &[Case] = &[
     contacts::ROLLING,
     oblique::OBLIQUE,
     // Contacts of wires
-    capsules::SLIDING_WIRES,
-    capsules::SPHERE_ON_WIRE,
-    capsules::CROSSED_WIRES,
+    wires::SLIDING_WIRES,
+    wires::SPHERE_ON_WIRE,
+    wires::CROSSED_WIRES,
     capstan::CAPSTAN,
     // Plasticity and rupture
     plasticity::PULLED,
