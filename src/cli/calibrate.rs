@@ -117,7 +117,7 @@ pub fn run(args: &Args) -> Result<Ended> {
     say!("\n{}", claim(&best, &seeds, &target));
     let [kept, other] = [|t: &Trial| t.kept, |t: &Trial| t.other_build].map(|of| trials.iter().map(of).sum::<usize>());
     if kept > 0 {
-        say!("{kept} runs were there from before, {other} of them by another build; --fresh makes them again.");
+        say!("{kept} runs were there already, {other} of them by another build; --fresh makes them again.");
     }
     say!("\nThe scene that reproduces the test:");
     best.setting.overrides().iter().for_each(|option| say!("  --set \"{option}\""));

@@ -2,8 +2,8 @@
 //!
 //! Two numbers are fitted to two: a factor on the hardening part of the Voce law (Q and H together; σ₀ stays what
 //! annealed copper has) and the plastic strain at rupture p_f. Everything else stays as the scene has it. The search is
-//! Broyden's (1965), started from what a uniformly pulled wire says: the elongation is e^(p_f) − 1, and the nominal
-//! strength σ_y(p_f)e^(−p_f).
+//! Newton's with the slopes of a uniformly pulled wire that breaks where the strand did: the elongation is e^p − 1, the
+//! nominal strength σ_y(p)e^(−p), and p goes with p_f. Along the last step the slopes are what it found (Broyden 1965).
 //!
 //! One draw of the scatter is one strand, so a setting is judged by the mean over seeds. The seeds are the same at every
 //! setting (common random numbers): the same bonds stay the weak ones, and the means change smoothly with the setting.
@@ -157,25 +157,29 @@ impl Start {
         })
     }
 
-    /// Setting for a factor on the hardening and a rupture strain [-], to four figures.
+    /// Setting for a factor on the hardening and one on the rupture strain [-], to four figures.
     fn setting(&self, x: DVec2) -> Setting {
         let round = |value: f64, places: i32| (value * 10f64.powi(places)).round() / 10f64.powi(places);
         Setting {
             saturation: round(self.saturation * x.x * 1e-6, 1),
             linear: round(self.linear * x.x * 1e-6, 1),
-            rupture_strain: round(x.y * 100.0, 3),
+            rupture_strain: round(self.rupture_strain * x.y * 100.0, 3),
         }
     }
 
-    /// d(strength [MPa], elongation [%]) / d(factor, rupture strain) of one uniformly pulled wire.
-    fn slopes(&self, p: f64) -> DMat2 {
+    /// d(strength [MPa], elongation [%]) / d(factor on the hardening, factor on the rupture strain) at factors `x` of a
+    /// uniformly pulled wire that breaks at plastic strain `p` [-]: where it does go with the rupture strain, and the
+    /// weakest bond of a body with scatter does.
+    fn slopes(&self, x: DVec2, p: f64) -> DMat2 {
         let decay = (-self.rate * p).exp();
         let hardening = self.saturation * (1.0 - decay) + self.linear * p;
-        let slope = self.saturation * self.rate * decay + self.linear;
+        let stress = self.yield_stress + x.x * hardening;
+        let slope = x.x * (self.saturation * self.rate * decay + self.linear);
         let shrink = (-p).exp() * 1e-6;
+        let by_factor = p / x.y;
         DMat2::from_cols(
             DVec2::new(hardening * shrink, 0.0),
-            DVec2::new((slope - self.yield_stress - hardening) * shrink, 100.0 * p.exp()),
+            DVec2::new((slope - stress) * shrink, 100.0 * p.exp()) * by_factor,
         )
     }
 }
@@ -191,8 +195,7 @@ pub fn calibrate(calibration: &Calibration, target: &Target, tried: &mut dyn FnM
     record::open(calibration.folder, calibration.fresh)?;
     let all = calibration.seeds.len();
     let few = (all / COARSER).max(FEWEST).min(all);
-    let mut x = DVec2::new(1.0, start.rupture_strain);
-    let mut slopes = start.slopes(start.rupture_strain);
+    let mut x = DVec2::ONE;
     let mut last: Option<(DVec2, DVec2)> = None;
     let mut count = few;
     for number in 1..=MOST_SETTINGS {
@@ -203,9 +206,8 @@ pub fn calibrate(calibration: &Calibration, target: &Target, tried: &mut dyn FnM
             return Ok(trial);
         }
         let miss = trial.miss(target);
-        if let Some((x_last, miss_last)) = last {
-            slopes = broyden(slopes, x - x_last, miss - miss_last);
-        }
+        let wire = start.slopes(x, (0.01 * trial.elongation.mean).ln_1p());
+        let slopes = last.map_or(wire, |(x_last, miss_last)| broyden(wire, x - x_last, miss - miss_last));
         // The other seeds are run where the few arrived, whose runs are kept; where the few miss, one step further.
         let enough = count < all && (met || number == COARSE);
         last = Some((x, miss)).filter(|_| !enough);
@@ -213,7 +215,7 @@ pub fn calibrate(calibration: &Calibration, target: &Target, tried: &mut dyn FnM
             count = all;
         }
         if !met {
-            x = next(x, slopes, miss)?;
+            x = next(x, slopes, miss, start.rupture_strain)?;
         }
     }
     Err(Error::input(
@@ -222,11 +224,11 @@ pub fn calibrate(calibration: &Calibration, target: &Target, tried: &mut dyn FnM
     ))
 }
 
-/// The next factor on the hardening and rupture strain.
+/// The next factors on the hardening and on the rupture strain, which is `rupture_strain` [-] at 1.
 ///
 /// # Errors
 /// When one of them would have to be below zero: what the runs give does not follow them any more.
-fn next(x: DVec2, slopes: DMat2, miss: DVec2) -> Result<DVec2> {
+fn next(x: DVec2, slopes: DMat2, miss: DVec2, rupture_strain: f64) -> Result<DVec2> {
     let next = x - slopes.inverse() * miss;
     if next.cmpgt(DVec2::ZERO).all() {
         return Ok(next);
@@ -235,7 +237,7 @@ fn next(x: DVec2, slopes: DMat2, miss: DVec2) -> Result<DVec2> {
         "strength and elongation do not follow hardening and rupture strain any more: the next run would need {:.3} times \
          the hardening and a rupture strain of {:.1} %",
         next.x,
-        100.0 * next.y
+        100.0 * rupture_strain * next.y
     );
     let help = "wires that neck before they rupture (Considère: hardening below the stress) do not get longer with the \
                 rupture strain; start with more bond.hardening.linear and less bond.hardening.saturation";
@@ -337,25 +339,27 @@ mod tests {
     #[test]
     fn a_target_out_of_reach_is_told() {
         let slopes = DMat2::from_diagonal(DVec2::new(200.0, 100.0));
-        let x = DVec2::new(1.0, 0.3);
-        assert!((next(x, slopes, DVec2::new(20.0, 10.0)).unwrap() - DVec2::new(0.9, 0.2)).length() < 1e-12);
+        let x = DVec2::ONE;
+        let near = next(x, slopes, DVec2::new(20.0, 10.0), 0.3).unwrap();
+        assert!((near - DVec2::new(0.9, 0.9)).length() < 1e-12);
         // A wire that necked: 20 % more of rupture strain gave nothing, so that the slope has the other sign.
-        let flat = DMat2::from_diagonal(DVec2::new(200.0, -1.0));
-        let error = next(x, flat, DVec2::new(0.0, -2.0)).unwrap_err().to_string();
+        let flat = DMat2::from_diagonal(DVec2::new(200.0, -0.3));
+        let error = next(x, flat, DVec2::new(0.0, -2.0), 0.3).unwrap_err().to_string();
         assert!(error.contains("a rupture strain of -170.0 %"), "{error}");
     }
 
     #[test]
     fn slopes_are_those_of_a_pulled_wire() {
         let start = Start { yield_stress: 100e6, saturation: 180e6, rate: 12.0, linear: 550e6, rupture_strain: 0.25 };
-        let wire = |factor: f64, p: f64| {
-            let stress = 100e6 + factor * (180e6 * (1.0 - (-12.0 * p).exp()) + 550e6 * p);
+        // Its weakest bond breaks at nine tenths of the rupture strain.
+        let wire = |x: DVec2| {
+            let p = 0.9 * 0.25 * x.y;
+            let stress = 100e6 + x.x * (180e6 * (1.0 - (-12.0 * p).exp()) + 550e6 * p);
             DVec2::new(stress * (-p).exp() * 1e-6, 100.0 * p.exp_m1())
         };
-        let h = 1e-6;
-        let slopes = start.slopes(0.25);
-        let by_factor = (wire(1.0 + h, 0.25) - wire(1.0 - h, 0.25)) / (2.0 * h);
-        let by_strain = (wire(1.0, 0.25 + h) - wire(1.0, 0.25 - h)) / (2.0 * h);
+        let (x, h) = (DVec2::new(1.1, 0.8), 1e-6);
+        let slopes = start.slopes(x, 0.9 * 0.25 * x.y);
+        let [by_factor, by_strain] = [DVec2::X, DVec2::Y].map(|d| (wire(x + h * d) - wire(x - h * d)) / (2.0 * h));
         assert!((slopes.x_axis - by_factor).length() < 1e-4);
         assert!((slopes.y_axis - by_strain).length() < 1e-3);
     }
