@@ -97,6 +97,16 @@ fn a_strand_is_compared_with_its_own_refinement_seed_by_seed_and_side_by_side() 
     for part in ["limit of refinement in speed (Richardson)", "±", "another model, no error", "mean of 2 seeds"] {
         assert!(found.contains(part), "{part} is not in\n{found}");
     }
+    // Bonds scatter: what is judged is the mean and the spread, and what two seeds cannot tell is said.
+    for part in ["Errors are those of the mean over 2 seeds", "spread of strength", "not told from scatter"] {
+        assert!(found.contains(part), "{part} is not in\n{found}");
+    }
+    let one = printed(&accuracy(folder.path(), &scene, &["--vary", "tangential", "--seed", "1", "--threads", "1"]));
+    for part in ["One draw of the scatter (seed 1)", "one draw: not told from scatter"] {
+        assert!(one.contains(part), "{part} is not in\n{one}");
+    }
+    let listed = accuracy(folder.path(), &scene, &["--vary", "tangential", "--list"]);
+    assert!(listed.status.success(), "{}", text(&listed.stderr));
     let table = rows(&folder.path().join("study/accuracy.csv"));
     assert_eq!(table.len(), 14);
     assert!(table.iter().all(|row| row.contains_key("layer_error_percent:core")));

@@ -90,12 +90,14 @@ fn the_headline_says_what_broke_first_and_at_what_stress() {
     let (run, folder) = (Run::new(30), folder());
     let read = recorded(&run, &folder.path().join("recording.rrd"));
     let first = run.ruptures()[0];
-    let words = ["# 1st break: wire 24, outer layer".to_owned(), format!("z = {:.1} mm", first.rest_z * 1e3)];
+    let words =
+        ["# 1st break in this strand: wire 24, outer layer".to_owned(), format!("z = {:.1} mm", first.rest_z * 1e3)];
     let more = [format!("{:.2} %", first.strain * 1e2), format!("{:.1} MPa", first.body_stress * 1e-6)];
     for words in words.iter().chain(&more) {
         assert!(read.headline.contains(words), "{words} in {}", read.headline);
     }
     assert!(read.headline.contains("inner 1 of 5, middle 1 of 11, outer 4 of 18"), "{}", read.headline);
+    assert!(read.headline.contains("One draw of the scatter (seed 1"), "{}", read.headline);
     assert!(read.headline.contains("24, 31, 19, 27, 13, 3 (6 of 34)"), "{}", read.headline);
 }
 

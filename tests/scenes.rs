@@ -3,6 +3,9 @@
 use miette::Diagnostic;
 use std::path::{Path, PathBuf};
 use strandsnap::base::error::{Error, SceneError};
+use strandsnap::law::bond::elasto_plastic::ElastoPlastic;
+use strandsnap::law::bond::{BondForce, BondIncrement, BondLaw, BondShape, Moduli};
+use strandsnap::reference::plasticity::tension_at;
 use strandsnap::scene::spec::*;
 use strandsnap::scene::{self, Scene, builtin, write};
 
@@ -169,18 +172,52 @@ fn an_adaptive_pull_arrives_in_si_with_its_defaults() {
     assert_eq!(spec.time.contact_resolution, 0.4);
 }
 
+/// The engineering curve of the scene, as its bonds give it back: straight between the points that were given.
+fn assert_gives_back(law: &HardeningSpec, given: &[[f64; 2]], young: f64) {
+    for pair in given.windows(2) {
+        for share in [0.01, 0.25, 0.5, 0.75, 1.0] {
+            let [strain, stress] = [0, 1].map(|k| pair[0][k] + share * (pair[1][k] - pair[0][k]));
+            let found = tension_at(strain, |p| law.stress(p), young).engineering_stress;
+            assert!((found / stress - 1.0).abs() < 1e-4, "at {strain}: {found} is not {stress}");
+        }
+    }
+}
+
 #[test]
-fn an_engineering_curve_becomes_true_stress_over_true_plastic_strain() {
+fn an_engineering_curve_is_given_back() {
     let spec = good("engineering-curve.toml");
-    let BondLawSpec::ElastoPlastic(HardeningSpec::Table(points)) = &spec.bond.law else { panic!("not a table") };
-    assert_eq!(points.len(), 3);
-    // The second point lies on the elastic line and gives the yield stress.
+    let BondLawSpec::ElastoPlastic(law @ HardeningSpec::Table(points)) = &spec.bond.law else { panic!("not a table") };
     assert_eq!(points[0][0], 0.0);
-    assert!((points[0][1] - 92e6 * 1.0008).abs() < 1.0);
-    for (point, (strain, stress)) in points[1..].iter().zip([(0.1f64, 200e6), (0.25, 240e6)]) {
-        let true_stress = stress * (1.0 + strain);
-        assert!((point[1] - true_stress).abs() < 1.0);
-        assert!((point[0] - ((1.0 + strain).ln() - true_stress / 115e9)).abs() < 1e-12);
+    // The second point lies on the elastic line, so near that its plastic strain is taken as none.
+    assert!((points[0][1] / 92e6 - 1.0).abs() < 1e-5);
+    assert_gives_back(law, &[[0.0008, 92e6], [0.1, 200e6], [0.25, 240e6]], 115e9);
+    // Steep and high: at σ/E = 0.55 % the elastic part of the strain would be seen.
+    let steep = "[['0 %', '0 MPa'], ['0.4 %', '459 MPa'], ['2 %', '580 MPa'], ['20 %', '630 MPa']]";
+    let option = format!("bond.hardening={{ form = 'engineering-curve', points = {steep} }}");
+    let BondLawSpec::ElastoPlastic(law) = load("torsion", &[&option]).unwrap().spec.bond.law else { panic!() };
+    assert_gives_back(&law, &[[0.004, 459e6], [0.02, 580e6], [0.2, 630e6]], 115e9);
+}
+
+/// The bond itself, pulled in small steps: its force over its first section is the curve.
+#[test]
+fn a_bond_pulled_along_an_engineering_curve_carries_it() {
+    let spec = good("engineering-curve.toml");
+    let BondLawSpec::ElastoPlastic(hardening) = spec.bond.law else { panic!("not elasto-plastic") };
+    let law = ElastoPlastic { moduli: Moduli::new(115e9, 0.34), hardening };
+    let (radius, length) = (0.195e-3, 0.39e-3);
+    let shape = BondShape::new(length, radius);
+    let (mut force, mut state) = (BondForce::default(), law.initial());
+    // The point on the elastic line is that of Hooke's law in log strain, 0.04 % below what was written.
+    let mut before = 0.0;
+    for [strain, stress] in [[0.1, 200e6], [0.175, 220e6], [0.25, 240e6]] {
+        for k in 1..=20_000 {
+            let log_strain = f64::ln_1p(before + (strain - before) * f64::from(k) / 20_000.0);
+            let step = BondIncrement { length: length * log_strain.exp(), log_strain, ..BondIncrement::default() };
+            law.axial_response(&shape, &mut force, &mut state, &step, true);
+        }
+        let nominal = force.axial / (std::f64::consts::PI * radius * radius);
+        assert!((nominal / stress - 1.0).abs() < 1e-4, "at {strain}: {nominal} is not {stress}");
+        before = strain;
     }
 }
 
@@ -189,11 +226,11 @@ fn without_an_elastic_point_the_curve_is_drawn_back_to_zero_plastic_strain() {
     let points = "[['0 %', '0 MPa'], ['0.2 %', '90 MPa'], ['10 %', '200 MPa']]";
     let option = format!("bond.hardening={{ form = 'engineering-curve', points = {points} }}");
     let spec = load("torsion", &[&option]).unwrap().spec;
-    let BondLawSpec::ElastoPlastic(HardeningSpec::Table(table)) = &spec.bond.law else { panic!("not a table") };
+    let BondLawSpec::ElastoPlastic(law @ HardeningSpec::Table(table)) = &spec.bond.law else { panic!("not a table") };
     let slope = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
-    assert_eq!(table.len(), 3);
     assert!((slope(table[0], table[1]) / slope(table[1], table[2]) - 1.0).abs() < 1e-9);
     assert!(table[0][0] == 0.0 && table[0][1] > 80e6 && table[0][1] < 90.2e6);
+    assert_gives_back(law, &[[0.002, 90e6], [0.1, 200e6]], 115e9);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::Ended;
 use super::cases as shared;
 use super::interrupt;
 use super::say::{self, say};
-use super::values::{SceneArgs, duration};
+use super::values::{SceneArgs, Seeds, duration};
 use crate::base::error::{Error, Result};
 use crate::run::folder;
 use crate::scene::quality::Quality;
@@ -19,9 +19,10 @@ const STOPPING: &str = "\nstopping; finished runs are kept, and the same command
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Several seeds instead of one, such as 1,2,3: errors become means over them, compared seed by seed
-    #[arg(long, value_name = "N,N", value_delimiter = ',', conflicts_with = "seed")]
-    seeds: Vec<u64>,
+    /// Seeds: how many, such as 8, or which, such as 1,2,3 or 4..9. Errors are those of their mean and of their spread, and
+    /// every run is made once per seed [default: 4 where bonds scatter and nothing exact is known]
+    #[arg(long, value_name = "SEEDS", conflicts_with = "seed")]
+    seeds: Option<Seeds>,
     /// Knobs to turn [default: all, see --list]
     #[arg(long, value_name = "KNOB,KNOB", value_delimiter = ',')]
     vary: Vec<String>,
@@ -60,7 +61,7 @@ fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
         ("--quality", args.scene.quality != Quality::Standard),
         ("--set", !args.scene.set.is_empty()),
         ("--seed", args.scene.seed.is_some()),
-        ("--seeds", !args.seeds.is_empty()),
+        ("--seeds", args.seeds.is_some()),
         ("--vary", !args.vary.is_empty()),
         ("--budget", args.budget.is_some()),
     ];
@@ -101,7 +102,10 @@ fn of_pulled_scene(args: &Args) -> Result<Ended> {
     let mut options = Options {
         scene: args.scene.scene.clone(),
         overrides: args.scene.overrides()?,
-        seeds: args.seeds.clone(),
+        seeds: match (&args.seeds, args.scene.seed) {
+            (Some(seeds), _) => seeds.0.clone(),
+            (None, seed) => seed.into_iter().collect(),
+        },
         vary: knobs::select(&args.vary)?,
         budget: args.budget.map(|budget| budget.as_secs_f64()),
         jobs: args.jobs.into(),
@@ -131,6 +135,7 @@ fn print(study: &Study, files: &[PathBuf]) {
     say::print(format_args!("{}", table::costs_and_errors(study).to_text()));
     say::print(format_args!("\n{}", table::histories_and_checks(study).to_text()));
     say::print(format_args!("\n{}", table::reference(&study.reference, study.seeds.len())));
+    table::scatter(study).iter().for_each(|line| say!("{line}"));
     table::failed(study).iter().for_each(|line| say!("{line}"));
     for (knob, reason) in &study.absent {
         say!("{knob} was not turned: {reason}.");

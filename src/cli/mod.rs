@@ -96,7 +96,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Plan(args) => plan::plan(&args).map(|()| Ended::Well),
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),
-        Command::Calibrate(args) => calibrate::run(&args).map(|()| Ended::Well),
+        Command::Calibrate(args) => calibrate::run(&args),
         Command::Accuracy(args) => accuracy::accuracy(&args),
         Command::Study(args) => study::study(&args),
         Command::Stability(args) => stability::stability(&args),

@@ -4,7 +4,7 @@ use super::Ended;
 use super::cases;
 use super::interrupt;
 use super::say::{self, say};
-use super::values::quality;
+use super::values::{Seeds, quality};
 use crate::base::error::{Error, Result};
 use crate::run::folder;
 use crate::scene::quality::Quality;
@@ -26,9 +26,9 @@ pub struct Args {
     /// Change a key of every case's scene
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Seeds instead of the study's, such as 1,2,3
-    #[arg(long, value_name = "N,N", value_delimiter = ',')]
-    seeds: Vec<u64>,
+    /// Seeds instead of the study's: how many, such as 8, or which, such as 1,2,3 or 4..9
+    #[arg(long, value_name = "SEEDS")]
+    seeds: Option<Seeds>,
     /// Cases side by side, each on one thread [default: one per core, which is faster than threads within one]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
@@ -56,7 +56,11 @@ pub fn study(args: &Args) -> Result<Ended> {
     let Some(name) = args.study.as_ref().filter(|_| !args.list) else {
         return list();
     };
-    let changes = Changes { quality: args.quality, set: args.set.clone(), seeds: args.seeds.clone() };
+    let changes = Changes {
+        quality: args.quality,
+        set: args.set.clone(),
+        seeds: args.seeds.clone().map_or(Vec::new(), |seeds| seeds.0),
+    };
     let definition = Definition::load(name, &changes)?;
     sweep::check(&definition)?;
     for one in &definition.merged {

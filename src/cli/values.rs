@@ -12,7 +12,7 @@ use std::time::Duration;
 pub struct SceneArgs {
     /// Built-in scene by name (see `strandsnap scene list`), or the path of a TOML file
     pub scene: String,
-    /// Accuracy against run time: `draft` turns pull speed and time step up, `fine` down
+    /// Accuracy against run time: `draft` doubles the pull's speed, `fine` halves it and the time step
     #[arg(long, value_name = "QUALITY", value_parser = quality(), default_value = "standard")]
     pub quality: Quality,
     /// Change a key of the scene, such as --set contact.friction=0.3
@@ -61,6 +61,46 @@ pub fn quality() -> impl TypedValueParser<Value = Quality> {
     })
 }
 
+/// Seeds, written as how many (`16` is 1 to 16), as a range (`4..9`, both ends included) or as a list (`1,2,5`); a study's
+/// file writes them the same way, `seeds = 16` or `seeds = [1, 2, 5]`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Seeds(pub Vec<u64>);
+
+/// Most seeds: more is a typing error.
+const MOST_SEEDS: u64 = 10_000;
+
+impl std::str::FromStr for Seeds {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let wrong = || "write how many seeds, such as 16, or which, such as 1,2,5 or 4..9".to_string();
+        let number = |part: &str| part.trim().parse::<u64>().map_err(|_| wrong());
+        let seeds: Vec<u64> = if let Some((first, last)) = text.split_once("..") {
+            let (first, last) = (number(first)?, number(last)?);
+            if last < first || last - first >= MOST_SEEDS {
+                return Err(format!("{first}..{last} are no seeds or too many; {}", wrong()));
+            }
+            (first..=last).collect()
+        } else if text.contains(',') {
+            text.split(',').filter(|part| !part.trim().is_empty()).map(number).collect::<std::result::Result<_, _>>()?
+        } else {
+            match number(text)? {
+                0 => return Err(format!("none is not enough; {}", wrong())),
+                count if count > MOST_SEEDS => {
+                    return Err(format!("{count} seeds are too many; one alone is {count}..{count}"));
+                }
+                count => (1..=count).collect(),
+            }
+        };
+        let mut seen = std::collections::BTreeSet::new();
+        match seeds.iter().find(|seed| !seen.insert(**seed)) {
+            Some(twice) => Err(format!("seed {twice} is listed twice")),
+            None if seeds.is_empty() => Err(wrong()),
+            None => Ok(Self(seeds)),
+        }
+    }
+}
+
 /// Pixels, written as `1280x720`.
 pub fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X', '×']);
@@ -107,6 +147,18 @@ mod tests {
         assert_eq!(size("1280x720"), Ok([1280, 720]));
         for wrong in ["1280", "0x720", "ax2", "1280x", "-1x5"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn seeds_are_a_count_a_range_or_a_list() {
+        let seeds = |text: &str| text.parse::<Seeds>().map(|seeds| seeds.0);
+        assert_eq!(seeds("3"), Ok(vec![1, 2, 3]));
+        assert_eq!(seeds("4..6"), Ok(vec![4, 5, 6]));
+        assert_eq!(seeds("7..7"), Ok(vec![7]));
+        assert_eq!(seeds("5, 1,2"), Ok(vec![5, 1, 2]));
+        for wrong in ["", "0", "-1", "a", "1,1", "6..4", "1..", ",", "1.5", "99999999", "1..99999999"] {
+            assert!(seeds(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -180,6 +180,7 @@ impl Engine {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::quality::Quality;
 
     fn rule() -> Rule {
         Rule {
@@ -205,6 +206,25 @@ mod tests {
             assert!((tenth - 10.0).abs() < 1e-12, "{tenth}");
         }
         assert_eq!(rule().speed(Ahead { work: 1e3, strain: 0.0099, left: 1.0 }), 5.0, "layers may still close");
+    }
+
+    /// Whatever limits the pull, `--quality fine` halves its speed and draft doubles it.
+    #[test]
+    fn quality_turns_the_speed_at_every_moment() {
+        let own = crate::scene::load("ka4", &[]).unwrap().spec;
+        let rule = |quality: Quality| {
+            let spec = crate::scene::load("ka4", &quality.overrides(&own)).unwrap().spec;
+            Rule::new(&spec, 1.5e-3, 0.1).unwrap()
+        };
+        let [draft, standard, fine] = Quality::ALL.map(rule);
+        for work in [0.0, 1.0, 5.0, 1e3] {
+            for left in [0.0, 0.02, 0.1, f64::INFINITY] {
+                let ahead = Ahead { work, strain: 0.1, left };
+                let speed = standard.speed(ahead);
+                assert!((draft.speed(ahead) / speed - 2.0).abs() < 1e-12, "{ahead:?}");
+                assert!((fine.speed(ahead) / speed - 0.5).abs() < 1e-12, "{ahead:?}");
+            }
+        }
     }
 
     #[test]

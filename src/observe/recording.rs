@@ -143,7 +143,7 @@ impl Observer for Recording {
             .map_err(|e| Error::io("cannot record to", &self.path, std::io::Error::other(e.to_string())))?;
         // A live viewer should see each snapshot at once.
         let batch = if self.viewer.is_some() { 1 } else { BATCH };
-        self.run = Some(Run::start(self.stream(&id)?, info, &id, self.scene.output.colour, batch)?);
+        self.run = Some(Run::start(self.stream(&id)?, info, &id, &self.scene, batch)?);
         Ok(())
     }
 

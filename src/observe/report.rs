@@ -25,7 +25,7 @@ pub fn report(summary: &RunSummary) -> String {
     if let (Some(stress), Some(strain)) = (summary.residual_stress_mpa, summary.final_strain_percent) {
         line("at the end", format!("{stress:.2} MPa at {strain:.2} %"));
     }
-    line("first rupture", first_rupture(summary.first_rupture.as_ref()));
+    line("first rupture", first_rupture(summary.first_rupture.as_ref(), summary.one_draw.is_some()));
     let layers = summary.wires_broken_by_layer.iter();
     let layers: Vec<String> = layers.map(|(name, n)| format!("{name} {} of {}", n.broken, n.of)).collect();
     if !layers.is_empty() {
@@ -60,14 +60,18 @@ pub fn report(summary: &RunSummary) -> String {
         line("frames", frames.to_string());
     }
     line("stopped because", summary.stopped_because.clone());
+    if let Some(draw) = &summary.one_draw {
+        let _ = writeln!(text, "\n  {}", draw.sentence());
+    }
     text
 }
 
 /// One line for logs and quiet runs.
 pub fn one_line(summary: &RunSummary) -> String {
     let mut parts = vec![format!("{} steps in {:.1} s", summary.cost.steps, summary.cost.wall_s)];
-    let extremes = summary.extremes();
-    parts.extend(extremes.map(|e| format!("{} {:.2} MPa at {:.2} %", e.kind.name(), e.stress_mpa, e.strain_percent)));
+    let draw = summary.one_draw.map_or(String::new(), |draw| format!(" (one draw, seed {})", draw.seed));
+    let named = |e: Extreme| format!("{} {:.2} MPa at {:.2} %{draw}", e.kind.name(), e.stress_mpa, e.strain_percent);
+    parts.extend(summary.extremes().map(named));
     let wires: usize = summary.wires_broken_by_layer.values().map(|n| n.of).sum();
     if wires > 0 {
         parts.push(format!("{} of {wires} wires broken", summary.wires_broken));
@@ -75,14 +79,20 @@ pub fn one_line(summary: &RunSummary) -> String {
     format!("{}: {}; {}", summary.scene, parts.join(", "), summary.stopped_because)
 }
 
-fn first_rupture(first: Option<&Break>) -> String {
-    match first {
-        None => "none".into(),
-        Some(b) => format!(
-            "wire {}, {} layer, at z = {:.1} mm ({:.1} mm before loading), strain {:.2} %, {:.0} MPa ({})",
-            b.wire, b.layer, b.z_mm, b.rest_z_mm, b.strain_percent, b.stress_mpa, b.cause
-        ),
-    }
+/// Of one draw of the scatter it is said that the place is that of this strand.
+fn first_rupture(first: Option<&Break>, one_draw: bool) -> String {
+    let Some(b) = first else { return "none".into() };
+    format!(
+        "{}wire {}, {} layer, at z = {:.1} mm ({:.1} mm before loading), strain {:.2} %, {:.0} MPa ({})",
+        if one_draw { "in this strand " } else { "" },
+        b.wire,
+        b.layer,
+        b.z_mm,
+        b.rest_z_mm,
+        b.strain_percent,
+        b.stress_mpa,
+        b.cause
+    )
 }
 
 fn time_step(summary: &RunSummary) -> String {

@@ -7,6 +7,7 @@ use super::peaks::{Monitor, Peaks};
 use super::tables::{cause, layer_name};
 use super::timings::Timings;
 use super::units::{mm, mpa, percent};
+use super::wording::OneDraw;
 use crate::base::error::Result;
 use crate::engine::view::{Energy, Notice, RunInfo, Rupture, Sample};
 use crate::scene::spec::{DriveSpec, Spec};
@@ -66,6 +67,10 @@ pub struct RunSummary {
     pub inertia_scale: f64,
     /// Seed of the scatter [-].
     pub seed: u64,
+    /// The draw that this strand is, where bonds scatter: its first wire, layer and place say nothing of other strands.
+    /// `None` where every bond is as strong as the other.
+    #[serde(default)]
+    pub one_draw: Option<OneDraw>,
     /// Particles, free spheres included.
     pub particles: usize,
     /// Bonds.
@@ -271,6 +276,7 @@ impl Summariser {
             mass_scale: spec.time.mass_scale,
             inertia_scale: spec.time.inertia_scale,
             seed: spec.seed,
+            one_draw: OneDraw::of(spec),
             particles: self.info.as_ref().map_or(0, |info| info.particles),
             bonds,
             cost: closing.cost,

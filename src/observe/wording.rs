@@ -1,6 +1,8 @@
 //! How a run is put into words for people: one place, so that log, tables and pictures agree.
 
 use crate::engine::view::{RunInfo, Rupture};
+use crate::scene::spec::Spec;
+use serde::{Deserialize, Serialize};
 
 /// Number of wire `wire` as people see it [-]: counted from 1.
 pub fn wire_number(wire: usize) -> usize {
@@ -21,10 +23,47 @@ pub fn rupture_line(info: &RunInfo, rupture: &Rupture) -> String {
     )
 }
 
+/// A run whose bonds scatter is one draw: another seed is another strand, with other weak places.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OneDraw {
+    /// Seed of the scatter.
+    pub seed: u64,
+    /// Weibull modulus of the rupture value from bond to bond [-].
+    pub weibull_modulus: f64,
+}
+
+impl OneDraw {
+    /// Of a scene; `None` where every bond is as strong as the other, or nothing can break.
+    pub fn of(spec: &Spec) -> Option<Self> {
+        let weibull_modulus = spec.bond.rupture.as_ref()?.weibull_modulus;
+        weibull_modulus.is_finite().then_some(Self { seed: spec.seed, weibull_modulus })
+    }
+
+    /// What may be said of such a run, in a sentence.
+    pub fn sentence(&self) -> String {
+        format!(
+            "One draw of the scatter (seed {}, Weibull modulus {}): which wire breaks first, in which layer and where, and the \
+             last per cents of strength and elongation, are those of this strand; ensembles over seeds say what holds for \
+             others.",
+            self.seed, self.weibull_modulus
+        )
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::engine::view::RuptureCause;
+
+    #[test]
+    fn a_scene_with_scatter_is_one_draw_and_one_without_is_not() {
+        let of = |option: &str| OneDraw::of(&crate::scene::load("ka4", &[option.to_string()]).unwrap().spec);
+        let draw = of("seed=7").unwrap();
+        assert_eq!(draw, OneDraw { seed: 7, weibull_modulus: 30.0 });
+        assert!(draw.sentence().contains("One draw of the scatter (seed 7, Weibull modulus 30)"));
+        assert_eq!(of("bond.rupture.weibull_modulus=inf"), None);
+        assert_eq!(OneDraw::of(&crate::scene::load("cantilever", &[]).unwrap().spec), None);
+    }
 
     #[test]
     fn a_rupture_reads_well() {

@@ -19,6 +19,7 @@ pub fn section(source: &Source) -> Result<Section> {
     let body = html! {
         (warnings(source))
         p.headline { (headline(source)) }
+        @if let Some(draw) = source.summary.one_draw.filter(|_| !source.ruptures.is_empty()) { p.remark { (draw.sentence()) } }
         (facts(source))
         @if !source.cut_short() { p { "The run ended because: " (source.summary.stopped_because) "." } }
         @if !source.ruptures.is_empty() { (sequence(source)) (layers(source)) }
@@ -54,7 +55,7 @@ fn headline(source: &Source) -> Markup {
 fn first_rupture(source: &Source, first: &Rupture) -> Markup {
     let abscissa = Abscissa::of(source);
     html! {
-        strong { "Wire " (wire_number(first.wire)) ", " (layer_name(&source.info, first.layer)) " layer," } " snapped first, at z = "
+        strong { "Wire " (wire_number(first.wire)) ", " (layer_name(&source.info, first.layer)) " layer," } " snapped first" @if source.summary.one_draw.is_some() { " in this strand" } ", at z = "
         strong { (format!("{:.1} mm", mm(first.rest_z))) } " before loading (" (format!("{:.1} mm", mm(first.position[2])))
         " when it snapped), at " strong { (abscissa.moment(abscissa.at(first))) }
         @if source.info.is_pulled() { " and " strong { (format!("{:.1} MPa", mpa(first.body_stress))) } " nominal stress" }

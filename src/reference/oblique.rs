@@ -57,6 +57,31 @@ impl Spheres {
         slip_rate
     }
 
+    /// ψ₂ after an impact at ψ₁ = `psi1` ≥ 0 [-] of a contact that is one spring of the no-slip stiffness 8G*a: it sticks
+    /// or slides as a whole and, as the normal force falls, keeps a/a_before of its pull (the law `mindlin`, not the
+    /// elastic theory). `steps` over the greatest overlap's time.
+    ///
+    /// In the units of [`Spheres::rebound`], of which this is the sum over the springs: stiffness 2√δ, at most
+    /// (4/3) δ^(3/2).
+    pub fn rebound_of_one_spring(&self, psi1: f64, steps: usize) -> f64 {
+        let dt = 1.0 / steps as f64;
+        let (mut depth, mut rate, mut slip_rate, mut pull) = (0.0f64, 1.0f64, psi1, 0.0f64);
+        loop {
+            rate -= dt * 1.25 * depth.powf(1.5);
+            slip_rate -= dt * 1.875 * self.chi() * pull;
+            let before = depth;
+            depth += dt * rate;
+            if depth <= 0.0 {
+                return slip_rate;
+            }
+            if depth < before {
+                pull *= (depth / before).sqrt();
+            }
+            let limit = 4.0 / 3.0 * depth.powf(1.5);
+            pull = (pull + 2.0 * depth.sqrt() * dt * slip_rate).clamp(-limit, limit);
+        }
+    }
+
     /// Tangential impulse over μ times the normal one, (ψ₁ − ψ₂)/(4χ) [-].
     pub fn impulse(&self, psi1: f64, psi2: f64) -> f64 {
         (psi1 - psi2) / (4.0 * self.chi())
@@ -134,6 +159,18 @@ mod tests {
         springs.advance(1.0, -0.6);
         let unloaded = 4.0 / 3.0 * (1.0 - 2.0 * (1.0 - 0.7f64.powf(1.5)));
         assert!((springs.pull() - unloaded).abs() < 1e-5, "unloading by Masing's rule");
+    }
+
+    /// One spring that slides throughout is the sliding contact; it converges.
+    #[test]
+    fn one_spring_slides_and_converges() {
+        for psi1 in [SOLID.sliding_from() + 1.0, 9.0] {
+            assert!((SOLID.rebound_of_one_spring(psi1, 4000) - SOLID.sliding(psi1)).abs() < 5e-3, "{psi1}");
+        }
+        for psi1 in [0.25, 1.0, 3.0] {
+            let at = |steps| SOLID.rebound_of_one_spring(psi1, steps);
+            assert!((at(4000) - at(16_000)).abs() < 5e-3, "{psi1}");
+        }
     }
 
     #[test]

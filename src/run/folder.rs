@@ -39,6 +39,14 @@ pub fn study(name: &str) -> PathBuf {
     Path::new("out").join("study").join(name)
 }
 
+/// A calibration, in a folder of its own.
+pub const CALIBRATION: &str = "calibration.json";
+
+/// Folder of the calibration of a scene where no other is given.
+pub fn calibration(scene: &str) -> PathBuf {
+    Path::new("out").join("calibration").join(scene)
+}
+
 /// An output folder that may be written.
 #[derive(Debug)]
 pub struct OutFolder {

@@ -126,39 +126,25 @@ fn refuse_softening(at: &At, true_: &str, before: f64, stress: f64) -> Result<()
 
 /// Engineering stress s over engineering strain e of one wire → true stress over true plastic strain.
 ///
-/// σ = s (1 + e) and p = ln(1 + e) − σ/E, for a bar that strains uniformly at constant volume (Considère 1885;
-/// Dieter, Mechanical Metallurgy, § 8-3). The yield stress is that of the last point on the elastic line; without
-/// one, the line through the first two plastic points is drawn back to p = 0.
+/// The area that thins is the plastic one, A = A₀e^(−p): elastic stretch changes the volume, by (1 − 2ν) of itself, and
+/// the bonds leave it out. So σ = s e^p and p = ln(1 + e) − σ/E together
+/// (Dieter, Mechanical Metallurgy, § 8-3, where p = ln(1 + e)). Between its points the engineering curve is straight,
+/// and is followed in short pieces, since the true curve is not. The yield stress is that of the last point on the
+/// elastic line; without one, the first plastic piece is drawn back to p = 0.
 fn engineering_curve(at: &At, raw: &RawHardening, young: f64) -> Result<HardeningSpec> {
     let given = points(at, raw, "[[\"0 %\", \"0 MPa\"], [\"0.1 %\", \"90 MPa\"], [\"25 %\", \"240 MPa\"]]")?;
     let at = at.key("points");
-    let mut yield_stress = None;
-    let mut plastic: Vec<[f64; 2]> = Vec::new();
-    let mut before = 0.0;
-    for (index, [strain, stress]) in given.into_iter().enumerate() {
+    let mut curve = TrueCurve { young, yield_stress: None, plastic: Vec::new(), before: 0.0 };
+    for (index, point) in given.iter().enumerate() {
         let element = at.element(index);
-        let true_stress = stress * (1.0 + strain);
-        let elastic = true_stress / young;
-        let p = strain.ln_1p() - elastic;
-        refuse_softening(&element, "true ", before, true_stress)?;
-        before = true_stress;
-        if p < -ELASTIC_LINE_TOLERANCE * elastic {
-            let what = format!("point {index} is stiffer than Young's modulus of {} GPa", young / 1e9);
-            return Err(element.error(what, "correct the point or material.young"));
+        // What comes before the yield stress is elastic, and that line is straight enough as it is.
+        let from = index.checked_sub(1).filter(|_| curve.yield_stress.is_some() || !curve.plastic.is_empty());
+        match from {
+            Some(from) => pieces(given[from], *point).try_for_each(|piece| curve.add(&element, index, piece))?,
+            None => curve.add(&element, index, *point)?,
         }
-        if p <= ELASTIC_LINE_TOLERANCE * elastic && plastic.is_empty() {
-            yield_stress = Some(true_stress).filter(|stress| *stress > 0.0);
-            continue;
-        }
-        if p <= plastic.last().map_or(0.0, |[before, _]| *before) {
-            let what = format!("the plastic strain falls to {p:.3e} at point {index}");
-            return Err(element.error(what, "the curve may not rise more steeply than Young's modulus"));
-        }
-        if true_stress == 0.0 {
-            return Err(element.error(format!("the stress of point {index} is zero"), ""));
-        }
-        plastic.push([p, true_stress]);
     }
+    let TrueCurve { yield_stress, mut plastic, .. } = curve;
     if plastic.is_empty() {
         return Err(at.error("no point of the curve lies beyond the elastic line", "give plastic points too"));
     }
@@ -168,6 +154,72 @@ fn engineering_curve(at: &At, raw: &RawHardening, young: f64) -> Result<Hardenin
     };
     plastic.insert(0, [0.0, yield_stress]);
     Ok(HardeningSpec::Table(plastic))
+}
+
+/// Longest piece [-] of an engineering curve whose true curve is taken as straight: its sagitta is at most
+/// σ″/σ Δp²/8 = 4 × 0.005²/8, 1e-5 of the stress.
+const PIECE: f64 = 0.005;
+
+/// Points [strain, stress] on the straight line from one point to the next, which is the last of them.
+fn pieces([e0, s0]: [f64; 2], [e1, s1]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let count = ((e1 - e0) / PIECE).ceil().max(1.0);
+    (1..=count as u64).map(move |k| {
+        let share = k as f64 / count;
+        [e0 + share * (e1 - e0), s0 + share * (s1 - s0)]
+    })
+}
+
+/// A true curve in the making.
+struct TrueCurve {
+    young: f64,
+    /// True stress of the last point on the elastic line [Pa].
+    yield_stress: Option<f64>,
+    /// True plastic strain [-] and true stress [Pa] beyond it.
+    plastic: Vec<[f64; 2]>,
+    /// True stress of the last point of any kind [Pa].
+    before: f64,
+}
+
+impl TrueCurve {
+    /// Takes the next point of the engineering curve, of or on the way to the one with number `index`.
+    fn add(&mut self, element: &At, index: usize, [strain, stress]: [f64; 2]) -> Result<()> {
+        let young = self.young;
+        let p = true_plastic_strain(strain, stress, young);
+        let true_stress = stress * p.exp();
+        let elastic = true_stress / young;
+        refuse_softening(element, "true ", self.before, true_stress)?;
+        self.before = true_stress;
+        if p < -ELASTIC_LINE_TOLERANCE * elastic {
+            let what = format!("point {index} is stiffer than Young's modulus of {} GPa", young / 1e9);
+            return Err(element.error(what, "correct the point or material.young"));
+        }
+        if p <= ELASTIC_LINE_TOLERANCE * elastic && self.plastic.is_empty() {
+            self.yield_stress = Some(true_stress).filter(|stress| *stress > 0.0);
+            return Ok(());
+        }
+        if p <= self.plastic.last().map_or(0.0, |[before, _]| *before) {
+            let what = format!("the plastic strain falls to {p:.3e} at point {index}");
+            return Err(element.error(what, "the curve may not rise more steeply than Young's modulus"));
+        }
+        if true_stress == 0.0 {
+            return Err(element.error(format!("the stress of point {index} is zero"), ""));
+        }
+        self.plastic.push([p, true_stress]);
+        Ok(())
+    }
+}
+
+/// p with p + s e^p/E = ln(1 + e) [-], for engineering strain e `strain` [-] and stress s `stress` [Pa] of a bar of
+/// Young's modulus E `young` [Pa].
+///
+/// The left side rises and curves upwards, so Newton's method comes down to the root from p = ln(1 + e); the elastic
+/// part is so small that it is there, to the last bits, after a few steps.
+fn true_plastic_strain(strain: f64, stress: f64, young: f64) -> f64 {
+    let total = strain.ln_1p();
+    (0..20).fold(total, |p, _| {
+        let elastic = stress * p.exp() / young;
+        p - (p + elastic - total) / (1.0 + elastic)
+    })
 }
 
 /// Stress at p = 0 on the line through the first two plastic points [Pa].

@@ -1,7 +1,8 @@
 //! Presets of accuracy against run time: `--quality draft|standard|fine`. A preset turns the keys of its table by a
-//! factor from what the scene says; `--set` wins over it.
+//! factor from what the scene says; `--set` wins over it. Draft pulls twice as fast at every strain, and so does an
+//! adaptive pull; fine half as fast, with half the time step.
 
-use super::spec::{DriveSpec, Spec};
+use super::spec::{AdaptiveSpec, DriveSpec, Spec};
 
 /// A preset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -50,7 +51,37 @@ const TABLE: &[Entry] = &[
             _ => None,
         },
     },
+    // An adaptive pull takes the least of what its three keys allow: all of them turn, or the least of them would decide
+    // what the preset does. Kinetic energy goes with the square of the speed.
+    Entry {
+        key: "grip.adaptive.fastest",
+        unit: " m/s",
+        draft: 2.0,
+        fine: 0.5,
+        greatest: f64::INFINITY,
+        own: |spec| adaptive(spec).map(|adaptive| adaptive.fastest),
+    },
+    Entry {
+        key: "grip.adaptive.kinetic",
+        unit: "",
+        draft: 4.0,
+        fine: 0.25,
+        greatest: 1.0,
+        own: |spec| adaptive(spec).map(|adaptive| adaptive.kinetic),
+    },
+    Entry {
+        key: "grip.adaptive.passages",
+        unit: "",
+        draft: 0.5,
+        fine: 2.0,
+        greatest: f64::INFINITY,
+        own: |spec| adaptive(spec).map(|adaptive| adaptive.passages),
+    },
 ];
+
+fn adaptive(spec: &Spec) -> Option<&AdaptiveSpec> {
+    spec.grip.as_ref()?.adaptive.as_ref()
+}
 
 impl Quality {
     /// All of them.
@@ -104,6 +135,22 @@ mod tests {
         assert!(speed(&draft) > speed(&own) && speed(&fine) < speed(&own));
         assert!(draft.time.safety >= own.time.safety && draft.time.safety <= 1.0);
         assert!(fine.time.safety < own.time.safety);
+    }
+
+    /// What an adaptive pull allows itself is turned with its slowest speed.
+    #[test]
+    fn an_adaptive_pull_is_turned_as_a_whole() {
+        let adaptive = |quality| adaptive(&with(quality, "ka4")).cloned().unwrap();
+        let [draft, own, fine] = Quality::ALL.map(adaptive);
+        let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} is not {b}");
+        for (turned, factor) in [(&draft, 2.0), (&fine, 0.5)] {
+            close(turned.fastest, factor * own.fastest);
+            close(turned.kinetic, factor * factor * own.kinetic);
+            close(turned.passages, own.passages / factor);
+            assert_eq!(turned.from, own.from);
+        }
+        let constant = scene::load("strand-1x7", &[]).unwrap().spec;
+        assert!(Quality::Fine.overrides(&constant).iter().all(|option| !option.contains("adaptive")));
     }
 
     #[test]

@@ -160,7 +160,7 @@ pub struct RawHardening {
     /// n of swift and ludwik [-]. Required there.
     pub exponent: Option<Scalar>,
     /// Points [strain, stress]. `table`: true plastic strain, from 0 on, and true stress. `engineering-curve`: the
-    /// engineering curve of a single wire, converted with Young's modulus.
+    /// engineering curve of a single wire, straight between its points, converted with Young's modulus and A = A₀e^(−p).
     pub points: Option<Vec<[Scalar; 2]>>,
 }
 

@@ -6,7 +6,7 @@ use crate::base::error::Result;
 use crate::engine::view::{Notice, RunInfo, Rupture};
 use crate::observe::summary::RunSummary;
 use crate::observe::units::{mm, mpa, percent};
-use crate::observe::wording::wire_number;
+use crate::observe::wording::{OneDraw, wire_number};
 use rerun::TextDocument;
 use std::fmt::Write;
 
@@ -17,13 +17,14 @@ const NAMED: usize = 24;
 pub(super) struct Headline {
     ruptures: Vec<Rupture>,
     notices: Vec<Notice>,
+    one_draw: Option<OneDraw>,
     changed: bool,
 }
 
 impl Headline {
-    /// Nothing is known, which is to be said.
-    pub fn new() -> Self {
-        Self { ruptures: Vec::new(), notices: Vec::new(), changed: true }
+    /// Nothing is known, which is to be said; `one_draw` where bonds scatter.
+    pub fn new(one_draw: Option<OneDraw>) -> Self {
+        Self { ruptures: Vec::new(), notices: Vec::new(), one_draw, changed: true }
     }
 
     /// Takes note of a rupture.
@@ -60,7 +61,7 @@ impl Headline {
 
     fn text(&self, info: &RunInfo, summary: Option<&RunSummary>) -> String {
         let mut text = match self.ruptures.first() {
-            Some(first) => first_break(info, first),
+            Some(first) => first_break(info, first, self.one_draw.is_some()),
             None if summary.is_some() => "# No wire broke\n".to_owned(),
             None => "# No wire has broken yet\n".to_owned(),
         };
@@ -69,6 +70,9 @@ impl Headline {
             text += &result(summary, warnings.len());
         }
         text += &self.order(info);
+        if let Some(draw) = self.one_draw.filter(|_| !self.ruptures.is_empty()) {
+            let _ = write!(text, "\n{}\n", draw.sentence());
+        }
         for warning in warnings {
             // Writing to a String cannot fail.
             let _ = write!(text, "\n> **WARNING** {warning}\n");
@@ -99,13 +103,14 @@ fn send(stream: &Stream, text: &str) -> Result<()> {
     stream.fixed(names::HEADLINE, &TextDocument::from_markdown(text))
 }
 
-fn first_break(info: &RunInfo, first: &Rupture) -> String {
+fn first_break(info: &RunInfo, first: &Rupture, one_draw: bool) -> String {
     let of = if info.wires.len() > 1 { format!(", {}", names::layer_name(info, first.layer)) } else { String::new() };
     let body = if info.wires.len() > 1 { "strand" } else { "wire" };
     format!(
-        "# 1st break: wire {}{of}\n## z = {:.1} mm, strain {:.2} %, {:.1} MPa\n\
+        "# 1st break{}: wire {}{of}\n## z = {:.1} mm, strain {:.2} %, {:.1} MPa\n\
          z is counted before loading ({:.1} mm when it broke). The {body} then carried {:.1} MPa of nominal stress; \
          true axial stress where it broke: {:.0} MPa.\n",
+        if one_draw { format!(" in this {body}") } else { String::new() },
         wire_number(first.wire),
         mm(first.rest_z),
         percent(first.strain),

@@ -16,7 +16,8 @@ use crate::engine::view::{BondState, Notice, RunInfo, Rupture, Sample, Snapshot}
 use crate::observe::Observer;
 use crate::observe::peaks::Peaks;
 use crate::observe::summary::{Closing, Summariser};
-use crate::scene::spec::{ColourBy, Spec};
+use crate::observe::wording::OneDraw;
+use crate::scene::spec::Spec;
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::{
     AnnotationContext, DynamicArchetype, EntityPath, Points3D, RecordingInfo, TextDocument, ViewCoordinates, components,
@@ -47,21 +48,21 @@ pub(super) struct Run {
 
 impl Run {
     /// Sends what holds at all times, layout first.
-    pub fn start(stream: Stream, info: &Arc<RunInfo>, id: &str, colour: ColourBy, batch: usize) -> Result<Self> {
+    pub fn start(stream: Stream, info: &Arc<RunInfo>, id: &str, scene: &Spec, batch: usize) -> Result<Self> {
         let mut summariser = Summariser::new();
         summariser.start(info)?;
         let mut run = Self {
             stream,
             info: info.clone(),
             id: id.to_owned(),
-            palette: Palette::new(colour, info),
+            palette: Palette::new(scene.output.colour, info),
             map: Map::new(info),
             chart: Chart::new(info),
             states: States::new(info.wires.len()),
             marks: Marks::default(),
             sections: Sections::new(info),
             first: None,
-            headline: Headline::new(),
+            headline: Headline::new(OneDraw::of(scene)),
             summariser,
             snapshots: Vec::new(),
             samples: Vec::new(),

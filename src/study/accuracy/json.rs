@@ -1,5 +1,6 @@
 //! `accuracy.json`: the study for programs, and the tables for the page.
 
+use super::ensemble::{self, Quantity, Spread};
 use super::rows::{Outcome, Row};
 use super::table;
 use super::{Study, reference::Along};
@@ -16,6 +17,8 @@ struct Document<'a> {
     command: &'a str,
     version: &'static str,
     seeds: &'a [u64],
+    /// Whether bonds scatter, so that one run is one draw.
+    scatter: bool,
     threads: usize,
     jobs: usize,
     interrupted: bool,
@@ -69,6 +72,10 @@ struct RowOut<'a> {
     strength_error_percent: Option<Stat>,
     elongation_percent: Option<Stat>,
     elongation_error_percent: Option<Stat>,
+    /// Whether the error of the mean is told from scatter: of strength and of elongation.
+    told_from_scatter: [Option<bool>; 2],
+    /// Spread over seeds beside that of the scene as it stands: of strength and of elongation.
+    spread: [Option<Spread>; 2],
     curve_error_percent: Option<Stat>,
     plastic_work_error_percent: Option<Stat>,
     order_tau: Option<Stat>,
@@ -93,11 +100,13 @@ struct RunOut<'a> {
 pub fn write(study: &Study, command: &str, path: &Path) -> Result<()> {
     let reference = &study.reference;
     let exact = reference.closed_form;
+    let base = study.rows.iter().find(|row| row.knob.is_none());
     let document = Document {
         scene: &study.scene,
         command,
         version: env!("CARGO_PKG_VERSION"),
         seeds: &study.seeds,
+        scatter: study.scatter,
         threads: study.threads,
         jobs: study.jobs,
         interrupted: study.interrupted,
@@ -109,7 +118,7 @@ pub fn write(study: &Study, command: &str, path: &Path) -> Result<()> {
             uncertainty_percent: if exact { [0.0; 2] } else { reference.uncertainty_percent },
             refinement: reference.along.iter().map(|(seed, along)| Refinement { seed: *seed, along }).collect(),
         },
-        rows: study.rows.iter().map(row).collect(),
+        rows: study.rows.iter().map(|one| row(one, base)).collect(),
         left_out: table::left_out(study),
         absent: study.absent.iter().map(|(knob, reason)| Absent { knob, reason }).collect(),
         summary: summary(study),
@@ -123,6 +132,7 @@ pub fn write(study: &Study, command: &str, path: &Path) -> Result<()> {
 /// What stands below the tables.
 fn summary(study: &Study) -> String {
     let mut lines = vec![table::reference(&study.reference, study.seeds.len()).trim_end().to_string()];
+    lines.extend(table::scatter(study));
     lines.extend(table::failed(study));
     let left_out = table::left_out(study);
     if !left_out.is_empty() {
@@ -132,7 +142,7 @@ fn summary(study: &Study) -> String {
     lines.join("\n")
 }
 
-fn row(row: &Row) -> RowOut<'_> {
+fn row<'a>(row: &'a Row, base: Option<&Row>) -> RowOut<'a> {
     let knob = row.knob.as_ref();
     RowOut {
         knob: knob.map(|knob| knob.name),
@@ -149,6 +159,8 @@ fn row(row: &Row) -> RowOut<'_> {
         strength_error_percent: row.of_errors(|errors| Some(errors.strength_percent)),
         elongation_percent: row.of_runs(|run| Some(run.elongation_percent)),
         elongation_error_percent: row.of_errors(|errors| Some(errors.elongation_percent)),
+        told_from_scatter: Quantity::ALL.map(|quantity| ensemble::mean_is_told(row, quantity)),
+        spread: Quantity::ALL.map(|quantity| base.and_then(|base| ensemble::spread(row, base, quantity))),
         curve_error_percent: row.of_errors(|errors| errors.curve_percent),
         plastic_work_error_percent: row.of_errors(|errors| errors.plastic_work_percent),
         order_tau: row.of_errors(|errors| errors.order_tau),

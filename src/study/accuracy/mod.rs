@@ -7,6 +7,7 @@
 pub mod agenda;
 pub mod closed_form;
 mod csv;
+pub mod ensemble;
 pub mod errors;
 mod json;
 pub mod knobs;
@@ -25,16 +26,21 @@ use crate::scene::spec::{DriveSpec, Spec};
 use crate::scene::{self, Scene};
 use crate::study::cases::measured::Measured;
 use crate::study::cases::record::{self, Found};
+use crate::study::cases::stat::Stat;
 use crate::study::cases::workshop::{Became, Case, Progress, Workshop};
 use agenda::{Item, Turned};
 use errors::{Errors, Truth};
 use knobs::{Knob, Role};
-use reference::{Along, Refined, Series};
+use reference::{Along, OfSeed, Refined, Series};
 use rows::{Outcome, Row, Run};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+
+/// Seeds where bonds scatter, nothing exact is known, and the user says nothing: the interval of a mean is then 1.6
+/// standard deviations of what is compared, which the same seeds on both sides keep small.
+pub const SEEDS: u64 = 4;
 
 /// What to study and how.
 pub struct Options {
@@ -42,7 +48,7 @@ pub struct Options {
     pub scene: String,
     /// Its options.
     pub overrides: Vec<String>,
-    /// Seeds; empty for the scene's own.
+    /// Seeds; empty for [`SEEDS`] where bonds scatter and there is no closed form, else the scene's own.
     pub seeds: Vec<u64>,
     /// Knobs to turn.
     pub vary: Vec<&'static Knob>,
@@ -64,6 +70,8 @@ pub struct Study {
     pub scene: String,
     /// Seeds that were run.
     pub seeds: Vec<u64>,
+    /// Whether bonds scatter, so that one run is one draw.
+    pub scatter: bool,
     /// Threads of the engine in each run.
     pub threads: usize,
     /// Runs side by side.
@@ -94,8 +102,10 @@ pub struct Reference {
     pub value: [f64; 2],
     /// What refinement alone gives for them: the same, but beside a closed form.
     pub refined: [f64; 2],
-    /// How sure refinement is of that [%], mean over seeds.
+    /// How sure refinement is of that [%]: of the limit, and with several seeds of what scatter leaves open of it (95 %).
     pub uncertainty_percent: [f64; 2],
+    /// Strength [MPa] and elongation [%] over seeds: what strands of other seeds may have.
+    pub over_seeds: [Option<Stat>; 2],
     /// What refinement along each knob adds, by seed.
     pub along: Vec<(u64, Along)>,
 }
@@ -110,6 +120,8 @@ pub struct Subject {
     pub turned: Vec<Turned>,
     /// Knobs that it has not, with the reason.
     pub absent: Vec<(&'static str, String)>,
+    /// Whether bonds scatter.
+    pub scatter: bool,
     /// What the user should know.
     pub notes: Vec<String>,
     name: String,
@@ -134,15 +146,25 @@ impl Subject {
         }
         let (turned, absent) = agenda::turn(&options.vary, &scene.spec);
         let mut notes = Vec::new();
-        let mut seeds = if options.seeds.is_empty() { vec![scene.spec.seed] } else { options.seeds.clone() };
+        let scatter = Plan::new(&scene.spec).scatter;
+        let mut seeds = options.seeds.clone();
+        if seeds.is_empty() && scatter && closed_form::truth(&scene).is_err() {
+            seeds = (1..=SEEDS).collect();
+            notes.push(format!(
+                "bonds scatter, so one run is one draw: errors are those of the mean over {SEEDS} seeds and of their \
+                 spread, and every run is made {SEEDS} times; --seeds takes more, --seed N is one draw"
+            ));
+        } else if seeds.is_empty() {
+            seeds = vec![scene.spec.seed];
+        }
         let mut seen = BTreeSet::new();
         seeds.retain(|seed| seen.insert(*seed));
-        if seeds.len() > 1 && !Plan::new(&scene.spec).scatter {
+        if seeds.len() > 1 && !scatter {
             notes.push("every bond is as strong as the other in this scene, so one seed is enough".into());
             seeds.truncate(1);
         }
         let (name, overrides) = (options.scene.clone(), options.overrides.clone());
-        Ok(Self { scene, seeds, turned, absent, notes, name, overrides })
+        Ok(Self { scene, seeds, turned, absent, scatter, notes, name, overrides })
     }
 
     /// The exact answer to the scene with these options and this seed; `None` where there is no closed form.
@@ -199,6 +221,7 @@ pub fn study(
     Ok(Study {
         scene: subject.scene.spec.name.clone(),
         seeds: subject.seeds.clone(),
+        scatter: subject.scatter,
         threads: workshop.threads_of_a_run(),
         jobs: options.jobs,
         reference,
@@ -283,9 +306,17 @@ struct Against {
 /// The reference of every seed that has one.
 fn references(subject: &Subject, runs: &Runs) -> BTreeMap<u64, Against> {
     let mut references = BTreeMap::new();
-    for seed in &subject.seeds {
-        let Some(base) = runs.measured(None, *seed) else { continue };
-        let refined = reference::refine(base, &series(subject, runs, *seed, base));
+    let of_seed = |seed: &u64| {
+        let base = runs.measured(None, *seed)?;
+        Some((*seed, (base, series(subject, runs, *seed, base))))
+    };
+    let (seeds, of_seeds): (Vec<u64>, Vec<OfSeed>) = subject.seeds.iter().filter_map(of_seed).unzip();
+    let laws = (of_seeds.len() > 1).then(|| reference::laws(&of_seeds));
+    for (seed, (base, series)) in seeds.iter().zip(&of_seeds) {
+        let refined = match &laws {
+            Some(laws) => reference::refine_as(laws, base, series),
+            None => reference::refine(base, series),
+        };
         let closed = subject.truth(&[], *seed);
         references.insert(*seed, Against { refined, closed });
     }
@@ -351,9 +382,21 @@ fn describe(subject: &Subject, references: &BTreeMap<u64, Against>) -> Reference
         words: if closed_form { closed_form::WORDS.into() } else { words(subject, &along) },
         value: [0, 1].map(|k| mean(&|against| truth(against)[k])),
         refined: [0, 1].map(refined),
-        uncertainty_percent: [0, 1].map(|k| mean(&|against| against.refined.uncertainty_percent[k])),
+        uncertainty_percent: [0, 1].map(|k| {
+            let limit = mean(&|against| against.refined.uncertainty_percent[k]);
+            limit.hypot(left_open(references, k))
+        }),
+        over_seeds: [0, 1].map(|k| Stat::of(&references.values().map(|against| truth(against)[k]).collect::<Vec<_>>())),
         along,
     }
+}
+
+/// Half the 95 % interval of what refinement adds to the mean of strength or elongation, from seed to seed [%]; 0 with one
+/// seed. The seeds themselves are given: what differs is how each of them is refined.
+fn left_open(references: &BTreeMap<u64, Against>, k: usize) -> f64 {
+    let added = |against: &Against| against.refined.along.iter().map(|along| along.correction_percent[k]).sum();
+    let added: Vec<f64> = references.values().map(added).collect();
+    Stat::of(&added).and_then(|stat| stat.interval_95).unwrap_or(0.0)
 }
 
 /// What a reference by refinement is, in a sentence.

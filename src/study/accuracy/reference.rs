@@ -2,7 +2,8 @@
 //!
 //! Refinement goes along one knob at a time from the scene as it stands. The limits add up: reference = base + Σ(limit
 //! along a knob − base). That leaves out what two refinements do together, a product of two small corrections; the
-//! uncertainty is the root of the sum of squares of those along each knob. Histories are extrapolated strain by strain
+//! uncertainty is the root of the sum of squares of those along each knob. Where bonds scatter and there are several
+//! seeds, it is the means over seeds that are refined. Histories are extrapolated strain by strain
 //! with the weights of strength. The order of breaks cannot be extrapolated; it is that of the finest run along the last
 //! knob.
 
@@ -13,6 +14,7 @@ use crate::study::cases::measured::{Curve, Measured};
 use serde::Serialize;
 
 /// Runs along one knob, the scene as it stands among them.
+#[derive(Clone)]
 pub struct Series<'a> {
     /// The knob.
     pub knob: &'static str,
@@ -58,9 +60,69 @@ struct Leg<'a> {
     weight: f64,
 }
 
-/// The reference that follows from `base` and its refinements.
+/// How the means over seeds converge along one knob. Where bonds scatter, a finer run of one seed may break another bond
+/// first, and the three levels of that seed alone show any order or none; their means over seeds do not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    knob: &'static str,
+    /// Limits of the means of strength [MPa] and elongation [%].
+    limits: [Limit; 2],
+    /// The two finest values.
+    values: [f64; 2],
+    /// Mean of each less the mean of the scene as it stands: strength [MPa], elongation [%].
+    corrections: [f64; 2],
+    levels: usize,
+}
+
+/// Runs of one seed: the scene as it stands, and along every knob.
+pub type OfSeed<'a> = (&'a Measured, Vec<Series<'a>>);
+
+/// How the means over `seeds` converge along every knob that refines. A level counts by how far its runs are from those of
+/// the same seeds at the scene as it stands, so that seeds it lacks do not shift it.
+pub fn laws(seeds: &[OfSeed]) -> Vec<Law> {
+    let Some((_, knobs)) = seeds.first() else { return Vec::new() };
+    let mean_base = [0, 1].map(|k| seeds.iter().map(|(base, _)| numbers(base)[k]).sum::<f64>() / seeds.len() as f64);
+    let law = |k: usize| {
+        let Series { knob, role: Role::Refines, .. } = &knobs[k] else { return None };
+        let mut values: Vec<f64> = seeds.iter().flat_map(|(_, s)| s[k].levels.iter().map(|(h, _)| *h)).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        let at = |h: f64, quantity: usize| {
+            let differences = seeds.iter().filter_map(|(base, series)| {
+                let (_, run) = series[k].levels.iter().find(|(value, _)| *value == h)?;
+                Some(numbers(run)[quantity] - numbers(base)[quantity])
+            });
+            let differences: Vec<f64> = differences.collect();
+            mean_base[quantity] + differences.iter().sum::<f64>() / differences.len() as f64
+        };
+        let along = |quantity: usize| limit(&values.iter().map(|h| [*h, at(*h, quantity)]).collect::<Vec<_>>());
+        let limits = [along(0)?, along(1)?];
+        let corrections = [0, 1].map(|k| limits[k].value - mean_base[k]);
+        Some(Law { knob, limits, values: [values[0], values[1]], corrections, levels: values.len() })
+    };
+    (0..knobs.len()).filter_map(law).collect()
+}
+
+fn numbers(run: &Measured) -> [f64; 2] {
+    [run.strength_mpa, run.elongation_percent]
+}
+
+/// The reference that follows from `base` and its refinements alone.
 pub fn refine(base: &Measured, series: &[Series]) -> Refined {
-    let legs: Vec<Leg> = series.iter().filter_map(|series| leg(base, series)).collect();
+    put_together(base, series.iter().filter_map(|series| leg(base, series)).collect())
+}
+
+/// The reference of one seed where bonds scatter: its own runs, extrapolated as the means over seeds are. Its mean over
+/// seeds is then the limit of the means, and how it differs from seed to seed tells how sure that is.
+pub fn refine_as(laws: &[Law], base: &Measured, series: &[Series]) -> Refined {
+    let legs = series.iter().filter_map(|series| match series.role {
+        Role::Refines => laws.iter().find(|law| law.knob == series.knob).map(|law| leg_as(law, base, series)),
+        _ => leg(base, series),
+    });
+    put_together(base, legs.collect())
+}
+
+fn put_together(base: &Measured, legs: Vec<Leg>) -> Refined {
     let sum = |k: usize| legs.iter().map(|leg| leg.corrections[k]).sum::<f64>();
     let spread = |k: usize| legs.iter().map(|leg| leg.uncertainties[k].powi(2)).sum::<f64>().sqrt();
     let value = [base.strength_mpa + sum(0), base.elongation_percent + sum(1)];
@@ -73,6 +135,29 @@ pub fn refine(base: &Measured, series: &[Series]) -> Refined {
         breaks: finest.breaks.clone(),
     };
     Refined { truth, uncertainty_percent, along: legs.into_iter().map(|leg| leg.along).collect() }
+}
+
+/// What a knob adds to one seed, by how the means over seeds converge; that of the means where the seed lacks one of the
+/// two finest runs.
+fn leg_as<'a>(law: &Law, base: &'a Measured, series: &Series<'a>) -> Leg<'a> {
+    let run = |value: f64| series.levels.iter().find(|(h, _)| *h == value).map(|(_, run)| *run);
+    let own = numbers(base);
+    let (fine, next, corrections) = match law.values.map(run) {
+        [Some(fine), Some(next)] => {
+            let [a, b] = [numbers(fine), numbers(next)];
+            (fine, next, [0, 1].map(|k| a[k] + law.limits[k].weight * (a[k] - b[k]) - own[k]))
+        }
+        _ => (base, base, law.corrections),
+    };
+    let uncertainties = law.limits.map(|limit| limit.uncertainty);
+    let along = Along {
+        knob: law.knob,
+        levels: law.levels,
+        order: law.limits.map(|limit| limit.order),
+        correction_percent: [0, 1].map(|k| 100.0 * corrections[k] / own[k]),
+        uncertainty_percent: [0, 1].map(|k| 100.0 * uncertainties[k] / own[k]),
+    };
+    Leg { along, corrections, uncertainties, fine, next, weight: law.limits[0].weight }
 }
 
 /// What one knob adds; `None` when it takes no part or has too few runs.
@@ -97,7 +182,7 @@ fn leg<'a>(base: &'a Measured, series: &Series<'a>) -> Option<Leg<'a>> {
         }
         Role::Neutral | Role::Model => return None,
     };
-    let own = [base.strength_mpa, base.elongation_percent];
+    let own = numbers(base);
     let corrections = [0, 1].map(|k| limits[k].value - own[k]);
     let uncertainties = limits.map(|limit| limit.uncertainty);
     let along = Along {
@@ -197,6 +282,36 @@ mod tests {
         assert_eq!(refined.truth.strength_mpa, exact.strength_mpa);
         let own = [Series { knob: "mass", role: Role::Exact(4.0), levels: vec![(4.0, &base), (1.0, &exact)] }];
         assert_eq!(refine(&base, &own).truth.strength_mpa, base.strength_mpa);
+    }
+
+    /// Two seeds whose own levels show no order: their means do, and the mean of what each is extrapolated to is the
+    /// limit of the means.
+    #[test]
+    fn means_over_seeds_converge_where_single_draws_do_not() {
+        let at = |h: f64, draw: f64| run(1000.0 + 40.0 * h + draw);
+        let one = [at(1.0, 30.0), at(0.5, -10.0), at(0.25, 20.0)];
+        let two = [at(1.0, -30.0), at(0.5, 10.0), at(0.25, -20.0)];
+        let of = |runs: &'static [Measured; 3]| -> OfSeed<'static> {
+            let levels = [1.0, 0.5, 0.25].into_iter().zip(runs).collect();
+            (&runs[0], vec![Series { knob: "speed", role: Role::Refines, levels }])
+        };
+        let seeds = [of(Box::leak(Box::new(one))), of(Box::leak(Box::new(two)))];
+        let alone = refine(seeds[0].0, &seeds[0].1);
+        assert_eq!(alone.along[0].order[0], None);
+        let laws = laws(&seeds);
+        assert!(
+            (laws[0].limits[0].order.unwrap() - 1.0).abs() < 1e-6 && (laws[0].limits[0].value - 100.0).abs() < 1e-9
+        );
+        let truths: Vec<f64> =
+            seeds.iter().map(|(base, series)| refine_as(&laws, base, series).truth.strength_mpa).collect();
+        assert!((0.5 * (truths[0] + truths[1]) - 100.0).abs() < 1e-9, "{truths:?}");
+        assert!((truths[0] - truths[1]).abs() > 1.0, "what one draw says is not hidden");
+        // The finest run of the second seed is missing: the means then go by the first seed's step from its own base.
+        let mut fewer = seeds[1].1.clone();
+        fewer[0].levels.truncate(2);
+        let short = refine_as(&laws, seeds[1].0, &fewer);
+        let expected = seeds[1].0.strength_mpa + laws[0].corrections[0];
+        assert!((short.truth.strength_mpa - expected).abs() < 1e-9);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The study as people read it: two tables and what stands around them.
 
+use super::ensemble::{self, Quantity};
 use super::errors::Errors;
 use super::reference::Along;
 use super::rows::{Outcome, Row};
@@ -39,10 +40,31 @@ pub fn costs_and_errors(study: &Study) -> Table {
             mean(row.of_runs(|run| Some(run.elongation_percent)), 3),
             signed(row.of_errors(|errors| Some(errors.elongation_percent))),
             unsigned(row.of_errors(|errors| errors.curve_percent)),
-            row.note(),
+            note(study, row),
         ]
     };
     table("Error against run time", &heads, study, cells)
+}
+
+/// What must be known of a row, scatter included.
+fn note(study: &Study, row: &Row) -> String {
+    let scatter = if study.scatter && !study.reference.closed_form {
+        ensemble::note(row, study.seeds.len())
+    } else {
+        String::new()
+    };
+    [row.note(), scatter].into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+/// The spread over seeds in per cent of the mean, and how it changes against the scene as it stands.
+fn spread(study: &Study, row: &Row, quantity: Quantity) -> String {
+    let base = study.rows.iter().find(|row| row.knob.is_none());
+    let Some(spread) = base.and_then(|base| ensemble::spread(row, base, quantity)) else { return String::new() };
+    match (row.knob.is_some().then_some(spread.change_percent).flatten(), spread.told) {
+        (Some(change), Some(true)) => format!("{:.2} ({change:+.0} %)", spread.percent),
+        (Some(change), Some(false)) => format!("{:.2} ({change:+.0} %, not told)", spread.percent),
+        _ => format!("{:.2}", spread.percent),
+    }
 }
 
 /// What else went otherwise, and whether the run may be believed.
@@ -50,6 +72,8 @@ pub fn histories_and_checks(study: &Study) -> Table {
     let heads = [
         "knob (scene has)",
         "value",
+        "spread of strength [%]",
+        "of elongation [%]",
         "plastic work [%]",
         "worst layer [%]",
         "first break",
@@ -61,6 +85,8 @@ pub fn histories_and_checks(study: &Study) -> Table {
     let layers = study.layers();
     let cells = |row: &Row| {
         vec![
+            spread(study, row, Quantity::Strength),
+            spread(study, row, Quantity::Elongation),
             signed(row.of_errors(|errors| errors.plastic_work_percent)),
             worst_layer(row, &layers),
             first_break(row),
@@ -157,6 +183,32 @@ pub fn list(subject: &Subject) -> String {
         let _ = writeln!(text, "{knob:16}not here: {reason}");
     }
     text
+}
+
+/// What scatter leaves open of the study, in a sentence; `None` where there is none.
+pub fn scatter(study: &Study) -> Option<String> {
+    if !study.scatter || study.reference.closed_form {
+        return None;
+    }
+    if let [seed] = study.seeds[..] {
+        return Some(format!(
+            "One draw of the scatter (seed {seed}): a difference of strength, elongation or first wire may be another draw's \
+             as well; --seeds judges means and spread."
+        ));
+    }
+    let [strength, elongation] = study.reference.over_seeds;
+    let words = |stat: Option<Stat>| {
+        let (half, deviation) = stat.and_then(|stat| stat.interval_95.zip(stat.standard_deviation))?;
+        let mean = stat?.mean;
+        Some(format!("{:.2} % (standard deviation {:.2} %)", 100.0 * half / mean, 100.0 * deviation / mean))
+    };
+    Some(format!(
+        "Errors are those of the mean over {} seeds, the same in every row, ± 95 %; what lies within that is not told from \
+         scatter. The mean over strands of all seeds is known to ± {} in strength and ± {} in elongation.",
+        study.seeds.len(),
+        words(strength)?,
+        words(elongation)?
+    ))
 }
 
 /// What the runs are compared with.
