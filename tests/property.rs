@@ -2,6 +2,8 @@
 
 #[path = "property/bits.rs"]
 mod bits;
+#[path = "property/broken_ends.rs"]
+mod broken_ends;
 #[path = "property/conservation.rs"]
 mod conservation;
 #[path = "common/drive.rs"]

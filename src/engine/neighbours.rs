@@ -144,7 +144,9 @@ impl Neighbours {
         self.safe_until = 0.0;
         self.rebuilds += 1;
         self.longest = longest_bond(state);
-        self.margin = self.needed_margin();
+        // The ends of a broken bond meet at the length that it had.
+        let parted = state.parted.iter().copied().fold(0.0, f64::max);
+        self.margin = self.needed_margin().max(parted - 2.0 * self.least);
         self.cells.fill(state, 2.0 * self.largest + self.margin + self.skin);
         let chunks = state.len().div_ceil(CHUNK);
         self.found.resize_with(chunks, Vec::new);

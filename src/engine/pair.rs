@@ -38,8 +38,8 @@ pub struct Meeting<R = f64> {
 pub struct History<N: NormalLaw, T: TangentialLaw, R: Real = f64> {
     /// Reduced radius R* [m], undeformed.
     pub reduced_radius: R,
-    /// Overlap that does not count [m]: two parts of a wire that a bond held until it broke may overlap, or two ends
-    /// lie under one particle. It shrinks as they part, and is 0 for everything else.
+    /// Overlap that does not count [m]: two parts of a wire that a bond held until it broke may overlap. Negative where
+    /// they meet before their surfaces do; 0 for everything else.
     pub offset: R,
     /// Normal law's state.
     pub normal: N::State<R>,

@@ -17,7 +17,7 @@ use super::contacts::{Contacts, closing};
 use super::kinds::Kinds;
 use super::neighbours::PairList;
 use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
-use super::state::{CHUNK, Deepest, Partial, State};
+use super::state::{BondActions, CHUNK, Deepest, Partial, State};
 use super::time_step::Stiffness;
 use crate::base::lanes::BLOCK;
 use crate::law::contact::NormalLaw;
@@ -101,6 +101,10 @@ pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     deepest: Deepest,
     /// See [`closing`].
     closing: f64,
+    /// Wire of each particle.
+    wire_of: Vec<u32>,
+    /// Length of each bond slot without stress at the start [m].
+    rest_length: Vec<f64>,
     arch: Arch,
 }
 
@@ -121,6 +125,8 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
             partial: Vec::new(),
             deepest: Deepest::default(),
             closing: closing(assembly),
+            wire_of: assembly.wire_of.clone(),
+            rest_length: assembly.rest_length.clone(),
             arch: Arch::new(),
         }
     }
@@ -223,10 +229,28 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
     fn set_up(&mut self, block: usize, lane: usize, state: &State) {
         if state.step > 0 {
             let [i, j] = [self.now.blocks[block].i, self.now.blocks[block].j].map(|p| p as usize + lane);
-            let distance = (state.x.get(j) - state.x.get(i)).length();
-            let offset = (state.radius[i] + state.radius[j] - distance).max(0.0);
+            let offset = self.offset(i, j, state);
             self.now.records[Self::place(block, History::<N, T>::OFFSET, lane)] = offset;
         }
+    }
+
+    /// Overlap that does not count between two particles that were not a pair until now [m]. Across a break the two pieces
+    /// meet where they parted, when the way between the two along the wire is as long as it was without stress: spheres
+    /// that overlap there (spacing below 1) do not count as overlapping, and the two ends themselves, which a long bond
+    /// held apart, meet before their spheres do.
+    fn offset(&self, i: usize, j: usize, state: &State) -> f64 {
+        let touching = state.radius[i] + state.radius[j];
+        let between = i..j;
+        let one_wire = self.wire_of[i] == self.wire_of[j] && self.wire_of[i] != u32::MAX;
+        if !one_wire || between.clone().all(|slot| state.whole[slot]) {
+            return (touching - (state.x.get(j) - state.x.get(i)).length()).max(0.0);
+        }
+        let natural = |slot: usize| match state.parted[slot] {
+            parted if parted > 0.0 => parted,
+            _ => self.rest_length[slot] / state.bond.get(slot, BondActions::THINNING).powi(2),
+        };
+        let way: f64 = between.map(natural).sum();
+        if j == i + 1 { touching - way } else { (touching - way).max(0.0) }
     }
 
     /// Overlap that counts, now [m].
@@ -317,7 +341,8 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
 
     fn bytes(&self, particles: usize) -> Bytes {
         let store = |s: &Store| behind(&s.blocks) + behind(&s.records) + s.constants.bytes();
-        let lists = behind(&self.keys) + behind(&self.starts) + behind(&self.partial) + self.places.bytes();
+        let wires = behind(&self.wire_of) + behind(&self.rest_length);
+        let lists = wires + behind(&self.keys) + behind(&self.starts) + behind(&self.partial) + self.places.bytes();
         let (records, actions) = (size_of_val(&self.now.records[..]), size_of_val(&self.actions[..]));
         // x, v, ω, radius and thinning in; forces and torques of first sides cleared, and added to.
         let per_particle = 3 * VECTOR + 2 * NUMBER + 6 * VECTOR;

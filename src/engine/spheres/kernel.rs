@@ -184,8 +184,6 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let meeting = Meeting { normal, overlap, thinner, velocity, viscosity, dt: self.seen.dt };
         let (pair, given) = meet(self.laws, &mut history, &meeting);
         sums.book(simd, lane, &given, pairs);
-        // An overlap that does not count shrinks as the surfaces part.
-        history.offset = Lanes::choose(touches, offset, offset.lesser((touching - distance).greater(zero)));
         history.each_number(|k, number| number.store(record, k * BLOCK + lane));
 
         let least = first.radius.lesser(second.radius);
