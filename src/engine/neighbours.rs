@@ -144,9 +144,7 @@ impl Neighbours {
         self.safe_until = 0.0;
         self.rebuilds += 1;
         self.longest = longest_bond(state);
-        // The ends of a broken bond meet at the length that it had.
-        let parted = state.parted.iter().copied().fold(0.0, f64::max);
-        self.margin = self.needed_margin().max(parted - 2.0 * self.least);
+        self.margin = self.needed_margin();
         self.cells.fill(state, 2.0 * self.largest + self.margin + self.skin);
         let chunks = state.len().div_ceil(CHUNK);
         self.found.resize_with(chunks, Vec::new);
@@ -168,7 +166,29 @@ impl Neighbours {
         self.found = found;
         self.list.pairs.clear();
         self.found.iter().for_each(|f| self.list.pairs.extend_from_slice(f));
+        self.add_parted(state);
         &self.list
+    }
+
+    /// Pairs across a break that were too near along the wire to touch before it, however far apart: where they meet
+    /// again is said once, when they part, and must not depend on when a search sees them.
+    fn add_parted(&mut self, state: &State) {
+        let wire = |p: usize| self.wire_of[p];
+        let last = state.len().saturating_sub(1);
+        let broken = (0..last).filter(|s| !state.whole[*s] && wire(*s) != u32::MAX && wire(*s) == wire(*s + 1));
+        let before = self.list.pairs.len();
+        for slot in broken {
+            let apart = self.apart[wire(slot) as usize] as usize;
+            for i in (slot + 2).saturating_sub(apart)..=slot {
+                let ends =
+                    (slot + 1..(i + apart).min(state.len())).filter(|j| wire(*j) == wire(i) && wire(i) == wire(slot));
+                self.list.pairs.extend(ends.map(|j| (i as u32, j as u32)));
+            }
+        }
+        if self.list.pairs.len() > before {
+            self.list.pairs.sort_unstable();
+            self.list.pairs.dedup();
+        }
     }
 
     /// Extra reach for what touches between particle centres, until the next search [m].

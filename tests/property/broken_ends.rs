@@ -19,8 +19,7 @@ from = ["0 mm", "0 mm", "0 mm"]
 to = ["0 mm", "0 mm", "8 mm"]
 [grip]
 length = "0.1 mm"
-drive = "cyclic"
-amplitude = "0.016 mm"
+displacement_amplitude = "0.016 mm"
 frequency = "5 kHz"
 [stop]
 time = "1 ms"
