@@ -1,6 +1,7 @@
 //! `strandsnap plan`.
 
 use super::say::say;
+use super::scene::expected;
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run;
@@ -24,6 +25,9 @@ pub fn plan(args: &Args) -> Result<()> {
     };
     say!("quality: {} ({preset})\n", args.scene.quality.word());
     say!("{}", Plan::new(&scene.spec));
+    if let Some(expected) = expected(&scene.spec) {
+        say!("{expected}\n");
+    }
     caution::cautions(&scene.spec).iter().for_each(|caution| say!("WARNING: {caution}\n"));
     let assembly = run::assemble(&scene)?;
     let threads = args.threads.map(usize::from);

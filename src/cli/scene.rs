@@ -4,7 +4,9 @@ use super::say::{self, say};
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run;
+use crate::scene::spec::Spec;
 use crate::scene::{builtin, caution};
+use crate::strand::theory::Theory;
 
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
@@ -51,6 +53,23 @@ fn check(args: &SceneArgs) -> Result<()> {
         assembly.len(),
         assembly.bond_count()
     );
+    if let Some(expected) = expected(&scene.spec) {
+        say!("{expected}");
+    }
     caution::cautions(&scene.spec).iter().for_each(|caution| say!("WARNING: {caution}"));
     Ok(())
+}
+
+/// What strand theory expects of a scene, in a line; `None` where it has nothing to say.
+pub(super) fn expected(spec: &Spec) -> Option<String> {
+    let theory = Theory::of_pull(spec)?;
+    let loose = match theory.closing_strain {
+        0.0 => String::new(),
+        strain => format!("; loose layers close in at {:.3} % of strain", strain * 1e2),
+    };
+    Some(format!(
+        "strand theory, ends held, elastic: {:.1} GPa, torque {:.4} N m per % of strain{loose}",
+        theory.modulus() * 1e-9,
+        theory.wrench.torque * 1e-2
+    ))
 }

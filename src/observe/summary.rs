@@ -3,6 +3,7 @@
 use super::Observer;
 use super::findings::Findings;
 use super::guard::QuasiStatic;
+use super::stiffness::{Rows, Stiffness};
 use super::tables::{cause, layer_name};
 use super::timings::Timings;
 use super::units::{mm, mpa, percent};
@@ -43,6 +44,9 @@ pub struct RunSummary {
     pub final_strain_percent: Option<f64>,
     /// Nominal stress at the end [MPa].
     pub residual_stress_mpa: Option<f64>,
+    /// Initial stiffness beside strand theory; `None` where that has nothing to say.
+    #[serde(default)]
+    pub stiffness: Option<Stiffness>,
     /// Energy ledger at the end [J].
     pub energy: Energy,
     /// What the ledger does not account for, over the work done [%]; `None` when no work was done.
@@ -159,6 +163,7 @@ pub struct Summariser {
     notices: Vec<Notice>,
     /// (strain [-], nominal stress [Pa]) of every row.
     curve: Vec<(f64, f64)>,
+    elastic: Rows,
     last: Sample,
     ruptures: Vec<Rupture>,
 }
@@ -178,7 +183,9 @@ impl Summariser {
         let firsts = self.first_breaks();
         // Trouble comes as a notice too, at the place where the run ended.
         let earlier = self.notices.iter().map(|n| &n.text).filter(|text| Some(*text) != closing.trouble.as_ref());
-        let warnings = closing.trouble.iter().chain(earlier).cloned().collect();
+        let stiffness = self.elastic.stiffness(spec);
+        let off = stiffness.as_ref().and_then(|s| s.warning(spec));
+        let warnings = closing.trouble.iter().chain(earlier).chain(&off).cloned().collect();
         RunSummary {
             scene: spec.name.clone(),
             stopped_because: closing.because,
@@ -194,6 +201,7 @@ impl Summariser {
             bonds_broken: self.ruptures.len(),
             final_strain_percent: measured(Some(percent(self.last.strain))),
             residual_stress_mpa: measured(Some(mpa(self.last.stress))),
+            stiffness,
             energy,
             energy_residual_percent: (energy.work != 0.0).then(|| percent(energy.residual() / energy.work)),
             quasi_static: closing.quasi_static,
@@ -278,6 +286,7 @@ impl Observer for Summariser {
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
         self.curve.push((sample.strain, sample.stress));
+        self.elastic.add(sample);
         self.last = sample.clone();
         Ok(())
     }
