@@ -102,6 +102,7 @@ pub fn measure(rows: &[Row], spec: &Spec) -> Option<Stiffness> {
     let measured = slope(|row| row.stress);
     let expected = theory.modulus();
     // A run that ended before the wave had passed has no strain to show for it.
+    let to = if not_measured.is_none() { inside[inside.len() - 1].strain } else { window[1] };
     let from = if window[0].is_finite() { window[0] } else { rows.last().map_or(0.0, |row| row.strain) };
     Some(Stiffness {
         expected_gpa: expected * 1e-9,
@@ -109,7 +110,7 @@ pub fn measure(rows: &[Row], spec: &Spec) -> Option<Stiffness> {
         deviation_percent: measured.map(|m| percent(m / expected - 1.0)),
         expected_torque_n_m: theory.wrench.torque,
         measured_torque_n_m: slope(|row| row.torque),
-        window_percent: [percent(from), percent(window[1])],
+        window_percent: [percent(from), percent(to)],
         rows: inside.len(),
         not_measured,
     })

@@ -127,8 +127,8 @@ fn wires(run: &Folder) -> Outcome {
         let wire = &info.wires[row];
         search.same(number("wire"), (row + 1) as f64, || place("wire"));
         search.same(run.wires.text(row, "layer"), info.layers[wire.layer].as_str(), || place("layer"));
-        let diameter = f64::from(wire.diameter);
-        search.compare(number("diameter_mm"), diameter, diameter, || place("diameter_mm"));
+        // The trajectory has it in single precision.
+        search.same(number("diameter_mm") as f32, wire.diameter, || place("diameter_mm"));
         let most = run.trajectory.samples.iter().filter_map(|s| s.wire_stress.get(row)).map(|s| s / 1e6);
         if let Some(most) = most.reduce(f64::max).filter(|_| !run.wires.text(row, "strength_mpa").is_empty()) {
             // Peaks may be seen between rows.

