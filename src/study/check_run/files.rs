@@ -93,14 +93,14 @@ fn curve(run: &Folder) -> Outcome {
     for (row, sample) in samples.iter().enumerate().take(run.curve.rows.len()) {
         let place = |head: &str| format!("curve.csv line {}, {head}", row + 2);
         for (head, right) in COLUMNS.iter().zip(values(sample)) {
-            search.compare(run.curve.number(row, head), right, right.abs(), || place(head));
+            search.digits(run.curve.number(row, head), right, || place(head));
         }
         for (head, stress) in layer_heads(run).iter().zip(&sample.layer_stress) {
             let right = stress / 1e6;
-            search.compare(run.curve.number(row, head), right, right.abs(), || place(head));
+            search.digits(run.curve.number(row, head), right, || place(head));
         }
     }
-    search.end(DIGITS, "-", "")
+    search.end(0.0, "-", "")
 }
 
 fn layers(run: &Folder) -> Outcome {
@@ -176,14 +176,12 @@ fn ruptures(run: &Folder) -> Outcome {
             ("body_stress_mpa", rupture.body_stress / 1e6),
         ];
         for (head, right) in numbers {
-            search.compare(run.ruptures.number(row, head), right, right.abs(), || {
-                format!("ruptures.csv line {}, {head}", row + 2)
-            });
+            search.digits(run.ruptures.number(row, head), right, || format!("ruptures.csv line {}, {head}", row + 2));
         }
         let layer = info.layers[info.wires[rupture.wire].layer].as_str();
         search.same(run.ruptures.text(row, "layer"), layer, || format!("ruptures.csv line {}, layer", row + 2));
     }
-    search.end(DIGITS, "-", "")
+    search.end(0.0, "-", "")
 }
 
 fn summary(run: &Folder) -> Outcome {
@@ -209,7 +207,7 @@ fn summary(run: &Folder) -> Outcome {
     ];
     for (name, value, head) in pairs {
         if let Some(value) = value {
-            search.compare(value, number(head), number(head).abs(), || format!("{name}, last row's {head}"));
+            search.digits(number(head), value, || format!("{name}, last row's {head}"));
         }
     }
     if let Some(first) = &s.first_rupture {
@@ -222,11 +220,11 @@ fn summary(run: &Folder) -> Outcome {
         ];
         for (name, value, head) in pairs {
             let right = run.ruptures.number(0, head);
-            search.compare(value, right, right.abs(), || format!("first_rupture.{name}"));
+            search.digits(right, value, || format!("first_rupture.{name}"));
         }
     }
     search.same(s.first_rupture.is_some(), !run.ruptures.rows.is_empty(), || "first_rupture is there".into());
-    search.end(DIGITS, "-", "")
+    search.end(0.0, "-", "")
 }
 
 fn strength(run: &Folder) -> Outcome {

@@ -56,6 +56,14 @@ impl Search {
         self.add(off, || format!("{}: {found:.9} against {right:.9}", place()));
     }
 
+    /// `found` in a table, which has nine digits, against `right`; 0 when every digit agrees.
+    pub fn digits(&mut self, found: f64, right: f64, place: impl FnOnce() -> String) {
+        let rounded = format!("{right:.8e}").parse().unwrap_or(f64::NAN);
+        // Counts are written in full.
+        let off = if found == rounded || found == right { 0.0 } else { (found - right).abs() / right.abs() };
+        self.add(off, || format!("{}: {found:.9} against {right:.9}", place()));
+    }
+
     /// Two that must be the same; counts as 1 when they are not.
     pub fn same<T: PartialEq + std::fmt::Display>(&mut self, found: T, right: T, place: impl FnOnce() -> String) {
         let off = if found == right { 0.0 } else { 1.0 };
