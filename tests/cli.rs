@@ -181,16 +181,18 @@ fn a_short_run_writes_files_that_parse() {
     assert_eq!(summary["steps"], 400);
     assert_eq!(summary["first_rupture"], serde_json::Value::Null);
     for key in [
-        "tensile_strength_mpa",
-        "fracture_elongation_percent",
+        "greatest_stress_mpa",
+        "strain_at_greatest_stress_percent",
         "energy_residual_percent",
-        "kinetic_over_internal_max",
-        "grip_force_mismatch_percent",
         "wall_s",
         "cpu_s",
         "ms_per_step",
     ] {
         assert!(summary[key].is_f64(), "{key} is {}", summary[key]);
+    }
+    // Nothing failed, and 400 steps are less than one passage of a wave.
+    for key in ["tensile_strength_mpa", "fracture_elongation_percent", "kinetic_over_internal_max"] {
+        assert!(summary[key].is_null(), "{key} is {}", summary[key]);
     }
     assert!(summary["wires_broken_by_layer"].is_object());
     toml::from_str::<toml::Table>(&fs::read_to_string(out.join("scene.toml")).unwrap()).unwrap();
@@ -256,7 +258,7 @@ fn pulling_to_fracture_tells_where_it_broke() {
     let peak =
         rows(&out.join("curve.csv")).iter().map(|row| row["stress_mpa"].parse::<f64>().unwrap()).fold(0.0, f64::max);
     let strength = summary["tensile_strength_mpa"].as_f64().unwrap();
-    assert!((strength - peak).abs() < 1e-6 * peak, "{strength} {peak}");
+    assert!(strength >= peak && strength < 1.001 * peak, "seen at every step, not at rows: {strength} {peak}");
 }
 
 #[cfg(unix)]

@@ -51,6 +51,7 @@ cases! {
     critical_step_damped "critical-step-damped",
     critical_step_free_wire "critical-step-free-wire",
     crossed_wires "crossed-wires",
+    curve_as_written "curve-as-written",
     damping_axial "damping-axial",
     damping_bending "damping-bending",
     elastica "elastica",

@@ -1,59 +1,128 @@
 //! What is measured: nominal stress, stresses per wire and layer, energies, snapshots for those who draw and record.
 
 use super::Engine;
+use super::bonds::Bonds;
 use super::grips::{Holds, Reaction};
 use super::view::{BondState, Energy, RunInfo, Sample, Snapshot, WireInfo};
 use crate::reference::helix;
 use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, RuptureCriterion, Spec};
 use crate::strand::assembly::Assembly;
+use std::collections::VecDeque;
+use std::ops::Range;
 
-/// Running means of the grip forces, and who is broken.
+/// Window of the running means, over the time in which an elastic wave runs along the body [-].
+const WINDOW: f64 = 0.125;
+
+/// Running means of what a row of the curve says, and who is broken.
+///
+/// Everything is the mean over the same last L/(8c), an eighth of an elastic wave's way along the body: strain, grip forces,
+/// torque and the forces in the wires. A mean lags by half its window behind what grows evenly. Since strain lags as stress
+/// does, the curve keeps its phase, and modulus can be read from it at any speed; it rounds off a yield point by half the
+/// strain that the grip brings in a window, v/(16c). A window takes out what neighbouring particles ring; the ringing of
+/// the body as a whole, of a period of 2L/c, stays.
 pub struct Measures {
-    /// Time constant of the running means [s]: a quarter of an elastic wave's way along the body, long enough to
-    /// take its ringing out, short against everything that is measured.
+    /// Length of the window [s].
     window: f64,
     area: f64,
-    mean: Reaction,
-    seen: bool,
-    /// Bonds in the middle of each wire, whose mean is the wire's stress.
-    middle: Vec<Vec<usize>>,
+    /// The steps in the window.
+    steps: VecDeque<Step>,
+    /// Sums over them of length, and of values times length.
+    sum: Step,
+    /// Bonds in the middle of each wire, whose mean is the wire's stress; wire by wire.
+    middle: Vec<usize>,
+    /// Those of each wire among them.
+    of_wire: Vec<Range<usize>>,
     broken: Vec<bool>,
 }
+
+/// What was measured at one step, times its length.
+#[derive(Default, Clone)]
+struct Step {
+    /// [s]
+    length: f64,
+    /// Strain [-], force of the lower and upper grip [N], torque [N m], axial force of each middle bond [N]; each times s.
+    values: Vec<f64>,
+}
+
+const STRAIN: usize = 0;
+const FORCE: usize = 1;
+const TORQUE: usize = 3;
+const BONDS: usize = 4;
 
 impl Measures {
     /// For `assembly` between `holds`.
     pub fn new(spec: &Spec, assembly: &Assembly, holds: &Holds) -> Self {
-        let wave = (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt();
         let gauge = holds.stretch.gauge;
+        let (mut slots, mut of_wire) = (Vec::new(), Vec::new());
+        for w in 0..assembly.wires.len() {
+            let first = slots.len();
+            slots.extend(middle(assembly, w, gauge));
+            of_wire.push(first..slots.len());
+        }
         Self {
-            window: 0.25 * assembly.length / wave,
+            window: WINDOW * passage(spec, assembly),
             area: assembly.area,
-            mean: Reaction::default(),
-            seen: false,
-            middle: (0..assembly.wires.len()).map(|w| middle(assembly, w, gauge)).collect(),
+            steps: VecDeque::new(),
+            sum: Step { length: 0.0, values: vec![0.0; BONDS + slots.len()] },
+            middle: slots,
+            of_wire,
             broken: vec![false; assembly.wires.len()],
         }
     }
 
-    /// Takes in the reactions of a step.
-    pub fn grip(&mut self, now: &Reaction, dt: f64) {
-        let share = if self.seen && self.window > 0.0 { (dt / self.window).min(1.0) } else { 1.0 };
-        self.seen = true;
-        let blend = |mean: &mut f64, now: f64| *mean += (now - *mean) * share;
-        blend(&mut self.mean.force[0], now.force[0]);
-        blend(&mut self.mean.force[1], now.force[1]);
-        blend(&mut self.mean.torque, now.torque);
+    /// Takes in a step of `dt` [s]: the grips' reactions, the strain [-] and the bonds' forces, all at one instant.
+    pub fn take(&mut self, strain: f64, now: &Reaction, bonds: Option<&dyn Bonds>, dt: f64) {
+        let mut step = Step::default();
+        while self.steps.front().is_some_and(|first| self.sum.length + dt - first.length >= self.window) {
+            step = self.steps.pop_front().unwrap_or_default();
+            self.sum.length -= step.length;
+            self.sum.values.iter_mut().zip(&step.values).for_each(|(sum, value)| *sum -= value);
+        }
+        if self.steps.is_empty() {
+            // No rounding is left of what has gone.
+            self.sum.length = 0.0;
+            self.sum.values.fill(0.0);
+        }
+        step.length = dt;
+        step.values.clear();
+        step.values.extend([strain, now.force[0], now.force[1], now.torque].map(|value| value * dt));
+        step.values.extend(self.middle.iter().map(|slot| bonds.map_or(0.0, |bonds| bonds.axial_force(*slot) * dt)));
+        self.sum.length += dt;
+        self.sum.values.iter_mut().zip(&step.values).for_each(|(sum, value)| *sum += value);
+        self.steps.push_back(step);
+    }
+
+    fn mean(&self, value: usize) -> f64 {
+        if self.sum.length > 0.0 { self.sum.values[value] / self.sum.length } else { 0.0 }
+    }
+
+    /// Strain of the body: grip displacement over the length that is free between the grips [-].
+    pub fn strain(&self) -> f64 {
+        self.mean(STRAIN)
     }
 
     /// Nominal stress: upper grip force over the copper area [Pa].
     pub fn stress(&self) -> f64 {
-        if self.area > 0.0 { self.mean.force[1] / self.area } else { 0.0 }
+        if self.area > 0.0 { self.mean(FORCE + 1) / self.area } else { 0.0 }
+    }
+
+    /// Axial force of a wire [N]: mean over the bonds in the middle of the gauge, in which a broken one counts with zero
+    /// from the moment at which it broke, whatever it carried before.
+    fn wire_force(&self, wire: usize, whole: &[bool]) -> f64 {
+        let range = self.of_wire[wire].clone();
+        let count = range.len().max(1) as f64;
+        range.filter(|i| whole[self.middle[*i]]).map(|i| self.mean(BONDS + i)).sum::<f64>() / count
     }
 
     /// Marks a wire as broken; true when it was whole.
     pub fn mark_broken(&mut self, wire: usize) -> bool {
         !std::mem::replace(&mut self.broken[wire], true)
     }
+}
+
+/// Time in which an elastic wave runs along the body [s].
+fn passage(spec: &Spec, assembly: &Assembly) -> f64 {
+    assembly.length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt()
 }
 
 /// Bonds of wire `w` within a fortieth of the gauge around its middle, at least one.
@@ -92,8 +161,8 @@ impl Engine {
             time: self.state.time,
             strain: self.strain(),
             stress: self.stress(),
-            grip_force: self.measures.mean.force,
-            torque: self.measures.mean.torque,
+            grip_force: [0, 1].map(|grip| self.measures.mean(FORCE + grip)),
+            torque: self.measures.mean(TORQUE),
             layer_stress,
             wire_stress,
             wires_broken: self.measures.broken.iter().filter(|b| **b).count(),
@@ -104,26 +173,28 @@ impl Engine {
         }
     }
 
-    /// Nominal axial stress of a wire at mid-gauge [Pa].
-    fn wire_stress(&self, wire: usize) -> f64 {
-        let Some(bonds) = &self.bonds else { return 0.0 };
-        let slots = &self.measures.middle[wire];
-        if slots.is_empty() {
-            return 0.0;
-        }
-        let force: f64 = slots.iter().map(|s| bonds.axial_force(*s)).sum();
-        force / slots.len() as f64 / self.assembly.wires[wire].area()
+    /// Nominal axial stress of a wire at mid-gauge [Pa]: the mean over its bonds in the middle twentieth of the gauge, of
+    /// which those that are broken carry nothing. A wire that broke there reports what its pieces still carry by friction.
+    pub fn wire_stress(&self, wire: usize) -> f64 {
+        self.measures.wire_force(wire, &self.state.whole) / self.assembly.wires[wire].area()
     }
 
     /// The energy ledger now.
     pub fn energy(&self) -> Energy {
         Energy {
             work: self.holds.work_now(&self.state),
-            kinetic: self.holds.kinetic(&self.state),
+            kinetic: self.kinetic(),
             elastic_bonds: self.bonds.as_ref().map_or(0.0, |b| b.elastic_energy(&self.state)),
             elastic_contacts: self.contacts.as_ref().map_or(0.0, |c| c.stage.elastic_energy(&self.state)),
             ..self.energy
         }
+    }
+
+    /// Kinetic energy now [J]. Leapfrog's is a product of two velocities half a step apart, which rounding errors in a body
+    /// at rest turn round at every step: what is negative by less than a negligible energy is rest.
+    fn kinetic(&self) -> f64 {
+        let kinetic = self.holds.kinetic(&self.state);
+        if kinetic < 0.0 && -kinetic <= self.negligible_energy() { 0.0 } else { kinetic }
     }
 
     /// An energy that is nothing [J]: what an elastic strain of 1e-9 everywhere would store.
@@ -200,6 +271,8 @@ impl Engine {
             speed_range: [0.0, self.greatest_speed() as f32],
             contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
             strain_end: self.strain_end(),
+            negligible_energy: self.negligible_energy(),
+            wave_passage: passage(&self.spec, a),
         }
     }
 

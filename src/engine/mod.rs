@@ -204,11 +204,13 @@ impl Engine {
         let turn = self.plan.rotations;
         integrate::kick(&mut self.state, kicked, turn, self.arch);
         self.state.dt = self.next_dt;
+        // Of the instant at which the forces act that the grips hold against.
+        let strain = self.holds.strain();
         self.holds.apply(&mut self.state, kicked, self.arch);
         let largest2 = integrate::drift(&mut self.state, self.arch);
         self.state.step += 1;
         self.state.time += self.state.dt;
-        self.measures.grip(&self.holds.reaction, self.state.dt);
+        self.measures.take(strain, &self.holds.reaction, self.bonds.as_deref(), self.state.dt);
         self.timings.integrate += began.elapsed();
         self.state.travel += largest2.sqrt();
         let limit = RUNAWAY * self.least_radius;
@@ -290,7 +292,7 @@ impl Engine {
                 order: self.rupture_count,
                 step: self.state.step,
                 time: self.state.time,
-                strain: self.holds.strain(),
+                strain: self.measures.strain(),
                 wire,
                 layer: self.assembly.wires[wire].layer,
                 bond: slot,
@@ -427,9 +429,10 @@ impl Engine {
         }
     }
 
-    /// Grip displacement over gauge length, now [-].
+    /// Strain of the body: grip displacement over gauge length, smoothed as stress is, so that the two belong together
+    /// ([`measure::Measures`]) [-].
     pub fn strain(&self) -> f64 {
-        self.holds.strain()
+        self.measures.strain()
     }
 
     /// Simulated time [s].
@@ -442,7 +445,7 @@ impl Engine {
         self.state.step
     }
 
-    /// Nominal stress now, smoothed over a quarter of a wave's way along the strand [Pa].
+    /// Nominal stress, the mean over an eighth of a wave's way along the strand [Pa].
     pub fn stress(&self) -> f64 {
         self.measures.stress()
     }

@@ -129,7 +129,7 @@ impl Engine {
         if self.holds.pace.is_none() {
             return;
         }
-        let ahead = Ahead { work: self.holds.work, strain: self.strain(), left: self.strain_left() };
+        let ahead = Ahead { work: self.holds.work, strain: self.holds.strain(), left: self.strain_left() };
         if let Some(pace) = &mut self.holds.pace {
             pace.look(ahead, steps as f64 * self.next_dt);
         }
@@ -145,7 +145,7 @@ impl Engine {
         }
         let whole = (0..self.state.len()).filter(|slot| self.state.whole[*slot]);
         let most = whole.map(|slot| bonds.utilisation(slot, &self.state)).fold(0.0, f64::max);
-        self.strain() * (1.0 - most).max(0.0) / most
+        self.holds.strain() * (1.0 - most).max(0.0) / most
     }
 
     /// Speed of the upper grip along z now, of a pull at constant or adaptive speed [m/s]; 0 of any other drive.
@@ -162,7 +162,7 @@ impl Engine {
     /// strained as the body, ruptures where the criterion puts them. `None` of any other drive.
     pub fn adaptive_time(&self, strain: f64) -> Option<f64> {
         let rule = &self.holds.pace.as_ref()?.rule;
-        let begin = self.strain();
+        let begin = self.holds.strain();
         let part = (strain - begin) / f64::from(PARTS);
         let volume = self.assembly.area * rule.length;
         let mut work = self.holds.work;

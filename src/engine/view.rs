@@ -49,6 +49,10 @@ pub struct RunInfo {
     pub contact_pressure_range: [f32; 2],
     /// The strain at which the run is expected to end [-], for axes and progress; `None` when unknown.
     pub strain_end: Option<f64>,
+    /// An energy that is nothing [J]: no ratio means anything of energies below it.
+    pub negligible_energy: f64,
+    /// Time in which an elastic wave runs along the body [s].
+    pub wave_passage: f64,
 }
 
 impl RunInfo {
@@ -79,7 +83,9 @@ pub struct Sample {
     pub step: u64,
     /// Simulated time [s].
     pub time: f64,
-    /// Grip displacement over gauge length [-].
+    /// Grip displacement over gauge length [-]. Like stress, forces and torque it is a running mean over an eighth of an
+    /// elastic wave's passage ([`crate::engine::measure::Measures`]): all of them lag alike, so none is shifted against
+    /// another. Energies and counts are those of the instant.
     pub strain: f64,
     /// Nominal stress: upper grip force over ΣnA₀ [Pa].
     pub stress: f64,
@@ -87,9 +93,10 @@ pub struct Sample {
     pub grip_force: [f64; 2],
     /// Torque about z on the upper grip [N m].
     pub torque: f64,
-    /// Mean nominal axial stress of each layer at mid-gauge [Pa].
+    /// Mean nominal axial stress of the wires of each layer at mid-gauge [Pa], broken ones included.
     pub layer_stress: Vec<f64>,
-    /// Nominal axial stress of each wire at mid-gauge [Pa].
+    /// Nominal axial stress of each wire at mid-gauge [Pa]: the mean over its bonds in the middle twentieth of the gauge, of
+    /// which broken ones carry nothing.
     pub wire_stress: Vec<f64>,
     /// Wires broken so far.
     pub wires_broken: usize,
@@ -109,7 +116,8 @@ pub struct Energy {
     /// Work done by grips, holds and applied loads, plus the energy that the run started with: of motion, and of
     /// bodies that overlap from the start.
     pub work: f64,
-    /// Kinetic, translation and rotation.
+    /// Kinetic, translation and rotation: leapfrog's ½ m v_{n−1/2}·v_{n+1/2}, which can be negative where motion turns round
+    /// at every step; zero where that is rounding.
     pub kinetic: f64,
     /// Elastic, in bonds.
     pub elastic_bonds: f64,

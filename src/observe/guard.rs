@@ -11,6 +11,11 @@ use serde::{Deserialize, Serialize};
 /// quasi-static analyses by explicit integration is a small ratio throughout most of the process, not at its start.
 pub const LEAST_INTERNAL_SHARE: f64 = 0.05;
 
+/// Passages of an elastic wave along the body after which loading is judged [-]. A pull starts as an even field of
+/// velocities without any strain: against the elastic energy ½Eε² of ε = n v/c, after n passages, its kinetic energy ρv²/6
+/// is 1/(3n²); of a wire that yields at once it still is a few per cent after ten.
+pub const FIRST_PASSAGES: f64 = 10.0;
+
 /// Share of the expected strain from which a row is judged as it comes [-]: even an elastic body, whose energy goes with
 /// the square of its strain, then has [`LEAST_INTERNAL_SHARE`] of its greatest energy.
 const TELLING_STRAIN: f64 = 0.25;
@@ -22,7 +27,8 @@ pub const ENERGY_LIMIT: f64 = 0.01;
 /// tried, jaws that crush loose pieces included, stays below the warning.
 const ENERGY_STOP: f64 = 0.2;
 
-/// How far loading was from quasi-static. `None` for free bodies, which are not loaded by grips.
+/// How far loading was from quasi-static, from [`FIRST_PASSAGES`] on. `None` for free bodies, which are not loaded by
+/// grips, and before.
 ///
 /// The quasi-static stage ends with the first rupture: a wire that snaps always throws energy about,
 /// so the whole run is given beside it and judged by nobody.
@@ -44,6 +50,8 @@ struct Row {
     internal: f64,
     force: [f64; 2],
     before_rupture: bool,
+    /// The first passages of a wave are over.
+    settled: bool,
 }
 
 /// Where a run stands, for a notice.
@@ -60,6 +68,8 @@ pub struct Guard {
     /// Energies below this one are nothing [J].
     negligible: f64,
     rows: Vec<Row>,
+    /// Time in which an elastic wave runs along the body [s].
+    passage: f64,
     gripped: bool,
     strain_end: f64,
     ruptured: bool,
@@ -77,16 +87,17 @@ pub struct Guard {
 enum Said {
     Kinetic,
     Mismatch,
+    Short,
     Ledger,
 }
 
 impl Guard {
-    /// A guard with the limits of a scene. Energies below `negligible` [J] are rounding: a body at rest has no ledger to
-    /// close.
-    pub fn new(limits: &TimeSpec, negligible: f64) -> Self {
+    /// A guard with the limits of a scene.
+    pub fn new(limits: &TimeSpec) -> Self {
         Self {
             limits: limits.clone(),
-            negligible,
+            negligible: 0.0,
+            passage: 0.0,
             rows: Vec::new(),
             gripped: false,
             strain_end: f64::INFINITY,
@@ -99,8 +110,10 @@ impl Guard {
         }
     }
 
-    /// Before the first row.
+    /// Before the first row. Energies below the run's negligible one are rounding: a body at rest has no ledger to close.
     pub fn start(&mut self, info: &RunInfo) {
+        self.negligible = info.negligible_energy;
+        self.passage = info.wave_passage;
         self.gripped = info.is_pulled();
         self.strain_end = info.strain_end.unwrap_or(f64::INFINITY);
     }
@@ -130,8 +143,9 @@ impl Guard {
             internal: sample.energy.internal(),
             force: sample.grip_force,
             before_rupture: !self.ruptured && sample.bonds_broken == 0,
+            settled: self.is_settled(),
         };
-        let telling = row.internal > self.negligible;
+        let telling = row.settled && row.internal > self.negligible;
         if self.gripped
             && telling
             && row.before_rupture
@@ -183,6 +197,10 @@ impl Guard {
         self.residual
     }
 
+    fn is_settled(&self) -> bool {
+        self.now.time >= FIRST_PASSAGES * self.passage
+    }
+
     fn say(&mut self, what: Said, text: String) {
         if !self.said.contains(&what) {
             self.said.push(what);
@@ -193,6 +211,19 @@ impl Guard {
 
     /// Judges the quasi-static stage as a whole.
     fn judge_loading(&mut self) {
+        if !self.gripped {
+            return;
+        }
+        if !self.is_settled() {
+            let passages = self.now.time / self.passage;
+            self.say(
+                Said::Short,
+                format!(
+                    "too short to tell whether loading was quasi-static: it went on for {passages:.1} passages of an elastic \
+                     wave along the body, and the first {FIRST_PASSAGES} belong to its start; load more slowly, or go on"
+                ),
+            );
+        }
         let seen = self.quasi_static();
         if let Some(ratio) = seen.kinetic_over_internal_max {
             self.judge_kinetic(ratio);
@@ -206,7 +237,7 @@ impl Guard {
                 Said::Mismatch,
                 format!(
                     "loading was not quasi-static: up to strain {until:.2} % the two grip forces differed by \
-                     {mismatch:.2} % of the peak force (limit time.mismatch_limit = {limit} %); pull more slowly"
+                     {mismatch:.2} % of the peak force (limit time.mismatch_limit = {limit} %); load more slowly"
                 ),
             );
         }
@@ -219,7 +250,7 @@ impl Guard {
                 Said::Kinetic,
                 format!(
                     "loading was not quasi-static: up to strain {until:.2} % kinetic energy reached {ratio:.3} of the \
-                     internal energy (limit time.kinetic_limit = {limit}); pull more slowly"
+                     internal energy (limit time.kinetic_limit = {limit}); load more slowly"
                 ),
             );
         }
@@ -264,7 +295,8 @@ impl Guard {
 
     fn kinetic_ratio<'a>(&'a self, rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
         let most = self.rows.iter().map(|r| r.internal).fold(0.0, f64::max);
-        let telling = rows.filter(|r| r.internal > self.negligible && r.internal >= LEAST_INTERNAL_SHARE * most);
+        let telling = |r: &&Row| r.settled && r.internal > self.negligible && r.internal >= LEAST_INTERNAL_SHARE * most;
+        let telling = rows.filter(telling);
         telling.map(|r| r.kinetic / r.internal).reduce(f64::max)
     }
 
@@ -273,7 +305,7 @@ impl Guard {
         if peak == 0.0 {
             return None;
         }
-        rows.map(|r| percent((r.force[1] - r.force[0]).abs() / peak)).reduce(f64::max)
+        rows.filter(|r| r.settled).map(|r| percent((r.force[1] - r.force[0]).abs() / peak)).reduce(f64::max)
     }
 }
 
@@ -326,7 +358,7 @@ mod tests {
     }
 
     fn new() -> Guard {
-        Guard { gripped: true, ..Guard::new(&limits(), 1e-9) }
+        Guard { gripped: true, negligible: 1e-9, ..Guard::new(&limits()) }
     }
 
     fn gripped(rows: &[Sample]) -> Guard {
@@ -357,6 +389,25 @@ mod tests {
         guard.row(&Sample { strain: 0.01, ..row(10.0, 100.0, [90.0, 100.0]) }).unwrap();
         guard.finish(false);
         assert_eq!(guard.take_notices(), []);
+    }
+
+    #[test]
+    fn the_first_passages_of_a_wave_are_not_judged() {
+        let mut guard = Guard { passage: 1e-5, ..new() };
+        guard.row(&Sample { time: 9e-5, ..row(49_200.0, 100.0, [0.0, 100.0]) }).unwrap();
+        assert_eq!(guard.quasi_static(), QuasiStatic::default());
+        guard.row(&Sample { time: 1.1e-4, ..row(1.0, 100.0, [100.0, 100.0]) }).unwrap();
+        assert_eq!(guard.quasi_static().kinetic_over_internal_max, Some(0.01));
+        assert_eq!(said(&mut guard), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_run_that_ends_within_the_first_passages_is_said_to_be_too_short() {
+        let mut guard = Guard { passage: 1e-5, ..new() };
+        guard.row(&Sample { time: 4.2e-5, ..row(10.0, 100.0, [90.0, 100.0]) }).unwrap();
+        let warnings = said(&mut guard);
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(warnings[0].contains("4.2 passages"), "{warnings:?}");
     }
 
     #[test]

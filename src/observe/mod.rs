@@ -4,6 +4,7 @@ pub mod files;
 pub mod findings;
 pub mod guard;
 pub mod partial;
+pub mod peaks;
 pub mod planned;
 pub mod progress;
 #[cfg(feature = "record")]
@@ -19,6 +20,7 @@ pub mod wording;
 
 use crate::base::error::Result;
 use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
+use peaks::Peaks;
 use std::sync::Arc;
 
 /// Something that watches a run.
@@ -39,6 +41,10 @@ pub trait Observer {
     }
     /// Something that the user must know was found.
     fn notice(&mut self, _notice: &Notice) -> Result<()> {
+        Ok(())
+    }
+    /// The greatest stresses of the run, once, after its last row.
+    fn peaks(&mut self, _peaks: &Peaks) -> Result<()> {
         Ok(())
     }
     /// After the last step, also of a run that was stopped: everything written so far must be made whole.

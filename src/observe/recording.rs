@@ -165,6 +165,10 @@ impl Observer for Recording {
         Ok(())
     }
 
+    fn peaks(&mut self, peaks: &Peaks) -> Result<()> {
+        self.run()?.peaks(peaks)
+    }
+
     fn finish(&mut self) -> Result<()> {
         let Some(mut run) = self.run.take() else { return Ok(()) };
         // Whoever watches has arranged the views by now; the file is opened afresh.

@@ -1,6 +1,6 @@
 //! The short report at the end of a run, in plain words.
 
-use super::summary::{Break, RunSummary};
+use super::summary::{Break, Extreme, ExtremeKind, RunSummary};
 use std::fmt::Write;
 
 /// The report of a run: strength, elongation, breaks, energy, quasi-static measures, cost.
@@ -10,9 +10,14 @@ pub fn report(summary: &RunSummary) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "  {label:<22}{value}");
     };
-    if let (Some(strength), Some(elongation)) = (summary.tensile_strength_mpa, summary.fracture_elongation_percent) {
-        line("strength", format!("{strength:.2} MPa (peak nominal stress)"));
-        line("elongation at peak", format!("{elongation:.2} %"));
+    for Extreme { kind, stress_mpa, strain_percent } in summary.extremes() {
+        let (remark, there) = match kind {
+            ExtremeKind::Strength => (" (peak nominal stress)", "elongation at peak"),
+            ExtremeKind::Greatest => (" (nominal; the body did not fail)", "  at a strain of"),
+            ExtremeKind::Compressive => (" (least nominal stress)", "  at a strain of"),
+        };
+        line(kind.name(), format!("{stress_mpa:.2} MPa{remark}"));
+        line(there, format!("{strain_percent:.2} %"));
     }
     if let Some(drop) = summary.elongation_at_20_percent_drop_percent {
         line("  at 20 % drop", format!("{drop:.2} %"));
@@ -64,9 +69,8 @@ pub fn report(summary: &RunSummary) -> String {
 /// One line for logs and quiet runs.
 pub fn one_line(summary: &RunSummary) -> String {
     let mut parts = vec![format!("{} steps in {:.1} s", summary.cost.steps, summary.cost.wall_s)];
-    if let (Some(strength), Some(elongation)) = (summary.tensile_strength_mpa, summary.fracture_elongation_percent) {
-        parts.push(format!("strength {strength:.2} MPa at {elongation:.2} %"));
-    }
+    let extremes = summary.extremes();
+    parts.extend(extremes.map(|e| format!("{} {:.2} MPa at {:.2} %", e.kind.name(), e.stress_mpa, e.strain_percent)));
     let wires: usize = summary.wires_broken_by_layer.values().map(|n| n.of).sum();
     if wires > 0 {
         parts.push(format!("{} of {wires} wires broken", summary.wires_broken));

@@ -3,19 +3,17 @@
 use super::Observer;
 use super::findings::Findings;
 use super::guard::QuasiStatic;
+use super::peaks::{Monitor, Peaks};
 use super::stiffness::{Rows, Stiffness};
 use super::tables::{cause, layer_name};
 use super::timings::Timings;
 use super::units::{mm, mpa, percent};
 use crate::base::error::Result;
 use crate::engine::view::{Energy, Notice, RunInfo, Rupture, Sample};
-use crate::scene::spec::Spec;
+use crate::scene::spec::{DriveSpec, Spec};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Fall of the nominal stress below its peak at which the second elongation is read [-].
-pub const DROP: f64 = 0.2;
 
 /// The result of a run. Quantities that the scene does not have (strength of free bodies) are `None`, `null` in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,12 +22,21 @@ pub struct RunSummary {
     pub scene: String,
     /// Why the run ended, in words.
     pub stopped_because: String,
-    /// Peak nominal stress over the rows of the curve [MPa].
+    /// Greatest nominal stress of all steps [MPa], of a body that failed: a bond broke, and stress fell 20 % below its peak.
+    /// `None` for any other, whose strength the run does not know, however it ended.
     pub tensile_strength_mpa: Option<f64>,
-    /// Strain at the peak nominal stress [%].
+    /// Strain at the tensile strength [%]; `None` without one.
     pub fracture_elongation_percent: Option<f64>,
-    /// Strain at which the stress has fallen 20 % below its peak, linear between rows [%]; `None` when it never did.
+    /// Strain at which the stress has fallen 20 % below its peak [%]; `None` when it never did.
     pub elongation_at_20_percent_drop_percent: Option<f64>,
+    /// Greatest nominal stress of all steps [MPa], whether the body failed or not; `None` unless it was pulled.
+    pub greatest_stress_mpa: Option<f64>,
+    /// Strain at the greatest stress [%].
+    pub strain_at_greatest_stress_percent: Option<f64>,
+    /// Least nominal stress of all steps [MPa], tension positive, so that it is negative; `None` unless the body was pushed.
+    pub compressive_peak_mpa: Option<f64>,
+    /// Strain at the compressive peak [%], negative where the body was shortened.
+    pub strain_at_compressive_peak_percent: Option<f64>,
     /// The first rupture; `None` when nothing broke.
     pub first_rupture: Option<Break>,
     /// Broken wires and wires in all, by layer.
@@ -49,7 +56,7 @@ pub struct RunSummary {
     pub stiffness: Option<Stiffness>,
     /// Energy ledger at the end [J].
     pub energy: Energy,
-    /// What the ledger does not account for, over the work done [%]; `None` when no work was done.
+    /// What the ledger does not account for, over the work done [%]; `None` when the work is negligible.
     pub energy_residual_percent: Option<f64>,
     /// How far loading was from quasi-static.
     #[serde(flatten)]
@@ -75,6 +82,59 @@ pub struct RunSummary {
     pub warnings: Vec<String>,
     /// When each of the warnings was found.
     pub notices: Vec<Found>,
+}
+
+/// What a greatest or least stress of a run is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExtremeKind {
+    /// The greatest of a body that failed.
+    Strength,
+    /// The greatest of a body that did not fail, or not yet.
+    Greatest,
+    /// The least of a body that was pushed.
+    Compressive,
+}
+
+impl ExtremeKind {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strength => "strength",
+            Self::Greatest => "greatest stress",
+            Self::Compressive => "compressive peak",
+        }
+    }
+}
+
+/// A greatest or least stress of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extreme {
+    /// What it is.
+    pub kind: ExtremeKind,
+    /// Nominal stress, tension positive [MPa].
+    pub stress_mpa: f64,
+    /// Strain at it [%].
+    pub strain_percent: f64,
+}
+
+impl RunSummary {
+    /// Whether the body failed under tension: only then its greatest stress is its strength.
+    pub fn failed(&self) -> bool {
+        self.tensile_strength_mpa.is_some()
+    }
+
+    /// What is said of the greatest stresses of the run.
+    pub fn extremes(&self) -> impl Iterator<Item = Extreme> {
+        let of = |kind, stress: Option<f64>, strain: Option<f64>| {
+            let both = stress.zip(strain);
+            both.map(|(stress_mpa, strain_percent)| Extreme { kind, stress_mpa, strain_percent })
+        };
+        let kind = if self.failed() { ExtremeKind::Strength } else { ExtremeKind::Greatest };
+        let tension = of(kind, self.greatest_stress_mpa, self.strain_at_greatest_stress_percent);
+        let compression =
+            of(ExtremeKind::Compressive, self.compressive_peak_mpa, self.strain_at_compressive_peak_percent);
+        tension.into_iter().chain(compression)
+    }
 }
 
 /// A warning with its place in the run.
@@ -161,8 +221,11 @@ pub struct Cost {
 pub struct Summariser {
     info: Option<Arc<RunInfo>>,
     notices: Vec<Notice>,
-    /// (strain [-], nominal stress [Pa]) of every row.
-    curve: Vec<(f64, f64)>,
+    /// Sees the rows alone: all that there is of a run that was killed.
+    rows: Monitor,
+    /// What was seen at every step.
+    peaks: Option<Peaks>,
+    /// Rows that tell the initial stiffness.
     elastic: Rows,
     last: Sample,
     ruptures: Vec<Rupture>,
@@ -178,8 +241,14 @@ impl Summariser {
     pub fn summary(&self, spec: &Spec, bonds: usize, closing: Closing) -> RunSummary {
         let gripped = self.info.as_ref().is_some_and(|info| info.is_pulled());
         let measured = |value: Option<f64>| value.filter(|_| gripped);
-        let peak = peak_of(&self.curve);
+        let loading = Loading::of(spec);
+        let peaks = self.peaks.as_ref().unwrap_or(self.rows.peaks());
+        let tension = peaks.tension.filter(|_| gripped && loading.tension);
+        let compression = peaks.compression.filter(|_| gripped && loading.compression);
+        let drop = peaks.drop.filter(|_| tension.is_some());
+        let strength = tension.filter(|_| drop.is_some());
         let energy = self.last.energy;
+        let negligible = self.info.as_ref().map_or(0.0, |info| info.negligible_energy);
         let firsts = self.first_breaks();
         // Trouble comes as a notice too, at the place where the run ended.
         let earlier = self.notices.iter().map(|n| &n.text).filter(|text| Some(*text) != closing.trouble.as_ref());
@@ -189,11 +258,13 @@ impl Summariser {
         RunSummary {
             scene: spec.name.clone(),
             stopped_because: closing.because,
-            tensile_strength_mpa: measured(peak.map(|i| mpa(self.curve[i].1))),
-            fracture_elongation_percent: measured(peak.map(|i| percent(self.curve[i].0))),
-            elongation_at_20_percent_drop_percent: measured(
-                peak.and_then(|i| strain_after_drop(&self.curve, i)).map(percent),
-            ),
+            tensile_strength_mpa: strength.map(|peak| mpa(peak.stress)),
+            fracture_elongation_percent: strength.map(|peak| percent(peak.strain)),
+            elongation_at_20_percent_drop_percent: drop.map(percent),
+            greatest_stress_mpa: tension.map(|peak| mpa(peak.stress)),
+            strain_at_greatest_stress_percent: tension.map(|peak| percent(peak.strain)),
+            compressive_peak_mpa: compression.map(|peak| mpa(peak.stress)),
+            strain_at_compressive_peak_percent: compression.map(|peak| percent(peak.strain)),
             first_rupture: self.ruptures.first().map(|r| self.for_people(r)),
             wires_broken_by_layer: self.broken_by_layer(&firsts),
             wires_broken: firsts.len(),
@@ -203,7 +274,7 @@ impl Summariser {
             residual_stress_mpa: measured(Some(mpa(self.last.stress))),
             stiffness,
             energy,
-            energy_residual_percent: (energy.work != 0.0).then(|| percent(energy.residual() / energy.work)),
+            energy_residual_percent: (energy.work.abs() > negligible).then(|| percent(energy.residual() / energy.work)),
             quasi_static: closing.quasi_static,
             findings: closing.findings,
             mass_scale: spec.time.mass_scale,
@@ -264,18 +335,22 @@ fn by_layer(breaks: Vec<Break>) -> BTreeMap<String, Vec<Break>> {
     layers
 }
 
-/// Row of the greatest stress; the first one when several are equal.
-fn peak_of(curve: &[(f64, f64)]) -> Option<usize> {
-    (0..curve.len()).reduce(|best, i| if curve[i].1 > curve[best].1 { i } else { best })
+/// What a body was loaded towards.
+struct Loading {
+    tension: bool,
+    compression: bool,
 }
 
-/// Strain [-] at which stress first falls to (1 − [`DROP`]) of its peak after it, linear between rows.
-fn strain_after_drop(curve: &[(f64, f64)], peak: usize) -> Option<f64> {
-    let level = (1.0 - DROP) * curve[peak].1;
-    curve[peak..].windows(2).find(|pair| pair[1].1 <= level).map(|pair| {
-        let ((e0, s0), (e1, s1)) = (pair[0], pair[1]);
-        if s0 > s1 { e0 + (e1 - e0) * (s0 - level) / (s0 - s1) } else { e1 }
-    })
+impl Loading {
+    /// A body that is pulled springs back into compression when it breaks, and one that is pushed rings into tension: neither
+    /// is what it was loaded for.
+    fn of(spec: &Spec) -> Self {
+        match spec.grip.as_ref().map(|grip| grip.drive) {
+            Some(DriveSpec::Speed(speed)) => Self { tension: speed >= 0.0, compression: speed < 0.0 },
+            Some(DriveSpec::Cyclic { .. }) => Self { tension: true, compression: true },
+            None => Self { tension: false, compression: false },
+        }
+    }
 }
 
 impl Observer for Summariser {
@@ -285,19 +360,25 @@ impl Observer for Summariser {
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
-        self.curve.push((sample.strain, sample.stress));
+        self.rows.see(sample.strain, sample.stress, sample.wire_stress.iter().copied());
         self.elastic.add(sample);
         self.last = sample.clone();
         Ok(())
     }
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
+        self.rows.rupture();
         self.ruptures.push(rupture.clone());
         Ok(())
     }
 
     fn notice(&mut self, notice: &Notice) -> Result<()> {
         self.notices.push(notice.clone());
+        Ok(())
+    }
+
+    fn peaks(&mut self, peaks: &Peaks) -> Result<()> {
+        self.peaks = Some(peaks.clone());
         Ok(())
     }
 
@@ -308,6 +389,7 @@ impl Observer for Summariser {
 
 #[cfg(test)]
 mod tests {
+    use super::super::peaks::Peak;
     use super::*;
     use crate::engine::view::{RuptureCause, WireInfo};
 
@@ -328,6 +410,8 @@ mod tests {
             speed_range: [0.0, 10.0],
             contact_pressure_range: [0.0, 1.0],
             strain_end: Some(0.3),
+            negligible_energy: 1e-12,
+            wave_passage: 3e-5,
         })
     }
 
@@ -403,9 +487,54 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_that_never_drops_has_no_drop() {
-        let curve = [(0.0, 0.0), (0.1, 100.0), (0.2, 81.0)];
-        assert_eq!(strain_after_drop(&curve, 1), None);
+    fn what_was_seen_at_every_step_counts_rather_than_the_rows() {
+        let mut summariser = seen();
+        let peak = Peak { stress: 301e6, strain: 0.21 };
+        let compression = Some(Peak { stress: -5e6, strain: 0.3 });
+        let peaks = Peaks { tension: Some(peak), compression, drop: Some(0.25), wires: Vec::new() };
+        summariser.peaks(&peaks).unwrap();
+        let summary = summariser.summary(&spec(), 3, Closing::default());
+        close(summary.tensile_strength_mpa, 301.0);
+        close(summary.fracture_elongation_percent, 21.0);
+        close(summary.elongation_at_20_percent_drop_percent, 25.0);
+        assert_eq!(summary.compressive_peak_mpa, None, "a pulled body that springs back was not pushed");
+    }
+
+    #[test]
+    fn a_body_that_did_not_fail_has_a_greatest_stress_and_no_strength() {
+        let mut summariser = Summariser::new();
+        summariser.start(&info()).unwrap();
+        for (strain, stress) in [(0.0, 0.0), (0.1, 250e6), (0.2, 300e6), (0.21, 250e6)] {
+            summariser.sample(&row(strain, stress)).unwrap();
+        }
+        summariser.rupture(&rupture(1, 2, 1)).unwrap();
+        let summary = summariser.summary(&spec(), 3, Closing::default());
+        assert_eq!((summary.tensile_strength_mpa, summary.fracture_elongation_percent), (None, None));
+        close(summary.greatest_stress_mpa, 300.0);
+        close(summary.strain_at_greatest_stress_percent, 20.0);
+    }
+
+    #[test]
+    fn a_body_that_is_pushed_has_a_compressive_peak() {
+        let spec = crate::scene::load("single-wire", &["grip.speed=-1 m/s".into()]).unwrap().spec;
+        let mut summariser = Summariser::new();
+        summariser.start(&info()).unwrap();
+        for (strain, stress) in [(0.0, 0.0), (-0.001, -97e6), (-0.006, 18e6)] {
+            summariser.sample(&row(strain, stress)).unwrap();
+        }
+        let summary = summariser.summary(&spec, 3, Closing::default());
+        close(summary.compressive_peak_mpa, -97.0);
+        close(summary.strain_at_compressive_peak_percent, -0.1);
+        assert_eq!((summary.tensile_strength_mpa, summary.greatest_stress_mpa), (None, None));
+    }
+
+    #[test]
+    fn rounding_errors_have_no_ratio() {
+        let mut summariser = Summariser::new();
+        summariser.start(&info()).unwrap();
+        let energy = Energy { work: 1e-24, elastic_bonds: 4e-20, ..Energy::default() };
+        summariser.sample(&Sample { energy, ..Sample::default() }).unwrap();
+        assert_eq!(summariser.summary(&spec(), 3, Closing::default()).energy_residual_percent, None);
     }
 
     #[test]

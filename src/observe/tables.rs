@@ -4,6 +4,7 @@
 
 use super::Observer;
 use super::files::LiveTable;
+use super::peaks::{Peak, Peaks};
 use super::units::{mm, mpa, newton_mm, percent};
 use crate::base::error::Result;
 use crate::engine::view::{Energy, RunInfo, Rupture, RuptureCause, Sample};
@@ -25,13 +26,13 @@ struct Open {
     curve: LiveTable,
     ruptures: LiveTable,
     wires: Vec<WireRecord>,
+    /// Greatest stress of each wire over all steps.
+    peaks: Vec<Peak>,
 }
 
 /// What `wires.csv` says of a wire.
 #[derive(Default, Clone)]
 struct WireRecord {
-    /// Greatest nominal mid-gauge stress [Pa] and the strain at it [-].
-    peak: Option<(f64, f64)>,
     first_rupture: Option<Rupture>,
 }
 
@@ -50,6 +51,7 @@ impl Observer for Tables {
             curve: create(FILES[0], curve_header(info))?,
             ruptures: create(FILES[2], rupture_header())?,
             wires: vec![WireRecord::default(); info.wires.len()],
+            peaks: Vec::new(),
         });
         Ok(())
     }
@@ -58,11 +60,6 @@ impl Observer for Tables {
         let Some(open) = &mut self.open else {
             return Ok(());
         };
-        for (record, &stress) in open.wires.iter_mut().zip(&sample.wire_stress) {
-            if record.peak.is_none_or(|(peak, _)| stress > peak) {
-                record.peak = Some((stress, sample.strain));
-            }
-        }
         open.curve.row(&curve_row(sample, open.info.layers.len()))
     }
 
@@ -76,13 +73,20 @@ impl Observer for Tables {
         open.ruptures.row(&rupture_row(rupture, &open.info))
     }
 
+    fn peaks(&mut self, peaks: &Peaks) -> Result<()> {
+        if let Some(open) = &mut self.open {
+            open.peaks = peaks.wires.clone();
+        }
+        Ok(())
+    }
+
     fn finish(&mut self) -> Result<()> {
         let Some(open) = self.open.take() else {
             return Ok(());
         };
         let mut wires = LiveTable::create(self.folder.join(FILES[1]), &wire_header())?;
         for (w, record) in open.wires.iter().enumerate() {
-            wires.row(&wire_row(w, record, &open.info))?;
+            wires.row(&wire_row(w, record, open.peaks.get(w), &open.info))?;
         }
         open.curve.finish()?;
         wires.finish()?;
@@ -215,8 +219,8 @@ fn wire_header() -> Vec<String> {
         "wire",
         "layer",
         "diameter_mm",
-        "strength_mpa",
-        "strain_at_strength_percent",
+        "greatest_stress_mpa",
+        "strain_at_greatest_stress_percent",
         "broken",
         "first_rupture_z_mm",
         "first_rupture_strain_percent",
@@ -225,10 +229,11 @@ fn wire_header() -> Vec<String> {
     ])
 }
 
-fn wire_row(w: usize, record: &WireRecord, info: &RunInfo) -> Vec<String> {
+/// The greatest stress is that of the wire at mid-gauge: a wire that broke elsewhere, or not at all, may carry more.
+fn wire_row(w: usize, record: &WireRecord, peak: Option<&Peak>, info: &RunInfo) -> Vec<String> {
     let wire = &info.wires[w];
-    let (strength, strain) = match record.peak {
-        Some((stress, strain)) => (number(mpa(stress)), number(percent(strain))),
+    let (greatest, strain) = match peak {
+        Some(peak) => (number(mpa(peak.stress)), number(percent(peak.strain))),
         None => (String::new(), String::new()),
     };
     let broken = if record.first_rupture.is_some() { "yes" } else { "no" };
@@ -236,7 +241,7 @@ fn wire_row(w: usize, record: &WireRecord, info: &RunInfo) -> Vec<String> {
         (w + 1).to_string(),
         layer_name(info, wire.layer).to_string(),
         wire.diameter.to_string(),
-        strength,
+        greatest,
         strain,
         broken.to_string(),
     ];

@@ -4,6 +4,7 @@
 //! (u32, little endian) and that many bytes of postcard. The first record is the [`RunInfo`], each further one a
 //! [`Record`]; a record of length 0 ends the run, so a file that was cut off is recognised.
 
+use super::peaks::Peaks;
 use super::{Observer, partial};
 use crate::base::error::{Error, Result};
 use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
@@ -16,7 +17,7 @@ use std::sync::Arc;
 
 const MAGIC: [u8; 12] = *b"strandsnap\0T";
 /// Raised whenever what is written changes its meaning or order.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// No record is this long [bytes]; a length above it is damage.
 const LONGEST_RECORD: u32 = 1 << 30;
 
@@ -31,6 +32,8 @@ pub enum Record {
     Rupture(Rupture),
     /// Something that the user must know was found.
     Notice(Notice),
+    /// The greatest stresses of the run.
+    Peaks(Peaks),
 }
 
 /// The same, borrowed: variants in the same order give the same bytes.
@@ -40,6 +43,7 @@ enum Borrowed<'a> {
     Snapshot(&'a Snapshot),
     Rupture(&'a Rupture),
     Notice(&'a Notice),
+    Peaks(&'a Peaks),
 }
 
 /// An observer that writes a trajectory.
@@ -103,6 +107,10 @@ impl Observer for TrajectoryWriter {
 
     fn notice(&mut self, notice: &Notice) -> Result<()> {
         self.write(&Borrowed::Notice(notice))
+    }
+
+    fn peaks(&mut self, peaks: &Peaks) -> Result<()> {
+        self.write(&Borrowed::Peaks(peaks))
     }
 
     fn finish(&mut self) -> Result<()> {

@@ -75,7 +75,7 @@ fn facts(source: &Source) -> Markup {
 /// Name, value and remark of everything that the run has.
 fn listed(source: &Source) -> Vec<(&'static str, String, String)> {
     let s = &source.summary;
-    let mut facts = strength(s, source.ruptures.is_empty());
+    let mut facts = stresses(s);
     if let (Some(first), Some(mid)) = (source.ruptures.first(), source.mid_length()) {
         let (distance, towards) = from_middle(mm(first.rest_z) - mid);
         facts.push(("From mid-length", distance, towards.into()));
@@ -92,18 +92,25 @@ fn listed(source: &Source) -> Vec<(&'static str, String, String)> {
     facts
 }
 
-/// What is called strength only where something broke.
-fn strength(s: &RunSummary, whole: bool) -> Vec<(&'static str, String, String)> {
+/// What the body carried: a strength only where it failed.
+fn stresses(s: &RunSummary) -> Vec<(&'static str, String, String)> {
     let mut facts = Vec::new();
-    if let (Some(strength), Some(elongation)) = (s.tensile_strength_mpa, s.fracture_elongation_percent) {
-        let (name, remark) = if whole {
-            ("Greatest stress", "nominal; nothing broke")
-        } else {
-            ("Tensile strength", "peak nominal stress")
-        };
-        facts.push((name, format!("{strength:.2} MPa"), remark.into()));
-        facts.push(("Elongation at peak", format!("{elongation:.2} %"), "nominal strain".into()));
+    let mut add = |name, at, remark: &str, stress: Option<f64>, strain: Option<f64>| {
+        if let Some((stress, strain)) = stress.zip(strain) {
+            facts.push((name, format!("{stress:.2} MPa"), remark.into()));
+            facts.push((at, format!("{strain:.2} %"), "nominal strain".into()));
+        }
+    };
+    if s.failed() {
+        let (stress, strain) = (s.tensile_strength_mpa, s.fracture_elongation_percent);
+        add("Tensile strength", "Elongation at peak", "peak nominal stress", stress, strain);
+    } else {
+        let (stress, strain) = (s.greatest_stress_mpa, s.strain_at_greatest_stress_percent);
+        let remark = "nominal; no strength, for the body did not fail";
+        add("Greatest stress", "Strain there", remark, stress, strain);
     }
+    let (stress, strain) = (s.compressive_peak_mpa, s.strain_at_compressive_peak_percent);
+    add("Compressive peak", "Strain at the compressive peak", "least nominal stress", stress, strain);
     if let Some(drop) = s.elongation_at_20_percent_drop_percent {
         facts.push(("At 20 % drop", format!("{drop:.2} %"), "elongation, stress 20 % below its peak".into()));
     }

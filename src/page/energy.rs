@@ -32,7 +32,7 @@ const TERMS: [Term; 9] = [
 
 /// The ledger over the run and at its end.
 pub fn section(source: &Source) -> Result<Section> {
-    let worked = source.samples.iter().any(|row| row.energy.work != 0.0);
+    let worked = source.samples.iter().any(|row| row.energy.work.abs() > source.info.negligible_energy);
     let body = if worked {
         html! { div.pair { (chart(source).markup()) (table(source)) } }
     } else {
@@ -44,7 +44,13 @@ pub fn section(source: &Source) -> Result<Section> {
 fn table(source: &Source) -> Markup {
     let end = &source.summary.energy;
     let (factor, unit) = unit(source);
-    let share = |value: f64| if end.work == 0.0 { String::new() } else { fixed(percent(value / end.work), 3) };
+    let share = |value: f64| {
+        if end.work.abs() <= source.info.negligible_energy {
+            String::new()
+        } else {
+            fixed(percent(value / end.work), 3)
+        }
+    };
     html! {
         div.scroll { table {
             caption {

@@ -4,7 +4,7 @@ use super::figure::{Figure, axis, layout, merged, numbers, upright};
 use super::{Section, Source, select};
 use crate::base::error::Result;
 use crate::engine::view::Sample;
-use crate::observe::guard::LEAST_INTERNAL_SHARE;
+use crate::observe::guard::{FIRST_PASSAGES, LEAST_INTERNAL_SHARE};
 use crate::observe::units::percent;
 use maud::{Markup, html};
 use serde_json::{Value, json};
@@ -68,12 +68,17 @@ fn verdict(value: Option<f64>, limit: Option<f64>) -> Markup {
     }
 }
 
+/// Whether a row counts: see [`FIRST_PASSAGES`].
+fn settled(source: &Source, row: &Sample) -> bool {
+    row.time >= FIRST_PASSAGES * source.info.wave_passage
+}
+
 fn kinetic(source: &Source) -> Figure {
     let most = source.samples.iter().map(|row| row.energy.internal()).fold(0.0, f64::max);
     let ratio = |row: &Sample| {
         let internal = row.energy.internal();
-        // The same rows as the run's own measure counts: see LEAST_INTERNAL_SHARE.
-        if internal > 0.0 && internal >= LEAST_INTERNAL_SHARE * most {
+        // The same rows as the run's own measure counts.
+        if settled(source, row) && internal > source.info.negligible_energy && internal >= LEAST_INTERNAL_SHARE * most {
             percent(row.energy.kinetic / internal)
         } else {
             f64::NAN
@@ -81,7 +86,7 @@ fn kinetic(source: &Source) -> Figure {
     };
     let limit = source.spec.as_ref().map(|spec| percent(spec.time.kinetic_limit));
     let caption = html! {
-        "Kinetic over internal energy, for rows with at least " (percent(LEAST_INTERNAL_SHARE)) " % of the run's greatest internal energy: a pull starts with motion and no strain."
+        "Kinetic over internal energy, for rows with at least " (percent(LEAST_INTERNAL_SHARE)) " % of the run's greatest internal energy, after the first " (FIRST_PASSAGES) " passages of an elastic wave: a pull starts with motion and no strain."
     };
     chart(source, "kinetic", "kinetic / internal energy (%)", ratio, limit, caption)
 }
@@ -89,10 +94,14 @@ fn kinetic(source: &Source) -> Figure {
 fn mismatch(source: &Source) -> Figure {
     let peak = source.samples.iter().flat_map(|row| row.grip_force).map(f64::abs).fold(0.0, f64::max);
     let share = |row: &Sample| {
-        if peak > 0.0 { percent((row.grip_force[1] - row.grip_force[0]).abs() / peak) } else { f64::NAN }
+        if peak > 0.0 && settled(source, row) {
+            percent((row.grip_force[1] - row.grip_force[0]).abs() / peak)
+        } else {
+            f64::NAN
+        }
     };
     let limit = source.spec.as_ref().map(|spec| percent(spec.time.mismatch_limit));
-    let caption = html! { "Difference of the two grip forces over the run's peak grip force." };
+    let caption = html! { "Difference of the two grip forces over the run's peak grip force, after the first " (FIRST_PASSAGES) " passages of an elastic wave." };
     chart(source, "mismatch", "grip force difference (%)", share, limit, caption)
 }
 

@@ -206,6 +206,7 @@ fn first_pass(trajectory: Trajectory) -> Result<Pass> {
                 pass.steps.push(snapshot.sample.step);
             }
             Ok(Record::Notice(notice)) => pass.summariser.notice(&notice)?,
+            Ok(Record::Peaks(peaks)) => pass.summariser.peaks(&peaks)?,
             Err(error) => pass.cut = Some(error.to_string()),
         }
     }
@@ -274,7 +275,7 @@ fn read_scene(run: &Path, notes: &mut Vec<String>) -> Result<(Option<String>, Op
 
 /// How far from quasi-static loading was, judged again from the rows.
 fn quasi_static(pass: &Pass, info: &RunInfo, spec: &Spec) -> QuasiStatic {
-    let mut guard = Guard::new(&spec.time, 0.0);
+    let mut guard = Guard::new(&spec.time);
     guard.start(info);
     let mut ruptures = pass.ruptures.iter().peekable();
     for sample in &pass.samples {

@@ -8,12 +8,16 @@ use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use crate::observe::findings::Findings;
 use crate::observe::guard::{Guard, QuasiStatic};
+use crate::observe::peaks::{Monitor, Peaks};
 use crate::observe::planned::PlannedEnd;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+
+/// Steps between two looks of the guard at energies and forces: rows are as many as the user wants, judgement is not.
+const GUARD_INTERVAL: u64 = 64;
 
 /// How a run went, apart from what its observers saw.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,13 +79,14 @@ pub(super) fn drive(
             "give at least one of stop.strain, stop.time or stop.steps",
         ));
     }
-    let guard = Guard::new(&spec.time, engine.negligible_energy());
+    let guard = Guard::new(&spec.time);
     let mut driver = Driver {
         engine,
         end,
         schedule: Schedule::new(&spec.output),
-        rule: StopRule::new(&spec.stop),
+        rule: StopRule::new(&spec.stop, info.wave_passage),
         guard,
+        monitor: Monitor::default(),
         audience: Audience { observers, started: 0, time: Duration::ZERO },
         shown: None,
         told: None,
@@ -115,6 +120,7 @@ struct Driver<'a, 'b> {
     schedule: Schedule,
     rule: StopRule,
     guard: Guard,
+    monitor: Monitor,
     audience: Audience<'a, 'b>,
     /// Step of the last snapshot.
     shown: Option<u64>,
@@ -139,10 +145,12 @@ impl Driver<'_, '_> {
             let (step, time, strain) = (self.engine.steps(), self.engine.time(), self.engine.strain());
             self.audience.notice(&Notice { step, time, strain, text: error.to_string() })?;
         }
+        self.audience.peaks(self.monitor.peaks())?;
         ended
     }
 
     fn run(&mut self, stop: &AtomicBool) -> Result<StopReason> {
+        self.monitor_step();
         self.show()?;
         let reason = loop {
             if stop.load(Ordering::Relaxed) {
@@ -159,7 +167,25 @@ impl Driver<'_, '_> {
         if self.shown != Some(self.engine.steps()) {
             self.show()?;
         }
+        self.judge()?;
         Ok(reason)
+    }
+
+    /// What decides on the end of the run and on its result, seen at every step whatever is written.
+    fn monitor_step(&mut self) {
+        let engine = &self.engine;
+        let (strain, stress) = (engine.strain(), engine.stress());
+        self.rule.step(engine.time(), strain, stress);
+        self.monitor.see(strain, stress, (0..engine.assembly().wires.len()).map(|w| engine.wire_stress(w)));
+    }
+
+    /// The guard's look at the present state; trouble is told before it is returned.
+    fn judge(&mut self) -> Result<()> {
+        let sample = self.engine.sample();
+        self.guard.check(&sample)?;
+        let judged = self.guard.row(&sample);
+        self.notices()?;
+        judged
     }
 
     /// Passes on what the step just done brought.
@@ -168,6 +194,7 @@ impl Driver<'_, '_> {
         let ruptures = self.engine.take_ruptures();
         if !ruptures.is_empty() {
             self.rule.rupture();
+            self.monitor.rupture();
             let kept = self.kept.take();
             if self.schedule.rupture(kept.as_ref().map(|(at, _)| *at), now)
                 && let Some((_, snapshot)) = kept
@@ -180,6 +207,10 @@ impl Driver<'_, '_> {
             self.audience.rupture(rupture)?;
         }
         self.notices()?;
+        self.monitor_step();
+        if self.engine.steps().is_multiple_of(GUARD_INTERVAL) {
+            self.judge()?;
+        }
         let due = self.schedule.due(now);
         if due.snapshot {
             self.show()
@@ -211,11 +242,7 @@ impl Driver<'_, '_> {
         }
         // A row that is not finite must not reach the files.
         self.guard.check(sample)?;
-        self.rule.row(sample.strain, sample.stress);
-        self.audience.sample(sample)?;
-        let judged = self.guard.row(sample);
-        self.notices()?;
-        judged
+        self.audience.sample(sample)
     }
 
     /// Passes on what engine and guard have to say.
@@ -258,6 +285,10 @@ impl Audience<'_, '_> {
 
     fn notice(&mut self, notice: &Notice) -> Result<()> {
         self.each(|observer| observer.notice(notice))
+    }
+
+    fn peaks(&mut self, peaks: &Peaks) -> Result<()> {
+        self.each(|observer| observer.peaks(peaks))
     }
 
     fn each(&mut self, mut tell: impl FnMut(&mut dyn Observer) -> Result<()>) -> Result<()> {

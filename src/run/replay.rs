@@ -87,7 +87,7 @@ impl Replay {
                 Ok(Record::Snapshot(snapshot)) => {
                     moments.push(Moment { strain: snapshot.sample.strain, broke: std::mem::take(&mut broke) });
                 }
-                Ok(Record::Sample(_) | Record::Notice(_)) => {}
+                Ok(Record::Sample(_) | Record::Notice(_) | Record::Peaks(_)) => {}
                 Err(error) if is_cut_off(&error) => cut_off = Some(error),
                 Err(error) => return Err(error),
             }
@@ -144,6 +144,7 @@ impl Replay {
                 Record::Sample(sample) => observer.sample(&sample)?,
                 Record::Rupture(rupture) => observer.rupture(&rupture)?,
                 Record::Notice(notice) => observer.notice(&notice)?,
+                Record::Peaks(peaks) => observer.peaks(&peaks)?,
                 Record::Snapshot(snapshot) => {
                     if selected.next() == Some(&true) {
                         observer.snapshot(&Arc::new(snapshot))?;

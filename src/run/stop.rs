@@ -1,13 +1,14 @@
 //! When a run ends.
 
-use crate::observe::summary::DROP;
+use crate::observe::peaks::DROP;
 use crate::scene::spec::StopSpec;
 use std::collections::VecDeque;
 use std::fmt;
 
-/// Rows over which the nominal stress is averaged before it is compared with its peak. One elastic wave after a
-/// rupture is shorter than that; a fall that lasts is not.
-const WINDOW: usize = 20;
+/// Time over which the nominal stress is averaged before it is compared with its peak, in passages of an elastic wave
+/// along the body [-]: the wave that a rupture sends out comes back after two, and is averaged out over them. A fall that
+/// lasts is not.
+const PASSAGES: f64 = 2.0;
 
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +53,13 @@ impl fmt::Display for StopReason {
 #[derive(Debug, Clone)]
 pub struct StopRule {
     stop: StopSpec,
-    window: VecDeque<f64>,
+    /// Time over which stress is averaged [s].
+    window: f64,
+    /// Length of each step in the window [s], and stress times that.
+    steps: VecDeque<[f64; 2]>,
+    /// Their sums.
+    sum: [f64; 2],
+    time: f64,
     /// Greatest mean over the window.
     peak: f64,
     ruptured: bool,
@@ -63,11 +70,14 @@ pub struct StopRule {
 }
 
 impl StopRule {
-    /// The rule of a scene.
-    pub fn new(stop: &StopSpec) -> Self {
+    /// The rule of a scene; `passage` is the time in which an elastic wave runs along its body [s].
+    pub fn new(stop: &StopSpec, passage: f64) -> Self {
         Self {
             stop: stop.clone(),
-            window: VecDeque::with_capacity(WINDOW),
+            window: PASSAGES * passage,
+            steps: VecDeque::new(),
+            sum: [0.0; 2],
+            time: 0.0,
             peak: 0.0,
             ruptured: false,
             fallen: false,
@@ -81,19 +91,23 @@ impl StopRule {
         self.ruptured = true;
     }
 
-    /// A row of the curve was taken at this strain [-] and nominal stress [Pa].
-    pub fn row(&mut self, strain: f64, stress: f64) {
+    /// A step was done, to this time [s], strain [-] and nominal stress [Pa].
+    pub fn step(&mut self, time: f64, strain: f64, stress: f64) {
         if self.stop.stress_fraction.is_none() && self.stop.strain_after_drop.is_none() {
             return;
         }
-        if self.window.len() == WINDOW {
-            self.window.pop_front();
+        let dt = time - std::mem::replace(&mut self.time, time);
+        let step = [dt, stress * dt];
+        self.steps.push_back(step);
+        self.sum = [self.sum[0] + step[0], self.sum[1] + step[1]];
+        while let Some(first) = self.steps.front().filter(|first| self.sum[0] - first[0] >= self.window) {
+            self.sum = [self.sum[0] - first[0], self.sum[1] - first[1]];
+            self.steps.pop_front();
         }
-        self.window.push_back(stress);
-        if self.window.len() < WINDOW {
+        if self.steps.is_empty() || self.sum[0] < self.window {
             return;
         }
-        let mean = self.window.iter().sum::<f64>() / WINDOW as f64;
+        let mean = self.sum[1] / self.sum[0];
         self.peak = self.peak.max(mean);
         let below = |share: f64| self.ruptured && mean < share * self.peak;
         self.fallen = self.stop.stress_fraction.is_some_and(below);
@@ -134,46 +148,47 @@ mod tests {
     use super::*;
 
     fn at_half() -> StopRule {
-        StopRule::new(&StopSpec { stress_fraction: Some(0.5), ..StopSpec::default() })
+        StopRule::new(&StopSpec { stress_fraction: Some(0.5), ..StopSpec::default() }, 10.0)
     }
 
-    fn rows(rule: &mut StopRule, stress: f64, count: usize) {
-        (0..count).for_each(|_| rule.row(0.0, stress));
+    /// Steps of 1 s, in a body that a wave takes 10 s to run along.
+    fn steps(rule: &mut StopRule, stress: f64, count: usize) {
+        (0..count).for_each(|_| rule.step(rule.time + 1.0, 0.0, stress));
     }
 
     #[test]
     fn a_fall_that_lasts_ends_the_run() {
         let mut rule = at_half();
-        rows(&mut rule, 100.0, 30);
+        steps(&mut rule, 100.0, 30);
         rule.rupture();
-        rows(&mut rule, 20.0, 20);
+        steps(&mut rule, 20.0, 20);
         assert_eq!(rule.reached(0.0, 0.0, 0), Some(StopReason::StressFraction(0.5)));
     }
 
     #[test]
     fn a_single_wave_does_not() {
         let mut rule = at_half();
-        rows(&mut rule, 100.0, 30);
+        steps(&mut rule, 100.0, 30);
         rule.rupture();
-        rows(&mut rule, -50.0, 3);
-        rows(&mut rule, 90.0, 20);
+        steps(&mut rule, -50.0, 3);
+        steps(&mut rule, 90.0, 20);
         assert_eq!(rule.reached(0.0, 0.0, 0), None);
     }
 
     #[test]
     fn without_a_rupture_it_is_unloading_not_fracture() {
         let mut rule = at_half();
-        rows(&mut rule, 100.0, 30);
-        rows(&mut rule, 0.0, 30);
+        steps(&mut rule, 100.0, 30);
+        steps(&mut rule, 0.0, 30);
         assert_eq!(rule.reached(0.0, 0.0, 0), None);
     }
 
     #[test]
     fn a_strain_beyond_the_drop_ends_the_run() {
-        let mut rule = StopRule::new(&StopSpec { strain_after_drop: Some(0.02), ..StopSpec::default() });
+        let mut rule = StopRule::new(&StopSpec { strain_after_drop: Some(0.02), ..StopSpec::default() }, 10.0);
         let pull = |rule: &mut StopRule, from: f64, to: f64, stress: f64| {
             for k in 0..=100 {
-                rule.row(from + (to - from) * f64::from(k) / 100.0, stress);
+                rule.step(rule.time + 1.0, from + (to - from) * f64::from(k) / 100.0, stress);
             }
             rule.reached(to, 0.0, 0)
         };
@@ -190,7 +205,7 @@ mod tests {
     #[test]
     fn each_limit_ends_the_run() {
         let stop = StopSpec { strain: Some(0.3), time: Some(2.0), steps: Some(7), ..StopSpec::default() };
-        let rule = StopRule::new(&stop);
+        let rule = StopRule::new(&stop, 10.0);
         assert_eq!(rule.reached(0.29, 1.9, 6), None);
         assert!(matches!(rule.reached(0.3, 1.9, 6), Some(StopReason::Strain(_))));
         assert!(matches!(rule.reached(0.0, 2.0, 6), Some(StopReason::Time(_))));

@@ -46,6 +46,8 @@ fn strand(name: &str, layers: &[&str], wires: &[(usize, f32)]) -> RunInfo {
         speed_range: [0.0, 2.0],
         contact_pressure_range: [0.0, 30.0],
         strain_end: Some(0.2857),
+        negligible_energy: 1e-12,
+        wave_passage: 3e-5,
     };
     for (layer, (count, lay_radius)) in wires.iter().copied().enumerate() {
         for k in 0..count {
@@ -202,6 +204,8 @@ pub fn two_spheres() -> (RunInfo, Snapshot) {
         speed_range: [0.0, 1.0],
         contact_pressure_range: [0.0, 30.0],
         strain_end: None,
+        negligible_energy: 1e-12,
+        wave_passage: 3e-5,
     };
     let snapshot = Snapshot {
         sample: Sample::default(),

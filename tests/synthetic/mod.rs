@@ -115,6 +115,8 @@ fn info() -> RunInfo {
         speed_range: [0.0, 10.0],
         contact_pressure_range: [0.0, 40.0],
         strain_end: Some(STRAIN_END),
+        negligible_energy: 1e-12,
+        wave_passage: 3e-5,
     }
 }
 

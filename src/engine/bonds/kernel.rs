@@ -77,6 +77,12 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
             [load(constants, SHAPE), load(constants, SHAPE + 1), load(constants, SHAPE + 2), load(constants, SHAPE + 3)]
         });
 
+        // What is written of a bond that broke stays as it was then, no force and its last plastic strain, wherever its two
+        // particles go: whoever reads a record need not ask whether the bond holds.
+        let keep = |record: &mut [f64], field: usize, number: Lanes<S>| {
+            Lanes::choose(live, number, load(record, field)).store(record, field * BLOCK + lane);
+        };
+
         let mut step = Step { law: self.law, dt: self.dt, live, plastic: zero, damping: zero };
         let acts = if TURN {
             let frame = |k| load(record, BondStage::<L, TURN>::FRAME + k);
@@ -86,21 +92,15 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
             e1.x.store(record, frame);
             e1.y.store(record, frame + BLOCK);
             e1.z.store(record, frame + 2 * BLOCK);
-            let across = BondStage::<L, TURN>::ACROSS * BLOCK + lane;
-            force.shear[0].store(record, across);
-            force.shear[1].store(record, across + BLOCK);
-            force.bend[0].store(record, across + 2 * BLOCK);
-            force.bend[1].store(record, across + 3 * BLOCK);
-            force.twist.store(record, across + 4 * BLOCK);
+            let across = [force.shear[0], force.shear[1], force.bend[0], force.bend[1], force.twist];
+            across.into_iter().enumerate().for_each(|(k, f)| keep(record, BondStage::<L, TURN>::ACROSS + k, f));
             acts
         } else {
             step.stretching(&ends, &shape, &mut force, &mut state, &mut dashpot, viscosity)
         };
-        force.axial.store(record, BondStage::<L, TURN>::AXIAL * BLOCK + lane);
-        dashpot.store(record, BondStage::<L, TURN>::DASHPOT * BLOCK + lane);
-        L::each_number(&state, |k, number| {
-            number.store(record, (BondStage::<L, TURN>::HISTORY + k) * BLOCK + lane);
-        });
+        keep(record, BondStage::<L, TURN>::AXIAL, force.axial);
+        keep(record, BondStage::<L, TURN>::DASHPOT, dashpot);
+        L::each_number(&state, |k, number| keep(record, BondStage::<L, TURN>::HISTORY + k, number));
         let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| {
             (Lanes::load(simd, sum, lane) + Lanes::choose(live, part, zero)).store(sum, lane);
         };

@@ -119,9 +119,11 @@ fn first_break(info: &RunInfo, first: &Rupture) -> String {
 /// The result; `warnings` are announced in its first line, for they may stand below the edge of the panel.
 fn result(summary: &RunSummary, warnings: usize) -> String {
     let mut parts = Vec::new();
-    if let (Some(strength), Some(elongation)) = (summary.tensile_strength_mpa, summary.fracture_elongation_percent) {
-        parts.push(format!("strength **{strength:.2} MPa** at {elongation:.2} %"));
-    }
+    parts.extend(
+        summary
+            .extremes()
+            .map(|e| format!("{} **{:.2} MPa** at {:.2} %", e.kind.name(), e.stress_mpa, e.strain_percent)),
+    );
     if let (Some(stress), Some(strain)) = (summary.residual_stress_mpa, summary.final_strain_percent) {
         parts.push(format!("at the end {stress:.1} MPa at {strain:.2} %"));
     }

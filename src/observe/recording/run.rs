@@ -14,6 +14,7 @@ use super::{RERUN_VERSION, curve, grips, layout, names, paint, particles};
 use crate::base::error::Result;
 use crate::engine::view::{BondState, Notice, RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
+use crate::observe::peaks::Peaks;
 use crate::observe::summary::{Closing, Summariser};
 use crate::scene::spec::{ColourBy, Spec};
 use rerun::external::re_log_types::BlueprintActivationCommand;
@@ -97,6 +98,10 @@ impl Run {
             self.palette.set_first(rupture.bond);
         }
         Ok(())
+    }
+
+    pub fn peaks(&mut self, peaks: &Peaks) -> Result<()> {
+        self.summariser.peaks(peaks)
     }
 
     pub fn notice(&mut self, notice: &Notice) {

@@ -134,6 +134,8 @@ mod tests {
             speed_range: [0.0, 1.0],
             contact_pressure_range: [0.0, 1.0],
             strain_end: None,
+            negligible_energy: 1e-12,
+            wave_passage: 3e-5,
         }
     }
 

@@ -75,7 +75,7 @@ pub struct Measured {
     pub ms_per_step: Option<f64>,
     /// Particles.
     pub particles: usize,
-    /// Peak nominal stress [MPa].
+    /// Greatest nominal stress of a body that failed [MPa].
     pub strength_mpa: f64,
     /// Strain at the peak [%].
     pub elongation_percent: f64,
@@ -102,7 +102,8 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// From a run's summary and what was seen on its way. `None` for a run that has no strength, because nothing pulled.
+    /// From a run's summary and what was seen on its way. `None` for a run that has no strength, because
+    /// nothing pulled or the body did not fail.
     pub fn new(summary: RunSummary, watcher: Watcher, cpu_s: Option<f64>) -> Option<Self> {
         let mut breaks: Vec<Break> = summary.breaks_by_layer.into_values().flatten().collect();
         breaks.sort_by_key(|b| b.order);

@@ -162,7 +162,7 @@ pub fn run(
     let found = match measure(scene, identity.writes, folder, clock, stop) {
         _ if stop.load(Ordering::Relaxed) => return Ok(None),
         Ok(Some(measured)) => Found::Ran(Box::new(measured)),
-        Ok(None) => Found::Failed("the run has no strength: nothing pulled".into()),
+        Ok(None) => Found::Failed("the run has no strength: nothing pulled, or it ended before stress had fallen 20 % below its peak after a rupture".into()),
         Err(error @ (Error::Scene(_) | Error::Input { .. } | Error::Trouble { .. })) => {
             Found::Failed(error.to_string())
         }

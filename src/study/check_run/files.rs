@@ -44,7 +44,7 @@ pub const SUMMARY: Invariant = Invariant {
 
 pub const STRENGTH: Invariant = Invariant {
     name: "strength",
-    about: "the summary's strength is the greatest stress of all rows, or more, and its strains come in order",
+    about: "the summary's greatest stress is that of all rows, or more, its strength is that, and its strains come in order",
     check: strength,
 };
 
@@ -229,8 +229,8 @@ fn summary(run: &Folder) -> Outcome {
 
 fn strength(run: &Folder) -> Outcome {
     let s = &run.summary;
-    let Some(strength) = s.tensile_strength_mpa else {
-        return Outcome::NotApplicable("the summary gives no strength".into());
+    let Some(strength) = s.greatest_stress_mpa else {
+        return Outcome::NotApplicable("the summary gives no greatest stress".into());
     };
     let mut search = Search::new();
     for row in 0..run.curve.rows.len() {
@@ -239,7 +239,10 @@ fn strength(run: &Folder) -> Outcome {
             format!("curve.csv line {}: {stress} MPa, summary.json has {strength}", row + 2)
         });
     }
-    let ends = [s.fracture_elongation_percent, s.elongation_at_20_percent_drop_percent, s.final_strain_percent];
+    if let Some(told) = s.tensile_strength_mpa {
+        search.compare(told, strength, strength.abs(), || "tensile_strength_mpa against greatest_stress_mpa".into());
+    }
+    let ends = [s.strain_at_greatest_stress_percent, s.elongation_at_20_percent_drop_percent, s.final_strain_percent];
     let ends: Vec<f64> = ends.into_iter().flatten().collect();
     for pair in ends.windows(2) {
         search.add((pair[0] - pair[1]) / pair[1].abs().max(f64::MIN_POSITIVE), || {

@@ -107,10 +107,10 @@ fn once(case: &Case, scene: &Scene, leash: &Leash) -> Result<Ended> {
 pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
     let engine = Engine::new(&scene.spec, assemble(scene)?)?;
     let info = engine.info();
-    let mut guard = Guard::new(&scene.spec.time, engine.negligible_energy());
+    let mut guard = Guard::new(&scene.spec.time);
     guard.start(&info);
     let seen = Seen::start(scene.spec.clone(), &engine);
-    let mut watched = Watched { engine, guard, rule: StopRule::new(&scene.spec.stop), seen };
+    let mut watched = Watched { engine, guard, rule: StopRule::new(&scene.spec.stop, info.wave_passage), seen };
     let end = PlannedEnd::new(&scene.spec.stop, info.strain_end);
     let mut schedule = Schedule::new(&scene.spec.output);
     watched.row()?;
@@ -158,6 +158,7 @@ impl Watched {
             self.rule.rupture();
             self.guard.rupture(rupture);
         }
+        self.rule.step(self.engine.time(), self.engine.strain(), self.engine.stress());
         let count = ruptures.len();
         self.seen.ruptures.extend(ruptures);
         self.notices();
@@ -167,7 +168,6 @@ impl Watched {
     fn row(&mut self) -> Result<()> {
         let sample = self.engine.sample();
         self.guard.check(&sample)?;
-        self.rule.row(sample.strain, sample.stress);
         let judged = self.guard.row(&sample);
         self.seen.row(&self.engine, sample);
         judged

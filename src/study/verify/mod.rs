@@ -25,6 +25,7 @@ mod strands;
 pub mod support;
 mod vibration;
 mod waves;
+mod written;
 
 use crate::base::error::{Error, Result};
 use crate::run::in_pool;
@@ -80,6 +81,7 @@ pub const CASES: &[Case] = &[
     // Plasticity and rupture
     plasticity::PULLED,
     plasticity::YOUNG,
+    written::WRITTEN,
     plasticity::BENT,
     plasticity::TWISTED,
     plasticity::WIRE_TWISTED,

@@ -2,11 +2,11 @@
 
 use super::Case;
 use super::finding::{Finding, Spent};
-use super::support::{Lab, Trial, set};
+use super::support::{Lab, set};
 use crate::base::error::Result;
 use crate::reference::beam::RoundBar;
 use crate::reference::plasticity::{Section, tension_at};
-use crate::scene::spec::{BondLawSpec, HardeningSpec};
+use crate::scene::spec::{BondLawSpec, HardeningSpec, Spec};
 
 pub const PULLED: Case = Case {
     name: "wire-pulled",
@@ -47,8 +47,8 @@ pub const WIRE_TWISTED: Case = Case {
 const YIELD_STRESS: f64 = 100e6;
 
 /// The hardening law of an elastoplastic scene.
-fn hardening(trial: &Trial) -> HardeningSpec {
-    match &trial.spec.bond.law {
+pub(super) fn hardening(spec: &Spec) -> HardeningSpec {
+    match &spec.bond.law {
         BondLawSpec::ElastoPlastic(law) => law.clone(),
         BondLawSpec::Elastic => unreachable!("the scene is elastoplastic"),
     }
@@ -57,7 +57,7 @@ fn hardening(trial: &Trial) -> HardeningSpec {
 /// Engineering curve at the grips, true curve in the bonds.
 fn wire_pulled(lab: &Lab) -> Result<Vec<Finding>> {
     let mut trial = lab.trial("verify/pull", &[])?;
-    let (law, young) = (hardening(&trial), trial.spec.material.young);
+    let (law, young) = (hardening(&trial.spec), trial.spec.material.young);
     let middle = trial.bonds() / 2;
     let mut marks = vec![0.199, 0.15, 0.1, 0.03, 0.01];
     let mut findings: [Vec<Finding>; 3] = Default::default();
@@ -83,7 +83,7 @@ fn wire_pulled(lab: &Lab) -> Result<Vec<Finding>> {
     Ok(findings.into_iter().map(|all| Finding { spent, ..Finding::worst(all) }).collect())
 }
 
-/// Slowly, so that the running mean of the grip force keeps up.
+/// Slowly, so that nothing rings.
 fn wire_modulus(lab: &Lab) -> Result<Vec<Finding>> {
     let mut trial = lab.trial("verify/pull", &[set("grip.speed", "0.1 m/s"), set("stop.strain", "0.08 %")])?;
     let (mut first, mut last) = (None, [f64::NAN; 2]);
@@ -186,7 +186,7 @@ fn bond_twisted(lab: &Lab) -> Result<Vec<Finding>> {
 /// The built-in scene `torsion`: every bond turns alike; φ_p is the angle less its elastic part T l/(G J).
 fn wire_twisted(lab: &Lab) -> Result<Vec<Finding>> {
     let mut trial = lab.trial("torsion", &[])?;
-    let (law, bar) = (hardening(&trial), trial.bar());
+    let (law, bar) = (hardening(&trial.spec), trial.bar());
     let per_stress = Section { radius: 0.5 * bar.diameter, yield_stress: 1.0 }.plastic_torque();
     let rate = trial.spec.grip.as_ref().map_or(0.0, |grip| grip.rotation_rate);
     trial.run(|_| {})?;

@@ -47,6 +47,11 @@ impl<'a> Lab<'a> {
         Self { effort, stop, ledger: Cell::default() }
     }
 
+    /// What ends a case early.
+    pub(super) fn stop(&self) -> &AtomicBool {
+        self.stop
+    }
+
     /// One of two, by effort.
     pub fn pick<T>(&self, quick: T, full: T) -> T {
         match self.effort {
