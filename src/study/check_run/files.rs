@@ -130,11 +130,15 @@ fn wires(run: &Folder) -> Outcome {
         // The trajectory has it in single precision.
         search.same(number("diameter_mm") as f32, wire.diameter, || place("diameter_mm"));
         let most = run.trajectory.samples.iter().filter_map(|s| s.wire_stress.get(row)).map(|s| s / 1e6);
-        if let Some(most) = most.reduce(f64::max).filter(|_| !run.wires.text(row, "strength_mpa").is_empty()) {
+        if let Some(most) = most.reduce(f64::max).filter(|_| !run.wires.text(row, "greatest_stress_mpa").is_empty()) {
             // Peaks may be seen between rows.
-            let short = (most - number("strength_mpa")) / most.abs().max(f64::MIN_POSITIVE);
+            let short = (most - number("greatest_stress_mpa")) / most.abs().max(f64::MIN_POSITIVE);
             search.add(short, || {
-                format!("{}: {} against {most} in the rows", place("strength_mpa"), number("strength_mpa"))
+                format!(
+                    "{}: {} against {most} in the rows",
+                    place("greatest_stress_mpa"),
+                    number("greatest_stress_mpa")
+                )
             });
         }
         let first = (0..run.ruptures.rows.len()).find(|r| run.ruptures.number(*r, "wire") == (row + 1) as f64);
@@ -235,7 +239,7 @@ fn strength(run: &Folder) -> Outcome {
     let mut search = Search::new();
     for row in 0..run.curve.rows.len() {
         let stress = run.curve.number(row, "stress_mpa");
-        search.add((stress - strength) / strength.abs(), || {
+        search.add((stress - strength) / strength.abs().max(f64::MIN_POSITIVE), || {
             format!("curve.csv line {}: {stress} MPa, summary.json has {strength}", row + 2)
         });
     }

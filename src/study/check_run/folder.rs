@@ -44,8 +44,8 @@ const WIRES: [&str; 10] = [
     "wire",
     "layer",
     "diameter_mm",
-    "strength_mpa",
-    "strain_at_strength_percent",
+    "greatest_stress_mpa",
+    "strain_at_greatest_stress_percent",
     "broken",
     "first_rupture_z_mm",
     "first_rupture_strain_percent",
@@ -229,6 +229,7 @@ fn told(path: &Path, spec: &Spec) -> Result<(Told, Snapshots)> {
                 told.ruptures.push(rupture);
             }
             Record::Notice(notice) => told.notices.push(notice),
+            Record::Peaks(_) => {}
             Record::Snapshot(snapshot) => {
                 seen.snapshot(&snapshot, &told, &broken, &limits);
                 told.last = Some(snapshot);
