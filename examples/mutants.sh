@@ -11,7 +11,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-VERSION=25.3.1
+VERSION=27.1.0
 if ! cargo mutants --version 2>/dev/null | grep -q "$VERSION"; then
     cargo install --locked cargo-mutants@"$VERSION"
 fi

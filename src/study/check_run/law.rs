@@ -50,10 +50,11 @@ impl Limits {
         if modulus.is_finite() {
             factor = vec![1.0; info.particles];
             for (w, wire) in info.wires.iter().enumerate() {
-                for slot in wire.first..(wire.first + wire.len).saturating_sub(1) {
-                    let [a, b] = [slot, slot + 1].map(|p| glam::Vec3::from(info.rest_position[p]).as_dvec3());
-                    let u = uniform(spec.seed, w as u64, (slot - wire.first) as u64);
-                    factor[slot] = weibull_factor(u, modulus, 100.0 / a.distance(b));
+                let bonds = info.rest_position[wire.first..wire.first + wire.len].windows(2).enumerate();
+                for (k, ends) in bonds {
+                    let length = glam::Vec3::from(ends[0]).as_dvec3().distance(glam::Vec3::from(ends[1]).as_dvec3());
+                    let u = uniform(spec.seed, w as u64, k as u64);
+                    factor[wire.first + k] = weibull_factor(u, modulus, 100.0 / length);
                 }
             }
         }

@@ -119,15 +119,20 @@ fn work(run: &Folder) -> Outcome {
     let rows = run.curve.rows.len();
     let most = (0..rows).map(|row| number(row, "work_j").abs()).fold(0.0, f64::max);
     let passage = stiffness::passage(&run.spec).unwrap_or(0.0);
-    let mut greatest = 0.0f64;
+    let power = |row: usize| {
+        let way = (number(row, "strain_percent") - number(row - 1, "strain_percent")) * 1e-2 * free;
+        let time = number(row, "time_s") - number(row - 1, "time_s");
+        let force = number(row, "grip_force_upper_n").abs().max(number(row - 1, "grip_force_upper_n").abs());
+        (force * way / time).abs() + (number(row, "torque_n_mm") * 1e-3 * grip.rotation_rate).abs()
+    };
+    // The first rows are smoothed most, so the whole run's greatest power counts from the start.
+    let greatest = (1..rows).map(power).filter(|power| power.is_finite()).fold(0.0, f64::max);
     let (mut fine, mut coarse) = (0.0, 0.0);
     let mut search = Search::new();
     for row in (2..rows).step_by(2) {
         fine += piece(row - 2, row - 1) + piece(row - 1, row);
         coarse += piece(row - 2, row);
         let done = number(row, "work_j") - number(0, "work_j");
-        let power = piece(row - 2, row) / (number(row, "time_s") - number(row - 2, "time_s"));
-        greatest = greatest.max(power.abs());
         // Simpson's estimate of the trapezoid's error is a third of the difference.
         let slack = (fine - coarse).abs() + greatest * SMOOTHED * passage;
         let off = ((fine - done).abs() - slack).max(0.0) / most;

@@ -72,13 +72,12 @@ impl Table {
 
     /// All numbers that are there, with line and column for people.
     pub fn numbers(&self) -> impl Iterator<Item = (f64, usize, &str)> {
-        let cells = self.rows.iter().enumerate().flat_map(move |(i, row)| {
+        self.rows.iter().enumerate().flat_map(move |(i, row)| {
             row.iter()
                 .zip(&self.heads)
                 .filter(|(cell, head)| !cell.is_empty() && !is_words(head))
                 .map(move |(cell, head)| (cell.parse().unwrap_or(f64::NAN), i + 2, head.as_str()))
-        });
-        cells
+        })
     }
 }
 
