@@ -44,7 +44,13 @@ fn the_calibrated_material_carries_the_experiment() {
         .layers
         .iter()
         .zip(&built.layers)
-        .map(|(l, b)| Layer { wires: l.wires, diameter: l.wire_diameter, radius: b.lay_radius, pitch: l.pitch })
+        .map(|(l, b)| Layer {
+            wires: l.wires,
+            diameter: l.wire_diameter,
+            radius: b.lay_radius,
+            pitch: l.pitch,
+            lay: 1.0,
+        })
         .collect();
     let strength = strength_factor(&layers) * law.stress(log_strain) * (-log_strain).exp() * 1e-6;
     let error = strength / experiment.tensile_strength_mpa - 1.0;

@@ -4,6 +4,7 @@ mod accuracy;
 mod animation;
 mod calibrate;
 mod cases;
+mod check_run;
 mod export;
 mod interrupt;
 mod look;
@@ -58,6 +59,8 @@ enum Command {
     Accuracy(accuracy::Args),
     /// Vary a scene: pitch, wire diameter, seeds, or what a file says; gather, fit, and set beside the paper and theory
     Study(study::Args),
+    /// Check that all files of a run agree with each other and with physics
+    CheckRun(check_run::Args),
     /// Compare the engine with closed forms
     Verify(cases::CaseArgs),
     /// Run stiff and extreme cases ("friction-*" takes all that begin so): each must be stable, or be refused or
@@ -70,7 +73,7 @@ enum Ended {
     Well,
     /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
     Interrupted,
-    /// A study ran, and a case of it misses what it must give.
+    /// A study or a check ran, and a case of it misses what it must give.
     Missed,
 }
 
@@ -101,6 +104,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Study(args) => study::study(&args),
         Command::Stability(args) => stability::stability(&args),
         Command::Render(args) => render::render(args),
+        Command::CheckRun(args) => check_run::check_run(&args),
         Command::Verify(args) => verify::verify(&args),
         Command::Report(args) => report::report(&args).map(|()| Ended::Well),
         Command::Record(args) => record::record(args),

@@ -1,6 +1,7 @@
 //! `strandsnap plan`.
 
 use super::say::say;
+use super::scene::expected;
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run::{self, cautions};
@@ -25,6 +26,9 @@ pub fn plan(args: &Args) -> Result<()> {
     };
     say!("quality: {} ({preset})\n", args.scene.quality.word());
     say!("{}", Plan::new(&scene.spec));
+    if let Some(expected) = expected(&scene.spec) {
+        say!("{expected}\n");
+    }
     let assembly = run::assemble(&scene)?;
     cautions::of_scene(&scene, &assembly)?.iter().for_each(|caution| say!("WARNING: {caution}\n"));
     strand::caution::deviation(&scene.spec).iter().for_each(|line| say!("{line}\n"));

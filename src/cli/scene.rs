@@ -5,7 +5,9 @@ use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run::{self, cautions};
 use crate::scene::builtin;
+use crate::scene::spec::Spec;
 use crate::strand;
+use crate::strand::theory::Theory;
 
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
@@ -52,7 +54,24 @@ fn check(args: &SceneArgs) -> Result<()> {
         assembly.len(),
         assembly.bond_count()
     );
+    if let Some(expected) = expected(&scene.spec) {
+        say!("{expected}");
+    }
     strand::caution::deviation(&scene.spec).iter().for_each(|line| say!("{line}"));
     cautions::of_scene(&scene, &assembly)?.iter().for_each(|caution| say!("WARNING: {caution}"));
     Ok(())
+}
+
+/// What strand theory expects of a scene, in a line; `None` where it has nothing to say.
+pub(super) fn expected(spec: &Spec) -> Option<String> {
+    let theory = Theory::of_pull(spec)?;
+    let loose = match theory.closing_strain {
+        0.0 => String::new(),
+        strain => format!("; loose layers close in at {:.3} % of strain", strain * 1e2),
+    };
+    Some(format!(
+        "strand theory, ends held, elastic: {:.1} GPa, torque {:.4} N m per % of strain{loose}",
+        theory.modulus() * 1e-9,
+        theory.wrench.torque * 1e-2
+    ))
 }

@@ -10,6 +10,7 @@ pub mod progress;
 #[cfg(feature = "record")]
 pub mod recording;
 pub mod report;
+pub mod stiffness;
 pub mod summary;
 pub mod tables;
 pub mod timings;

@@ -25,6 +25,9 @@ pub fn report(summary: &RunSummary) -> String {
     if let (Some(stress), Some(strain)) = (summary.residual_stress_mpa, summary.final_strain_percent) {
         line("at the end", format!("{stress:.2} MPa at {strain:.2} %"));
     }
+    if let Some(stiffness) = &summary.stiffness {
+        line("initial stiffness", stiffness.words());
+    }
     line("first rupture", first_rupture(summary.first_rupture.as_ref(), summary.one_draw.is_some()));
     let layers = summary.wires_broken_by_layer.iter();
     let layers: Vec<String> = layers.map(|(name, n)| format!("{name} {} of {}", n.broken, n.of)).collect();

@@ -4,6 +4,7 @@ use super::Observer;
 use super::findings::Findings;
 use super::guard::QuasiStatic;
 use super::peaks::{Monitor, Peaks};
+use super::stiffness::{Rows, Stiffness};
 use super::tables::{cause, layer_name};
 use super::timings::Timings;
 use super::units::{mm, mpa, percent};
@@ -51,6 +52,9 @@ pub struct RunSummary {
     pub final_strain_percent: Option<f64>,
     /// Nominal stress at the end [MPa].
     pub residual_stress_mpa: Option<f64>,
+    /// Initial stiffness beside strand theory; `None` where that has nothing to say.
+    #[serde(default)]
+    pub stiffness: Option<Stiffness>,
     /// Energy ledger at the end [J].
     pub energy: Energy,
     /// What the ledger does not account for, over the work done [%]; `None` when the work is negligible.
@@ -226,6 +230,8 @@ pub struct Summariser {
     rows: Monitor,
     /// What was seen at every step.
     peaks: Option<Peaks>,
+    /// Rows that tell the initial stiffness.
+    elastic: Rows,
     last: Sample,
     ruptures: Vec<Rupture>,
 }
@@ -251,7 +257,9 @@ impl Summariser {
         let firsts = self.first_breaks();
         // Trouble comes as a notice too, at the place where the run ended.
         let earlier = self.notices.iter().map(|n| &n.text).filter(|text| Some(*text) != closing.trouble.as_ref());
-        let warnings = closing.trouble.iter().chain(earlier).cloned().collect();
+        let stiffness = self.elastic.stiffness(spec);
+        let off = stiffness.as_ref().and_then(|s| s.warning(spec));
+        let warnings = closing.trouble.iter().chain(earlier).chain(&off).cloned().collect();
         RunSummary {
             scene: spec.name.clone(),
             stopped_because: closing.because,
@@ -269,6 +277,7 @@ impl Summariser {
             bonds_broken: self.ruptures.len(),
             final_strain_percent: measured(Some(percent(self.last.strain))),
             residual_stress_mpa: measured(Some(mpa(self.last.stress))),
+            stiffness,
             energy,
             energy_residual_percent: (energy.work.abs() > negligible).then(|| percent(energy.residual() / energy.work)),
             quasi_static: closing.quasi_static,
@@ -358,6 +367,7 @@ impl Observer for Summariser {
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
         self.rows.see(sample.strain, sample.stress, sample.wire_stress.iter().copied());
+        self.elastic.add(sample);
         self.last = sample.clone();
         Ok(())
     }

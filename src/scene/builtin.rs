@@ -30,6 +30,7 @@ const VERIFICATION: &[(&str, &str)] = scenes![
     "verify/free-vibration",
     "verify/free-wire",
     "verify/hertz",
+    "verify/known-strand",
     "verify/oblique",
     "verify/parallel-wires",
     "verify/pull",

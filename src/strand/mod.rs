@@ -13,6 +13,7 @@ pub mod resample;
 mod strung;
 #[cfg(test)]
 pub(crate) mod test_specs;
+pub mod theory;
 
 pub use discretise::build;
 pub use error::{BuildError, BuildErrorKind};

@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod calibrate;
 pub mod cases;
+pub mod check_run;
 pub mod fit;
 pub mod plot;
 pub mod screening;

@@ -10,6 +10,46 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
+/// Paths of entities, as a recording that is read back has them.
+pub mod paths {
+    use super::names;
+    use crate::engine::view::RunInfo;
+
+    fn root(name: &str) -> String {
+        format!("/{name}")
+    }
+
+    /// Nominal stress of the body.
+    pub fn body_stress() -> String {
+        root(names::BODY_STRESS)
+    }
+
+    /// Stress of the layers.
+    pub fn layer_stress() -> String {
+        root(names::LAYER_STRESS)
+    }
+
+    /// Stress of the wires of a layer.
+    pub fn wire_stress(info: &RunInfo, layer: usize) -> String {
+        names::layer(names::WIRE_STRESS, info, layer).to_string()
+    }
+
+    /// Wires and bonds broken so far.
+    pub fn broken() -> String {
+        root(names::BROKEN)
+    }
+
+    /// Energy ledger.
+    pub fn energy() -> String {
+        root(names::ENERGY)
+    }
+
+    /// Particles of a wire.
+    pub fn wire(info: &RunInfo, wire: usize) -> String {
+        names::wire(names::STRAND, info, wire).to_string()
+    }
+}
+
 /// What one entity holds.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Entity {
@@ -42,6 +82,8 @@ pub struct RecordingContents {
     pub headline: String,
     /// Strain [10⁻⁶] and nominal stress of the body [MPa], in the order of the file.
     pub nominal_stress: Vec<(i64, f64)>,
+    /// Scalars by entity: step and values of each row, in the order of the file.
+    pub series: BTreeMap<String, Vec<(i64, Vec<f64>)>>,
     /// Whether a layout is embedded, ahead of all data, so that a viewer opens with it.
     pub layout: bool,
     /// Layouts: one from the start, one from the end, when the place of the first break is known.
@@ -97,6 +139,7 @@ impl RecordingContents {
         self.add_log(&path, chunk);
         self.add_stress(&path, chunk);
         self.add_fields(&path, chunk);
+        self.add_series(&path, chunk);
         if path == format!("/{}", names::HEADLINE)
             && let Some(text) = chunk.iter_slices::<String>(TextDocument::descriptor_text().component).last()
         {
@@ -130,6 +173,15 @@ impl RecordingContents {
             if let Some(last) = chunk.iter_slices::<f32>(field.into()).last() {
                 self.last_fields.entry(path.to_owned()).or_default().insert(field.to_owned(), last.to_vec());
             }
+        }
+    }
+
+    fn add_series(&mut self, path: &str, chunk: &Chunk) {
+        let values = chunk.iter_slices::<f64>(Scalars::descriptor_scalars().component);
+        let steps = chunk.iter_indices(&stream::STEP.into()).map(|(time, _)| time.as_i64());
+        let rows: Vec<(i64, Vec<f64>)> = steps.zip(values).map(|(step, values)| (step, values.to_vec())).collect();
+        if !rows.is_empty() {
+            self.series.entry(path.to_owned()).or_default().extend(rows);
         }
     }
 

@@ -158,6 +158,7 @@ fn layers(spec: &Spec) -> Option<Vec<Layer>> {
         diameter: layer.wire_diameter,
         radius,
         pitch: layer.pitch,
+        lay: layer.lay,
     };
     Some(layers.iter().zip(radii).map(layer).collect())
 }

@@ -11,6 +11,7 @@ mod damping;
 mod elastica;
 pub mod finding;
 mod frame;
+mod known_strands;
 mod modes;
 mod oblique;
 mod plasticity;
@@ -90,6 +91,10 @@ pub const CASES: &[Case] = &[
     // Strands
     strands::PITCHES,
     strands::FINER,
+    known_strands::UTTING,
+    known_strands::TEXTBOOK,
+    known_strands::GHOREISHI,
+    known_strands::JIANG,
     // What must stay
     conservation::WIRE,
     conservation::COLLISION,

@@ -29,6 +29,7 @@ fn layers(trial: &Trial) -> Vec<Layer> {
         diameter: a.wires[0].diameter,
         radius: l.lay_radius,
         pitch: l.pitch,
+        lay: l.lay,
     };
     a.layers.iter().enumerate().map(layer).collect()
 }

@@ -1,0 +1,283 @@
+//! All files of a run, read once.
+
+use super::finding::Search;
+use super::law::Limits;
+use super::tables::Table;
+use crate::base::error::{Error, Result};
+use crate::engine::view::{BondState, Notice, RunInfo, Rupture, Sample, Snapshot};
+use crate::observe::trajectory::{Record, Trajectory};
+use crate::observe::{partial, tables};
+use crate::run::RunSummary;
+use crate::run::folder::{SCENE, SUMMARY, TRAJECTORY};
+use crate::scene::spec::Spec;
+use crate::strand::theory::Theory;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Columns of `curve.csv` that every run has, but for those of layers.
+pub const CURVE: [&str; 22] = [
+    "step",
+    "time_s",
+    "strain_percent",
+    "stress_mpa",
+    "grip_force_lower_n",
+    "grip_force_upper_n",
+    "torque_n_mm",
+    "wires_broken",
+    "bonds_broken",
+    "contacts",
+    "time_step_s",
+    "work_j",
+    "kinetic_j",
+    "elastic_bonds_j",
+    "elastic_contacts_j",
+    "plastic_bonds_j",
+    "plastic_contacts_j",
+    "plastic_thinning_j",
+    "friction_j",
+    "damping_j",
+    "released_j",
+    "residual_j",
+];
+const WIRES: [&str; 10] = [
+    "wire",
+    "layer",
+    "diameter_mm",
+    "greatest_stress_mpa",
+    "strain_at_greatest_stress_percent",
+    "broken",
+    "first_rupture_z_mm",
+    "first_rupture_strain_percent",
+    "first_rupture_order",
+    "first_rupture_cause",
+];
+const RUPTURES: [&str; 12] = [
+    "order",
+    "step",
+    "time_s",
+    "strain_percent",
+    "wire",
+    "layer",
+    "bond",
+    "z_mm",
+    "rest_z_mm",
+    "cause",
+    "stress_mpa",
+    "body_stress_mpa",
+];
+
+/// A run as its files tell it.
+pub struct Folder {
+    /// The folder.
+    pub path: PathBuf,
+    /// The scene.
+    pub spec: Spec,
+    /// Strand theory of its bodies, whatever loads them.
+    pub theory: Option<Theory>,
+    /// `summary.json`.
+    pub summary: RunSummary,
+    /// `curve.csv`.
+    pub curve: Table,
+    /// `wires.csv`.
+    pub wires: Table,
+    /// `ruptures.csv`.
+    pub ruptures: Table,
+    /// What the trajectory holds besides snapshots.
+    pub trajectory: Told,
+    /// What was looked for in each snapshot: they are too many to be kept.
+    pub snapshots: Snapshots,
+}
+
+/// The trajectory without its snapshots.
+pub struct Told {
+    /// What does not change.
+    pub info: Arc<RunInfo>,
+    /// Rows.
+    pub samples: Vec<Sample>,
+    /// Ruptures.
+    pub ruptures: Vec<Rupture>,
+    /// Notices.
+    pub notices: Vec<Notice>,
+    /// The last snapshot.
+    pub last: Option<Snapshot>,
+}
+
+/// What is looked for in snapshots.
+pub struct Snapshots {
+    /// Their rows against the curve's of the same step; 1 where they differ.
+    pub rows: Search,
+    /// Stress of broken bonds [MPa].
+    pub silent: Search,
+    /// Stress of whole bonds over what their law allows, less 1 [-].
+    pub law: Search,
+    /// Plastic strain of whole bonds over that at which they break, less 1 [-].
+    pub rupture: Search,
+}
+
+impl Folder {
+    /// Reads the folder `run`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when it is no folder of a run, of one that did not end, or a file in it is damaged or of another
+    /// run; [`Error::Io`] when the file system refuses.
+    pub fn read(run: &Path) -> Result<Self> {
+        check_files(run)?;
+        let text = |name: &str| read_text(&run.join(name));
+        let spec = crate::scene::parse(&text(SCENE)?, SCENE, run, &[])?.spec;
+        let summary: RunSummary = serde_json::from_str(&text(SUMMARY)?).map_err(|e| {
+            Error::input(
+                format!("{} is damaged or of another version of strandsnap: {e}", run.join(SUMMARY).display()),
+                "run the scene again with this program",
+            )
+        })?;
+        let [curve, wires, ruptures] = tables::FILES;
+        let (trajectory, snapshots) = told(&run.join(TRAJECTORY), &spec)?;
+        Ok(Self {
+            path: run.into(),
+            theory: Theory::of(&spec),
+            summary,
+            curve: Table::read(run, curve, &CURVE)?,
+            wires: Table::read(run, wires, &WIRES)?,
+            ruptures: Table::read(run, ruptures, &RUPTURES)?,
+            trajectory,
+            snapshots,
+            spec,
+        })
+    }
+
+    /// Whether grips strain a body, so that there is a stress and a strain.
+    pub fn is_gripped(&self) -> bool {
+        self.trajectory.info.gauge.is_some()
+    }
+
+    /// Step of the first rupture; none: beyond all.
+    pub fn first_rupture(&self) -> u64 {
+        self.trajectory.ruptures.first().map_or(u64::MAX, |r| r.step)
+    }
+
+    /// Section of all wires before loading [m²].
+    pub fn area(&self) -> f64 {
+        // The scene has the diameters in double precision.
+        let laid = self.spec.strand.iter().flat_map(|s| &s.layers).map(|l| l.wires as f64 * l.wire_diameter.powi(2));
+        let single = self.spec.wires.iter().map(|w| w.diameter.powi(2));
+        std::f64::consts::FRAC_PI_4 * laid.chain(single).sum::<f64>()
+    }
+
+    /// Bonds of wire `w` whose mean is its stress: those within a fortieth of the gauge around its middle, or the nearest.
+    pub fn middle(&self, w: usize) -> Vec<usize> {
+        let info = &self.trajectory.info;
+        let wire = &info.wires[w];
+        let Some([low, high]) = info.gauge.filter(|[low, high]| high > low) else { return Vec::new() };
+        let z = |slot: usize| 0.5 * (info.rest_position[slot][2] + info.rest_position[slot + 1][2]);
+        let off = |slot: &usize| (z(*slot) - 0.5 * (low + high)).abs();
+        let bonds = wire.first..(wire.first + wire.len).saturating_sub(1);
+        // Positions are in single precision here: bonds on the edge are taken in, so that all of them must be broken.
+        let near: Vec<usize> = bonds.clone().filter(|slot| off(slot) <= 0.0251 * (high - low)).collect();
+        if near.is_empty() { bonds.min_by(|a, b| off(a).total_cmp(&off(b))).into_iter().collect() } else { near }
+    }
+}
+
+/// Every file that a whole run writes must be there under its own name.
+fn check_files(run: &Path) -> Result<()> {
+    let give = "give the folder of a run, such as out/ka4";
+    if !run.is_dir() {
+        let what = if run.exists() { "is not a folder" } else { "does not exist" };
+        return Err(Error::input(format!("{} {what}", run.display()), give));
+    }
+    let needed: Vec<&str> = [SCENE, SUMMARY, TRAJECTORY].into_iter().chain(tables::FILES).collect();
+    let partial: Vec<&str> = needed.iter().copied().filter(|name| partial::name(&run.join(name)).exists()).collect();
+    if !partial.is_empty() {
+        return Err(Error::input(
+            format!("{}: the run has not ended, {} is unfinished", run.display(), partial.join(", ")),
+            "wait for its end, or run the scene again",
+        ));
+    }
+    let missing: Vec<&str> = needed.into_iter().filter(|name| !run.join(name).is_file()).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    Err(Error::input(format!("{} holds no {}", run.display(), missing.join(", no ")), give))
+}
+
+fn read_text(path: &Path) -> Result<String> {
+    match std::fs::read_to_string(path) {
+        Err(e) if e.kind() == std::io::ErrorKind::InvalidData => {
+            Err(Error::input(format!("{} is damaged: it is not text", path.display()), "run the scene again"))
+        }
+        other => other.map_err(|e| Error::io("cannot read", path, e)),
+    }
+}
+
+fn told(path: &Path, spec: &Spec) -> Result<(Told, Snapshots)> {
+    let damaged = |e: Error| Error::input(format!("{} is damaged: {e}", path.display()), "run the scene again");
+    let trajectory = Trajectory::open(path).map_err(damaged)?;
+    let info = trajectory.info().clone();
+    let limits = Limits::new(spec, &info);
+    let mut told = Told { info, samples: Vec::new(), ruptures: Vec::new(), notices: Vec::new(), last: None };
+    let mut seen = Snapshots { rows: Search::new(), silent: Search::new(), law: Search::new(), rupture: Search::new() };
+    let mut broken: BTreeMap<usize, u64> = BTreeMap::new();
+    let mut rows: BTreeSet<u64> = BTreeSet::new();
+    for record in trajectory {
+        match record.map_err(damaged)? {
+            Record::Sample(sample) => {
+                rows.insert(sample.step);
+                told.samples.push(sample);
+            }
+            Record::Rupture(rupture) => {
+                broken.entry(rupture.bond).or_insert(rupture.step);
+                told.ruptures.push(rupture);
+            }
+            Record::Notice(notice) => told.notices.push(notice),
+            Record::Peaks(_) => {}
+            Record::Snapshot(snapshot) => {
+                seen.snapshot(&snapshot, &told, &broken, &limits);
+                told.last = Some(snapshot);
+            }
+        }
+    }
+    Ok((told, seen))
+}
+
+impl Snapshots {
+    fn snapshot(&mut self, now: &Snapshot, told: &Told, broken: &BTreeMap<usize, u64>, limits: &Limits) {
+        let step = now.sample.step;
+        // The snapshot comes after its row, at times after later ones: it may have been kept until the next rupture.
+        let row = told.samples.iter().rev().find(|row| row.step <= step);
+        self.rows.add(f64::from(u8::from(row != Some(&now.sample))), || format!("snapshot at step {step}"));
+        for (slot, state) in now.bond_state.iter().enumerate() {
+            let place = || format!("{} at step {step}", bond(&told.info, slot));
+            let stress = f64::from(now.bond_stress[slot]);
+            let broke = broken.get(&slot).is_some_and(|at| *at <= step);
+            if broke || *state == BondState::Broken {
+                self.silent.add(stress.abs(), || format!("{}: {stress} MPa", place()));
+            } else if *state != BondState::Absent {
+                let p = f64::from(now.plastic_strain[slot]);
+                if let Some(allowed) = limits.bond(p, stretch(now, &told.info, slot)) {
+                    self.law.add(stress.abs() / allowed - 1.0, || {
+                        format!("{}: {stress:.2} MPa, its law allows {allowed:.2}", place())
+                    });
+                }
+                if let Some(limit) = limits.plastic(slot) {
+                    self.rupture.add(p / limit - 1.0, || format!("{}: p = {p:.5}, breaks at {limit:.5}", place()));
+                }
+            }
+        }
+    }
+}
+
+/// Log strain of a bond by the positions of its particles, and its rest length [mm].
+fn stretch(now: &Snapshot, info: &RunInfo, slot: usize) -> [f64; 2] {
+    let length = |x: &[[f32; 3]]| {
+        let [a, b] = [x[slot], x[slot + 1]];
+        (0..3).map(|k| (f64::from(b[k]) - f64::from(a[k])).powi(2)).sum::<f64>().sqrt()
+    };
+    let rest = length(&info.rest_position);
+    [(length(&now.position) / rest).ln(), rest]
+}
+
+/// A bond for people.
+pub fn bond(info: &RunInfo, slot: usize) -> String {
+    let wire = info.wires.iter().position(|w| (w.first..w.first + w.len).contains(&slot));
+    wire.map_or_else(|| format!("slot {slot}"), |w| format!("wire {}, bond {}", w + 1, slot - info.wires[w].first + 1))
+}

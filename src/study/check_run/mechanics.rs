@@ -1,0 +1,253 @@
+//! What physics asks of a run.
+
+use super::Invariant;
+use super::finding::{Outcome, Search};
+use super::folder::Folder;
+use super::rows::free_length;
+use crate::observe::guard::ENERGY_LIMIT;
+use crate::observe::stiffness::{self, Row, Stiffness};
+use crate::scene::spec::{DriveSpec, GripKind, Shape};
+
+pub const GRIP: Invariant = Invariant {
+    name: "wires-and-grips",
+    about: "what the wires carry along the strand is what the grips hold, before anything breaks",
+    check: grips,
+};
+
+pub const WORK: Invariant =
+    Invariant { name: "work", about: "the work done is the integral of the curve", check: work };
+
+pub const LEDGER: Invariant = Invariant {
+    name: "energy-ledger",
+    about: "the energy ledger closes in every row, and its residual is what its terms leave",
+    check: ledger,
+};
+
+pub const STIFFNESS: Invariant = Invariant {
+    name: "initial-stiffness",
+    about: "the summary's initial stiffness is the slope of curve.csv",
+    check: initial_stiffness,
+};
+
+pub const STRAND_THEORY: Invariant =
+    Invariant { name: "strand-theory", about: "the initial stiffness is that of strand theory", check: strand_theory };
+
+/// Passages of an elastic wave after which a pull has settled [-].
+const SETTLED: f64 = 2.0;
+
+/// A little more than forces are smoothed over, in passages of an elastic wave [-].
+const SMOOTHED: f64 = 0.3;
+
+/// Σ N cos β′ over the wires against the mean of the two grips' forces, β′ the lay angle of a strand that keeps its volume.
+/// Wires are measured at mid-gauge and grips at the ends, through a filter of a fraction of a wave's passage, so a force may
+/// be what it changes by in one passage beside.
+fn grips(run: &Folder) -> Outcome {
+    let not = |why: &str| Outcome::NotApplicable(why.into());
+    let Some(grip) = run.spec.grip.as_ref().filter(|grip| grip.kind == GripKind::All) else {
+        return not("no grips hold every wire");
+    };
+    let (Some(theory), Some(passage)) = (&run.theory, stiffness::passage(&run.spec)) else {
+        return not("the wires are neither laid in layers nor straight along z");
+    };
+    if !run.spec.holds.is_empty() {
+        return not("there are other holds and loads");
+    }
+    if matches!(grip.drive, DriveSpec::Speed(0.0)) {
+        return not("nothing is pulled");
+    }
+    let info = &run.trajectory.info;
+    let samples = &run.trajectory.samples;
+    let mean = |sample: &crate::engine::view::Sample| 0.5 * (sample.grip_force[0] + sample.grip_force[1]);
+    let most = samples.iter().map(|s| mean(s).abs()).fold(0.0, f64::max);
+    // Wires given one by one are a layer each in theory; all of them are straight.
+    let slope = |layer: usize| match run.spec.strand {
+        Some(_) => theory.layers[layer].lay_angle().tan(),
+        None => 0.0,
+    };
+    let mut search = Search::new();
+    for pair in samples.windows(2) {
+        let (before, now) = (&pair[0], &pair[1]);
+        let quiet = now.energy.kinetic <= run.spec.time.kinetic_limit * now.energy.internal();
+        if now.time < SETTLED * passage || now.step >= run.first_rupture() || !quiet {
+            continue;
+        }
+        let sum: f64 = info
+            .wires
+            .iter()
+            .zip(&now.wire_stress)
+            .map(|(wire, stress)| {
+                let area = std::f64::consts::FRAC_PI_4 * (f64::from(wire.diameter) * 1e-3).powi(2);
+                // tan β goes as R/(1 + ε), R as 1/√(1 + ε).
+                let tangent = slope(wire.layer) / (1.0 + now.strain).powf(1.5);
+                stress * area / 1f64.hypot(tangent)
+            })
+            .sum();
+        let force = mean(now);
+        let changes = (force - mean(before)).abs() / (now.time - before.time) * passage;
+        let mismatch = (now.grip_force[1] - now.grip_force[0]).abs();
+        let off = ((sum - force).abs() - changes - mismatch).max(0.0) / most;
+        search.add(off, || {
+            format!(
+                "step {}: wires carry {sum:.3} N, grips {force:.3} N, which changes by {changes:.3} N in a passage",
+                now.step
+            )
+        });
+    }
+    search.end(0.02, "of the greatest force", "no row is settled, whole and quasi-static")
+}
+
+/// ∫ F du + ∫ M dφ of the driven grip by the trapezoid rule on all rows; the rule on every other row tells how well that
+/// can be known. Forces of rows are smoothed over a quarter of a wave's passage, so what the greatest force does in
+/// [`SMOOTHED`] may be missing.
+fn work(run: &Folder) -> Outcome {
+    let not = |why: &str| Outcome::NotApplicable(why.into());
+    let Some(grip) = run.spec.grip.as_ref().filter(|grip| grip.kind == GripKind::All) else {
+        return not("no grips hold every wire, or clamps do work too");
+    };
+    if !run.spec.holds.is_empty() {
+        return not("other holds and loads do work too");
+    }
+    let Some(gauge) = run.trajectory.info.gauge else { return not("there is no gauge") };
+    let free = free_length(run).unwrap_or(f64::from(gauge[1] - gauge[0]) * 1e-3);
+    let number = |row: usize, head: &str| run.curve.number(row, head);
+    let piece = |a: usize, b: usize| {
+        let mean = |head: &str| 0.5 * (number(a, head) + number(b, head));
+        let way = (number(b, "strain_percent") - number(a, "strain_percent")) * 1e-2 * free;
+        let turn = (number(b, "time_s") - number(a, "time_s")) * grip.rotation_rate;
+        mean("grip_force_upper_n") * way + mean("torque_n_mm") * 1e-3 * turn
+    };
+    let rows = run.curve.rows.len();
+    let most = (0..rows).map(|row| number(row, "work_j").abs()).fold(0.0, f64::max);
+    let passage = stiffness::passage(&run.spec).unwrap_or(0.0);
+    let power = |row: usize| {
+        let way = (number(row, "strain_percent") - number(row - 1, "strain_percent")) * 1e-2 * free;
+        let time = number(row, "time_s") - number(row - 1, "time_s");
+        let force = number(row, "grip_force_upper_n").abs().max(number(row - 1, "grip_force_upper_n").abs());
+        (force * way / time).abs() + (number(row, "torque_n_mm") * 1e-3 * grip.rotation_rate).abs()
+    };
+    // The first rows are smoothed most, so the whole run's greatest power counts from the start.
+    let greatest = (1..rows).map(power).filter(|power| power.is_finite()).fold(0.0, f64::max);
+    let (mut fine, mut coarse) = (0.0, 0.0);
+    let mut search = Search::new();
+    for row in (2..rows).step_by(2) {
+        fine += piece(row - 2, row - 1) + piece(row - 1, row);
+        coarse += piece(row - 2, row);
+        let done = number(row, "work_j") - number(0, "work_j");
+        // Simpson's estimate of the trapezoid's error is a third of the difference.
+        let slack = (fine - coarse).abs() + greatest * SMOOTHED * passage;
+        let off = ((fine - done).abs() - slack).max(0.0) / most;
+        search.add(off, || format!("curve.csv line {}: {done:.6e} J, integral {fine:.6e} J", row + 2));
+    }
+    search.end(0.01, "of the work", "there are fewer than three rows")
+}
+
+/// Energy that is nothing [J]: an elastic strain of 1e-9 everywhere.
+fn negligible(run: &Folder) -> f64 {
+    let info = &run.trajectory.info;
+    let volume: f64 = info
+        .wires
+        .iter()
+        .map(|wire| {
+            let points = &info.rest_position[wire.first..wire.first + wire.len];
+            let length: f64 = points
+                .windows(2)
+                .map(|p| (0..3).map(|k| f64::from(p[1][k] - p[0][k]).powi(2)).sum::<f64>().sqrt())
+                .sum();
+            std::f64::consts::FRAC_PI_4 * f64::from(wire.diameter).powi(2) * length * 1e-9
+        })
+        .chain(run.spec.spheres.iter().map(|s| std::f64::consts::PI / 6.0 * s.diameter.powi(3)))
+        .sum();
+    0.5 * run.spec.material.young * 1e-18 * volume
+}
+
+fn ledger(run: &Folder) -> Outcome {
+    let terms = [
+        "kinetic_j",
+        "elastic_bonds_j",
+        "elastic_contacts_j",
+        "plastic_bonds_j",
+        "plastic_contacts_j",
+        "plastic_thinning_j",
+        "friction_j",
+        "damping_j",
+        "released_j",
+    ];
+    let nothing = negligible(run);
+    let mut most = 0.0f64;
+    let mut search = Search::new();
+    for row in 0..run.curve.rows.len() {
+        let number = |head: &str| run.curve.number(row, head);
+        most = most.max(number("work_j").abs());
+        let left = number("work_j") - terms.iter().map(|head| number(head)).sum::<f64>();
+        let place = || format!("curve.csv line {}", row + 2);
+        let off = if left.abs() <= nothing { 0.0 } else { left.abs() / most };
+        search.add(off, || format!("{}: {left:.4e} J of {most:.4e} J are unaccounted for", place()));
+        // Terms have nine digits each.
+        let sum: f64 = terms.iter().map(|head| number(head).abs()).sum::<f64>() + number("work_j").abs();
+        let told = (number("residual_j") - left).abs();
+        let off = if told <= 1e-8 * sum + nothing * 1e-9 { 0.0 } else { 1.0 };
+        search
+            .add(off, || format!("{}: residual_j is {:e}, its terms leave {left:e} J", place(), number("residual_j")));
+    }
+    search.end(ENERGY_LIMIT, "of the work", "there are no rows")
+}
+
+/// The stiffness by `curve.csv` itself.
+fn measured(run: &Folder) -> Option<Stiffness> {
+    let number = |row: usize, head: &str| run.curve.number(row, head);
+    let rows: Vec<Row> = (0..run.curve.rows.len())
+        .take_while(|row| number(*row, "bonds_broken") == 0.0)
+        .map(|row| Row {
+            time: number(row, "time_s"),
+            strain: number(row, "strain_percent") * 1e-2,
+            stress: number(row, "stress_mpa") * 1e6,
+            torque: number(row, "torque_n_mm") * 1e-3,
+        })
+        .collect();
+    stiffness::measure(&rows, &run.spec)
+}
+
+fn initial_stiffness(run: &Folder) -> Outcome {
+    let (Some(found), Some(told)) = (measured(run), &run.summary.stiffness) else {
+        let both = measured(run).is_some() == run.summary.stiffness.is_some();
+        let mut search = Search::new();
+        if !both {
+            search.add(1.0, || "strand theory has something to say, or not, and the summary the other".into());
+        }
+        return search.end(0.0, "-", "this is no pull that strand theory speaks of");
+    };
+    let mut search = Search::new();
+    search.compare(told.expected_gpa, found.expected_gpa, found.expected_gpa, || "expected_gpa".into());
+    search.same(told.not_measured.is_some(), found.not_measured.is_some(), || "not_measured is there".into());
+    let pairs = [(told.measured_gpa, found.measured_gpa), (told.measured_torque_n_m, found.measured_torque_n_m)];
+    for ((told, found), name) in pairs.into_iter().zip(["measured_gpa", "measured_torque_n_m"]) {
+        if let (Some(told), Some(found)) = (told, found) {
+            search.compare(told, found, found.abs(), || name.into());
+        }
+    }
+    search.end(1e-5, "-", "")
+}
+
+fn strand_theory(run: &Folder) -> Outcome {
+    let Some(found) = measured(run) else {
+        return Outcome::NotApplicable("this is no pull that strand theory speaks of".into());
+    };
+    let [from, to] = found.window_percent;
+    let Some(deviation) = found.deviation_percent else {
+        let why = found.not_measured.map_or("", |why| why.word());
+        return Outcome::NotApplicable(format!("{why} (window {from:.3} to {to:.3} %)"));
+    };
+    let said = found.warning(&run.spec).is_some_and(|text| run.summary.warnings.contains(&text));
+    let spheres = run.spec.contact.as_ref().is_some_and(|c| c.shape == Shape::Sphere);
+    if spheres && said && deviation < 0.0 {
+        return Outcome::NotApplicable(format!(
+            "touching spheres are softer than smooth wires: {deviation:.1} %, which the summary says"
+        ));
+    }
+    let mut search = Search::new();
+    search.add(deviation.abs() * 1e-2, || {
+        let measured = found.measured_gpa.unwrap_or(f64::NAN);
+        format!("{measured:.2} GPa measured, {:.2} GPa expected ({deviation:+.2} %)", found.expected_gpa)
+    });
+    search.end(stiffness::LIMIT, "-", "")
+}

@@ -1,0 +1,85 @@
+//! Checks a run's folder: what must hold between all files that a run writes, and between them and physics.
+//!
+//! [`Folder`] reads every file; [`INVARIANTS`] lists what must hold. A new one is a function in the file of its kind and a
+//! row in that table.
+
+mod breaks;
+mod files;
+mod finding;
+mod folder;
+mod law;
+mod mechanics;
+mod page;
+#[cfg(feature = "record")]
+mod recording;
+pub mod report;
+mod rows;
+mod tables;
+
+pub use finding::{Outcome, Seen};
+pub use folder::Folder;
+
+use crate::base::error::Result;
+use std::path::Path;
+
+/// What must hold of a run.
+pub struct Invariant {
+    /// Its name.
+    pub name: &'static str,
+    /// What it says, in one line.
+    pub about: &'static str,
+    /// Looks whether it does.
+    pub check: fn(&Folder) -> Outcome,
+}
+
+/// All invariants, by kind.
+pub const INVARIANTS: &[Invariant] = &[
+    // Tables by themselves
+    rows::FINITE,
+    rows::TIME,
+    rows::TIME_STEP,
+    rows::STRAIN,
+    rows::PULL,
+    rows::FORCE,
+    // One file against another
+    files::CURVE,
+    files::SNAPSHOTS,
+    files::LAYERS,
+    files::WIRES,
+    files::RUPTURES,
+    files::SUMMARY,
+    files::STRENGTH,
+    files::RECORDING,
+    page::PAGE,
+    // Breaks
+    breaks::COUNTS,
+    breaks::ROWS,
+    breaks::SILENT,
+    breaks::SILENT_WIRES,
+    // Physics
+    law::BONDS,
+    law::WIRES,
+    law::RUPTURES,
+    mechanics::GRIP,
+    mechanics::WORK,
+    mechanics::LEDGER,
+    mechanics::STIFFNESS,
+    mechanics::STRAND_THEORY,
+];
+
+/// An invariant, and what became of it.
+pub struct Finding {
+    /// The invariant.
+    pub invariant: &'static Invariant,
+    /// Whether it holds.
+    pub outcome: Outcome,
+}
+
+/// Checks the run in the folder `run`.
+///
+/// # Errors
+/// [`crate::base::error::Error::Input`] when it is no folder of a whole run, or a file in it cannot be understood.
+pub fn check(run: &Path) -> Result<Vec<Finding>> {
+    let folder = Folder::read(run)?;
+    Ok(INVARIANTS.iter().map(|invariant| Finding { invariant, outcome: (invariant.check)(&folder) }).collect())
+}

@@ -1,0 +1,101 @@
+//! The recording of a run, if there is one, against its trajectory.
+
+use super::finding::{Outcome, Search};
+use super::folder::Folder;
+use crate::engine::view::{BondState, Sample, WireInfo};
+use crate::observe::recording::STRESS;
+use crate::observe::recording::read::{RecordingContents, contents, paths};
+use crate::run::folder::RECORDING;
+
+/// See [`super::files::RECORDING`].
+pub fn check(run: &Folder) -> Outcome {
+    let path = run.path.join(RECORDING);
+    if !path.exists() {
+        return Outcome::NotApplicable(format!("there is no {RECORDING}"));
+    }
+    let mut search = Search::new();
+    match contents(&path) {
+        Ok(read) => {
+            series(run, &read, &mut search);
+            last_state(run, &read, &mut search);
+        }
+        Err(error) => search.add(f64::NAN, || error.to_string()),
+    }
+    search.end(1e-12, "-", "")
+}
+
+/// A row's values of one entity.
+type Values = Box<dyn Fn(&Sample) -> Vec<f64>>;
+
+fn series(run: &Folder, read: &RecordingContents, search: &mut Search) {
+    let info = &run.trajectory.info;
+    let mpa = |stress: f64| stress * 1e-6;
+    let mut entities: Vec<(String, Values)> = vec![
+        (paths::body_stress(), Box::new(move |s| vec![mpa(s.stress)])),
+        (paths::layer_stress(), Box::new(move |s| s.layer_stress.iter().map(|v| mpa(*v)).collect())),
+        (paths::broken(), Box::new(|s| vec![s.wires_broken as f64, s.bonds_broken as f64])),
+        (paths::energy(), Box::new(energies)),
+    ];
+    for layer in 0..info.layers.len() {
+        let wires: Vec<usize> = (0..info.wires.len()).filter(|w| info.wires[*w].layer == layer).collect();
+        entities.push((
+            paths::wire_stress(info, layer),
+            Box::new(move |s| wires.iter().filter_map(|w| s.wire_stress.get(*w)).map(|v| mpa(*v)).collect()),
+        ));
+    }
+    for (path, values) in entities {
+        let told = read.series.get(&path).map_or(&[][..], Vec::as_slice);
+        search.same(told.len(), run.trajectory.samples.len(), || format!("rows of {path} in {RECORDING}"));
+        for ((step, found), sample) in told.iter().zip(&run.trajectory.samples) {
+            search.same(*step, sample.step as i64, || format!("step of {path}"));
+            let right = values(sample);
+            search.same(found.len(), right.len(), || format!("values of {path} at step {step}"));
+            for (k, (found, right)) in found.iter().zip(&right).enumerate() {
+                search.compare(*found, *right, right.abs(), || format!("{path}, {} at step {step}", k + 1));
+            }
+        }
+    }
+    let lines = run.trajectory.ruptures.len() + run.trajectory.notices.len();
+    search.same(read.log.len(), lines, || format!("lines of the log in {RECORDING}"));
+}
+
+fn energies(sample: &Sample) -> Vec<f64> {
+    let e = &sample.energy;
+    vec![
+        e.work,
+        e.kinetic,
+        e.elastic_bonds,
+        e.elastic_contacts,
+        e.plastic_bonds,
+        e.plastic_contacts,
+        e.plastic_thinning,
+        e.friction,
+        e.damping,
+        e.released,
+    ]
+}
+
+/// Stress of the bonds in the end, broken ones at nothing.
+fn last_state(run: &Folder, read: &RecordingContents, search: &mut Search) {
+    let info = &run.trajectory.info;
+    let Some(last) = &run.trajectory.last else { return };
+    for (w, wire) in info.wires.iter().enumerate() {
+        let path = paths::wire(info, w);
+        let Some(found) = read.last_fields.get(&path).and_then(|fields| fields.get(STRESS)) else {
+            search.add(1.0, || format!("{RECORDING} has no stress of {path}"));
+            continue;
+        };
+        search.same(found.len(), wire.len, || format!("particles of {path}"));
+        for (k, stress) in found.iter().enumerate().take(wire.len) {
+            let slot = shown(wire, k);
+            let broken = last.bond_state[slot] == BondState::Broken;
+            let right = if broken { 0.0 } else { last.bond_stress[slot] };
+            search.same(*stress, right, || format!("{path}, bond {} in the end [MPa]", slot - wire.first + 1));
+        }
+    }
+}
+
+/// A particle shows the bond after it; the last one the bond before it.
+fn shown(wire: &WireInfo, particle: usize) -> usize {
+    wire.first + particle.min(wire.len.saturating_sub(2))
+}

@@ -1,0 +1,147 @@
+//! What must hold of the rows of the tables by themselves.
+
+use super::Invariant;
+use super::finding::{Outcome, Search};
+use super::folder::Folder;
+use crate::scene::spec::DriveSpec;
+
+pub const FINITE: Invariant =
+    Invariant { name: "finite", about: "every number in the tables is finite", check: finite };
+
+pub const TIME: Invariant =
+    Invariant { name: "time", about: "steps and times rise from row to row and from rupture to rupture", check: time };
+
+pub const TIME_STEP: Invariant = Invariant {
+    name: "time-step",
+    about: "time over steps lies between the least and the greatest time step of the summary",
+    check: time_step,
+};
+
+pub const STRAIN: Invariant =
+    Invariant { name: "strain", about: "strain only grows under a pull, only falls under a push", check: strain };
+
+pub const PULL: Invariant = Invariant {
+    name: "strain-unit",
+    about: "strain in per cent is the grip's way over the gauge length, before the pull gets faster",
+    check: pull,
+};
+
+pub const FORCE: Invariant = Invariant {
+    name: "stress-unit",
+    about: "stress in MPa is the upper grip's force in N over the wires' sections in mm²",
+    check: force,
+};
+
+/// Heads of the layers' columns in `curve.csv`.
+pub fn layer_heads(run: &Folder) -> Vec<String> {
+    run.trajectory.info.layers.iter().map(|name| format!("stress_{}_mpa", name.replace(' ', "_"))).collect()
+}
+
+fn finite(run: &Folder) -> Outcome {
+    let mut search = Search::new();
+    for table in [&run.curve, &run.wires, &run.ruptures] {
+        for (value, line, head) in table.numbers() {
+            let off = if value.is_finite() { 0.0 } else { 1.0 };
+            search.add(off, || format!("{} line {line}, {head}: {value}", table.name));
+        }
+    }
+    search.end(0.0, "-", "the tables are empty")
+}
+
+fn time(run: &Folder) -> Outcome {
+    let mut search = Search::new();
+    let mut rising = |table: &super::tables::Table, head: &str, strictly: bool| {
+        for row in 1..table.rows.len() {
+            let rise = table.number(row, head) - table.number(row - 1, head);
+            let holds = if strictly { rise > 0.0 } else { rise >= 0.0 };
+            search.add(f64::from(u8::from(!holds)), || {
+                format!("{} line {}, {head} changes by {rise}", table.name, row + 2)
+            });
+        }
+    };
+    for head in ["step", "time_s"] {
+        rising(&run.curve, head, true);
+        rising(&run.ruptures, head, false);
+    }
+    rising(&run.ruptures, "order", true);
+    search.end(0.0, "-", "there is one row")
+}
+
+fn time_step(run: &Folder) -> Outcome {
+    let limits = &run.summary.findings;
+    let (least, greatest) = (limits.least_time_step.seconds, limits.greatest_time_step.seconds);
+    let mut search = Search::new();
+    for row in 1..run.curve.rows.len() {
+        let rise = |head: &str| run.curve.number(row, head) - run.curve.number(row - 1, head);
+        let mean = rise("time_s") / rise("step");
+        // Times have nine digits.
+        let rounding = 1e-8 * run.curve.number(row, "time_s") / rise("step");
+        let off = (least - mean).max(mean - greatest) - rounding;
+        search.add(off / greatest, || {
+            format!("curve.csv line {}: {mean:e} s a step, summary.json has {least:e} to {greatest:e} s", row + 2)
+        });
+    }
+    search.end(1e-6, "-", "there is one row")
+}
+
+/// Speed of the grip at the start [m/s], where it is prescribed.
+fn speed(run: &Folder) -> Option<f64> {
+    match run.spec.grip.as_ref()?.drive {
+        DriveSpec::Speed(speed) => Some(speed),
+        DriveSpec::Cyclic { .. } => None,
+    }
+}
+
+fn strain(run: &Folder) -> Outcome {
+    let Some(speed) = speed(run) else {
+        return Outcome::NotApplicable("no grip moves one way".into());
+    };
+    let mut search = Search::new();
+    for row in 1..run.curve.rows.len() {
+        let rise = run.curve.number(row, "strain_percent") - run.curve.number(row - 1, "strain_percent");
+        let back = if speed == 0.0 { rise.abs() } else { -rise * speed.signum() };
+        search.add(back, || format!("curve.csv line {}: strain changes by {rise} %", row + 2));
+    }
+    search.end(0.0, "%", "there is one row")
+}
+
+/// Length that is free between the grips, by the rows of a pull at constant speed [m]: way over strain.
+pub fn free_length(run: &Folder) -> Option<f64> {
+    let grip = run.spec.grip.as_ref()?;
+    let speed = speed(run).filter(|speed| *speed != 0.0)?;
+    let until = grip.adaptive.as_ref().map_or(f64::INFINITY, |adaptive| adaptive.from);
+    let rows = (1..run.curve.rows.len())
+        .map(|row| (run.curve.number(row, "time_s"), run.curve.number(row, "strain_percent") * 1e-2));
+    // The row that has come furthest is the most exact one.
+    let (time, strain) = rows.take_while(|(_, strain)| strain.abs() < until).last()?;
+    (strain != 0.0).then(|| speed * time / strain)
+}
+
+fn pull(run: &Folder) -> Outcome {
+    let (Some(free), Some([low, high])) = (free_length(run), run.trajectory.info.gauge) else {
+        return Outcome::NotApplicable("no grip moves at a constant speed".into());
+    };
+    let gauge = f64::from(high - low) * 1e-3;
+    // Grips hold whole particles: the free length ends at the first and last free bond.
+    let spacing = run.spec.spacing * run.trajectory.info.wires.iter().map(|w| w.diameter).fold(0.0, f32::max) as f64;
+    let mut search = Search::new();
+    search.add((free - gauge).abs() * 1e3, || {
+        format!("{:.4} mm by time and strain, {:.4} mm between the grips", free * 1e3, gauge * 1e3)
+    });
+    search.end(2.0 * spacing, "mm", "")
+}
+
+fn force(run: &Folder) -> Outcome {
+    let area = run.area();
+    if !run.is_gripped() || area == 0.0 {
+        return Outcome::NotApplicable("no grips hold this body".into());
+    }
+    let mut search = Search::new();
+    for row in 0..run.curve.rows.len() {
+        let stress = run.curve.number(row, "stress_mpa");
+        let force = run.curve.number(row, "grip_force_upper_n");
+        search
+            .compare(stress, force / (area * 1e6), stress.abs(), || format!("curve.csv line {}, stress_mpa", row + 2));
+    }
+    search.end(1e-6, "-", "there are no rows")
+}

@@ -1,0 +1,91 @@
+//! `strandsnap check-run`: invariants between all files of a run, on every shipped scene after a break, on random scenes, and
+//! on files that were tampered with.
+
+#[path = "check_run/damaged.rs"]
+mod damaged;
+#[path = "check_run/random.rs"]
+mod random;
+#[path = "check_run/shipped.rs"]
+mod shipped;
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use strandsnap::run::{RunOptions, run};
+use strandsnap::scene::Scene;
+use strandsnap::study::check_run::{Finding, Outcome, check};
+
+/// A straight core and three wires around it, pulled until they break, in a second.
+pub const STRAND: &str = r#"
+about = "A small strand of four wires, pulled until wires break."
+seed = 3
+[bond]
+law = "elasto-plastic"
+damping = 0.02
+hardening = { form = "voce", yield_stress = "100 MPa", saturation = "180 MPa", rate = 12, linear = "550 MPa" }
+rupture = { criterion = "plastic-strain", strain = "3 %", weibull_modulus = 20 }
+[contact]
+normal = "thornton"
+tangential = "mindlin"
+friction = 0.2
+shape = "sphere"
+hardness_strain = "8 %"
+damping = 0.1
+[strand]
+length = "12 mm"
+wire_diameter = "0.39 mm"
+[[strand.layer]]
+name = "core"
+wires = 1
+pitch = "inf"
+[[strand.layer]]
+name = "outer"
+wires = 3
+pitch = "12 mm"
+[grip]
+length = "2 mm"
+speed = "8 m/s"
+[stop]
+strain = "6 %"
+[output]
+samples = 400
+snapshots = 30
+"#;
+
+/// A scene from text; `set` are `--set` options.
+pub fn scene(text: &str, set: &[&str]) -> Scene {
+    let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+    strandsnap::scene::parse(text, "test.toml", Path::new("."), &set).unwrap_or_else(|error| panic!("{error:?}"))
+}
+
+/// Runs a scene into `out`, with a recording where the program has them.
+pub fn run_into(scene: &Scene, out: &Path) {
+    let options = RunOptions {
+        out: out.into(),
+        overwrite: false,
+        threads: Some(1),
+        frames: false,
+        animation: None,
+        recording: cfg!(feature = "record"),
+        live: None,
+        quiet: true,
+    };
+    run(scene, &options, &AtomicBool::new(false)).unwrap_or_else(|error| panic!("{error:?}"));
+    strandsnap::page::write(out, None, None, false).unwrap_or_else(|error| panic!("{error:?}"));
+}
+
+/// What is wrong with a run, for people; empty when nothing is.
+pub fn wrong(out: &Path) -> Vec<String> {
+    let findings = check(out).unwrap_or_else(|error| panic!("{error:?}"));
+    let told = |finding: &Finding| match &finding.outcome {
+        Outcome::Failed(seen) => Some(format!("{}: {} ({:e})", finding.invariant.name, seen.place, seen.worst)),
+        _ => None,
+    };
+    findings.iter().filter_map(told).collect()
+}
+
+/// Names of the invariants that hold.
+pub fn passed(out: &Path) -> Vec<&'static str> {
+    let findings = check(out).unwrap_or_else(|error| panic!("{error:?}"));
+    let holds = |finding: &&Finding| matches!(finding.outcome, Outcome::Passed(_));
+    findings.iter().filter(holds).map(|finding| finding.invariant.name).collect()
+}
