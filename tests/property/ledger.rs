@@ -88,7 +88,7 @@ struct Case {
 /// Ways to drive the upper grip.
 const DRIVES: [&[&str]; 4] = [
     &["grip.speed=10 m/s"],
-    &["grip.speed=", "grip.displacement_amplitude=0.15 mm", "grip.frequency=8 kHz"],
+    &["grip.speed=", "grip.displacement_amplitude=0.15 mm", "grip.frequency=8 kHz", "stop.strain=", "stop.time=1 ms"],
     &["grip.speed=5 m/s", "grip.rotation_rate=2000 rad/s"],
     &["grip.speed=10 m/s", "grip.free_rotation=true"],
 ];
@@ -130,11 +130,13 @@ impl Case {
             ("contact.shape", self.shape.into()),
             ("contact.normal", self.normal.into()),
             ("contact.tangential", self.tangential.into()),
-            ("contact.friction", self.friction.to_string()),
             ("contact.damping", self.damping.to_string()),
             ("bond.rupture.weibull_modulus", self.modulus.to_string()),
         ];
         let mut set: Vec<String> = pairs.iter().map(|(key, value)| format!("{key}={value}")).collect();
+        if self.tangential != "none" {
+            set.push(format!("contact.friction={}", self.friction));
+        }
         let plastic = self.law == "elasto-plastic";
         match (self.normal, plastic) {
             ("hertz", _) => set.push("contact.hardness_strain=".into()),

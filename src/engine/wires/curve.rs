@@ -17,8 +17,10 @@ use glam::DVec3;
 
 /// Longest walk of a foot from bond to bond in one search.
 const HOPS: usize = 8;
-/// A foot is found when it moves by less than this share of a bond [-]; the distance is stationary there, so that it is
-/// then known to the square of this.
+/// Steps of Newton's method from the foot on the chord to that on the curve: chord and curve are within per cents, which
+/// two steps take to rounding.
+const STEPS: usize = 3;
+/// A foot that is cut off by an end lies further than this beyond it [-].
 const CLOSE: f64 = 1e-5;
 
 /// Which particles are joined to which.
@@ -249,6 +251,13 @@ impl Cubic {
         Self { coefficients }
     }
 
+    /// Where the foot of `p` on the chord lies [-].
+    #[inline(always)]
+    fn on_chord(&self, state: &State, slot: usize, p: DVec3) -> f64 {
+        let chord = state.x.get(slot + 1) - self.coefficients[0];
+        (p - self.coefficients[0]).dot(chord) / chord.length_squared()
+    }
+
     #[inline(always)]
     fn at(&self, t: f64) -> [DVec3; 3] {
         let [a, b, c, d] = self.coefficients;
@@ -394,19 +403,21 @@ impl Other<'_> {
         place.joined = true;
         let mut cubic = Cubic::new(self.state, place.j as usize);
         for _ in 0..HOPS {
-            let [point, along, bend] = cubic.at(place.t);
-            let (away, square) = (point - p, along.length_squared());
-            let fall = away.dot(along);
-            // Far from the foot the distance may be concave; then the straight line decides.
-            let rise = square + away.dot(bend).max(-0.5 * square);
-            let from = *place;
-            place.t -= fall / rise;
+            // From the foot on the chord and with a fixed number of steps, so that it depends on the positions alone.
+            place.t = cubic.on_chord(self.state, place.j as usize, p);
+            for _ in 0..STEPS {
+                let [point, along, bend] = cubic.at(place.t);
+                let (away, square) = (point - p, along.length_squared());
+                // Far from the foot the distance may be concave; then the straight line decides.
+                let rise = square + away.dot(bend).max(-0.5 * square);
+                place.t -= away.dot(along) / rise;
+            }
+            let from = place.j;
             self.settle(place);
-            if place.j != from.j {
-                cubic = Cubic::new(self.state, place.j as usize);
-            } else if (place.t - from.t).abs() < CLOSE {
+            if place.j == from {
                 break;
             }
+            cubic = Cubic::new(self.state, place.j as usize);
         }
         let [point, along, bend] = cubic.at(place.t);
         let slip = (p - point).dot(along) / along.length_squared();

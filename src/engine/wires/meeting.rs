@@ -20,6 +20,9 @@ const CROSSING: [f64; 2] = [0.002, 0.02];
 /// two cross.
 const STEEP: f64 = 1e-3;
 
+/// Bonds from the end of a piece of wire within which a place is at that end [-].
+const EDGE: f64 = 0.05;
+
 /// What contacts need to know.
 #[derive(Clone, Copy)]
 pub struct Meets<'a, N: NormalLaw, T: TangentialLaw> {
@@ -148,7 +151,8 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             to
         };
         let reached = u + deepest / bond;
-        let at_end = foot.at_end || reached <= ends[0] || reached >= ends[1];
+        let near_end = |[low, high]: [f64; 2]| low > -EDGE || high < EDGE;
+        let at_end = foot.at_end || near_end([ends[0] - reached, ends[1] - reached]) || near_end(other.left(&c.place));
         let stretch = Stretch {
             reduced_radius: c.history.reduced_radius,
             stiffness: 0.0,
