@@ -47,7 +47,7 @@ pub use stream::{STEP, STRAIN, TIME};
 
 use crate::base::error::{Error, Result};
 use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
-use crate::observe::Observer;
+use crate::observe::{Observer, Peaks};
 use crate::scene::spec::Spec;
 use crate::scene::write::to_toml;
 use rerun::RecordingStreamBuilder;
