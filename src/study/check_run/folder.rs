@@ -174,7 +174,7 @@ impl Folder {
         let bonds = wire.first..(wire.first + wire.len).saturating_sub(1);
         // Positions are in single precision here: bonds on the edge, and those as near as the nearest, are taken in, so that
         // all of them must be broken.
-        let least = bonds.clone().map(|slot| off(slot)).fold(f32::INFINITY, f32::min);
+        let least = bonds.clone().map(off).fold(f32::INFINITY, f32::min);
         let within = (0.025 * (high - low)).max(least) + 1e-4 * (high - low);
         bonds.filter(|slot| off(*slot) <= within).collect()
     }
