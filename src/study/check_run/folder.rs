@@ -170,11 +170,13 @@ impl Folder {
         let wire = &info.wires[w];
         let Some([low, high]) = info.gauge.filter(|[low, high]| high > low) else { return Vec::new() };
         let z = |slot: usize| 0.5 * (info.rest_position[slot][2] + info.rest_position[slot + 1][2]);
-        let off = |slot: &usize| (z(*slot) - 0.5 * (low + high)).abs();
+        let off = |slot: usize| (z(slot) - 0.5 * (low + high)).abs();
         let bonds = wire.first..(wire.first + wire.len).saturating_sub(1);
-        // Positions are in single precision here: bonds on the edge are taken in, so that all of them must be broken.
-        let near: Vec<usize> = bonds.clone().filter(|slot| off(slot) <= 0.0251 * (high - low)).collect();
-        if near.is_empty() { bonds.min_by(|a, b| off(a).total_cmp(&off(b))).into_iter().collect() } else { near }
+        // Positions are in single precision here: bonds on the edge, and those as near as the nearest, are taken in, so that
+        // all of them must be broken.
+        let least = bonds.clone().map(off).fold(f32::INFINITY, f32::min);
+        let within = (0.025 * (high - low)).max(least) + 1e-4 * (high - low);
+        bonds.filter(|slot| off(*slot) <= within).collect()
     }
 }
 
