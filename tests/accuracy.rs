@@ -144,7 +144,7 @@ fn what_cannot_be_studied_is_refused_and_nothing_is_written() {
         assert!(text(&output.stderr).contains(words), "{args:?}: {}", text(&output.stderr));
     }
     let list = printed(&strandsnap(folder.path(), &["accuracy", "ka4", "--list"]));
-    assert!(list.contains("time.safety") && list.contains("capsule, spacing 2"), "{list}");
+    assert!(list.contains("time.safety") && list.contains("wire, spacing 2"), "{list}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 

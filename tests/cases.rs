@@ -172,10 +172,10 @@ fn a_stop_that_no_drive_reaches_is_refused_or_told() {
 #[test]
 fn bodies_that_press_from_the_start_are_told_with_what_helps() {
     let pressed = |scene: &Scene| told(scene).into_iter().find(|one| one.contains("press on each other"));
-    // Chords of bent wires: smaller ones help.
+    // Bent wires with few particles: more of them help.
     let said = pressed(&load_case("rope-by-centre-points", &[])).expect("the rope begins under load");
-    assert!(said.contains("contacts hold 2.48e-2 J") && !said.contains("lay_radius"), "{said}");
-    let (_, advice) = said.split_once("chords of curved wires: spacing = ").unwrap_or_else(|| panic!("{said}"));
+    assert!(said.contains("contacts hold 1.51e-2 J") && !said.contains("lay_radius"), "{said}");
+    let (_, advice) = said.split_once("to follow curved wires: spacing = ").unwrap_or_else(|| panic!("{said}"));
     let spacing = advice.split_once(' ').unwrap().0;
     assert_eq!(pressed(&load_case("rope-by-centre-points", &[&format!("spacing={spacing}")])), None);
     // Centre lines that are too close for the diameter: a thinner wire helps.

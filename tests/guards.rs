@@ -174,7 +174,7 @@ fn trouble_is_the_last_notice() {
 
 #[test]
 fn a_pull_that_is_too_fast_is_said() {
-    let (ended, notices) = heard(BAR, &["grip.speed=120 m/s", "stop.strain=10 %"]);
+    let (ended, notices) = heard(BAR, &["grip.speed=120 m/s", "stop.strain=60 %"]);
     ended.unwrap();
     assert!(notices.iter().any(|n| n.text.contains("time.kinetic_limit")), "{notices:?}");
     let (ended, notices) = heard(BAR, &["grip.speed=3 m/s", "stop.strain=10 %"]);

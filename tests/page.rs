@@ -126,8 +126,8 @@ fn its_numbers_are_those_of_the_summary() {
     let number = |key: &str| summary[key].as_f64().unwrap_or_else(|| panic!("{key}"));
     let first = &summary["first_rupture"];
     let told = [
-        format!("{:.2} MPa", number("tensile_strength_mpa")),
-        format!("{:.2} %", number("fracture_elongation_percent")),
+        format!("{:.2} MPa", number("greatest_stress_mpa")),
+        format!("{:.2} %", number("strain_at_greatest_stress_percent")),
         format!("{:.2} MPa", number("residual_stress_mpa")),
         format!("Wire {}, {} layer,", first["wire"], first["layer"].as_str().unwrap()),
         format!("{:.1} mm</strong> before loading", first["rest_z_mm"].as_f64().unwrap()),

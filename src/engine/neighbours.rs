@@ -14,6 +14,8 @@ use rayon::prelude::*;
 /// The search follows bonds up to this multiple of the longest stress-free length [-]: one bond that necks without end
 /// must not make every particle a neighbour of every other.
 pub const MOST_STRETCH: f64 = 3.0;
+/// Bonds from a particle to the furthest one that moves its stretch of smooth wire.
+const EDGE: usize = 3;
 const SQRT_HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Candidate pairs (i < j), sorted.
@@ -144,7 +146,7 @@ impl Neighbours {
         self.safe_until = 0.0;
         self.rebuilds += 1;
         self.longest = longest_bond(state);
-        self.margin = self.needed_margin();
+        self.margin = self.needed_margin(state);
         self.cells.fill(state, 2.0 * self.largest + self.margin + self.skin);
         let chunks = state.len().div_ceil(CHUNK);
         self.found.resize_with(chunks, Vec::new);
@@ -194,15 +196,20 @@ impl Neighbours {
     /// Extra reach for what touches between particle centres, until the next search [m].
     ///
     /// Smooth wires that cross may meet half a bond from the nearest particle of either: √(D² + l²/2) − D at touching
-    /// distance D, most for the thinnest pair. Spheres need none of that, but two bonds that cross in the middle have
+    /// distance D, most for the thinnest pair; of broken ones the last half bonds may lie side by side beyond the last
+    /// particles, a whole bond apart. Spheres need none of that, but two bonds that cross in the middle have
     /// their ends √½ l apart, and must be seen to cross ([`super::crossing`]).
-    fn needed_margin(&self) -> f64 {
+    fn needed_margin(&self, state: &State) -> f64 {
         // Until it is time for the next search the affine strain grows by less than skin over reach, and particles move
         // by less than the skin beside it.
         let reach = 2.0 * self.least;
         let grown = self.longest * (1.0 + self.skin / (reach + self.skin)) + self.skin;
         match self.shape {
-            Shape::Wire => reach.hypot(SQRT_HALF * grown.min(MOST_STRETCH * self.rest)) - reach,
+            Shape::Wire => {
+                let broken = state.parted.iter().any(|length| *length > 0.0);
+                let aside = if broken { 1.0 } else { SQRT_HALF };
+                reach.hypot(aside * grown.min(MOST_STRETCH * self.rest)) - reach
+            }
             Shape::Sphere => (SQRT_HALF * self.longest.min(MOST_STRETCH * self.rest) - reach).max(0.0),
         }
     }
@@ -262,10 +269,12 @@ fn longest_bond(state: &State) -> f64 {
     bonds.map(|slot| (state.x.get(slot + 1) - state.x.get(slot)).length_squared()).fold(0.0, f64::max).sqrt()
 }
 
-/// Whether a particle is bonded to one that is not in the same hold.
+/// Whether a particle is within [`EDGE`] bonds of one that is not in the same hold.
 fn on_edge(state: &State, p: usize) -> bool {
-    let leaves = |slot: usize| state.whole[slot] && state.hold[slot] != state.hold[slot + 1];
-    leaves(p) || p > 0 && leaves(p - 1)
+    let leaves = |q: usize| state.hold[q] != state.hold[p];
+    let after = (p..state.len()).take(EDGE).take_while(|slot| state.whole[*slot]).any(|slot| leaves(slot + 1));
+    let before = (0..p).rev().take(EDGE).take_while(|slot| state.whole[*slot]).any(leaves);
+    after || before
 }
 
 /// Number of broken slots before each particle; two particles of a wire are in one piece when theirs agree.

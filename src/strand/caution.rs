@@ -99,7 +99,7 @@ pub fn remedy(spec: &Spec, assembly: &Assembly) -> String {
     if left.is_some_and(|left| left < 0.5 * worst.share) {
         let left = 100.0 * left.unwrap_or(0.0);
         return format!(
-            "{place}, because bonds are chords of curved wires: spacing = {} leaves {left:.1} %",
+            "{place}, because particles are too far apart to follow curved wires: spacing = {} leaves {left:.1} %",
             short(finer.spacing)
         );
     }

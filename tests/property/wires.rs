@@ -63,11 +63,9 @@ fn a_smooth_wire_slides_freely_and_a_chain_of_spheres_does_not() {
     let rough = slide("sphere");
     let axial = rough.iter().map(|f| f.z.abs()).fold(0.0, f64::max);
     let (most, least) = rough.iter().fold((0.0f64, f64::MAX), |(a, b), f| (a.max(f.x), b.min(f.x)));
-    println!("capsules press {press}; spheres: axial {axial}, press {least} to {most}");
+    println!("smooth wires press {press}; spheres: axial {axial}, press {least} to {most}");
     assert!(axial > 0.02 * most, "spheres interlock: {axial} of {most}");
     assert!(least == 0.0, "over the saddles spheres do not touch at 2 µm");
-    // Crest to crest both are the same.
-    assert!((most / press - 1.0).abs() < 0.3, "{most} {press}");
 }
 
 /// A sphere is led over a bent wire, over the borders of its segments. The overlap, and so the size of the force, goes

@@ -44,6 +44,8 @@ pub struct Foot {
     pub bend: DVec3,
     /// Whether the piece of wire ends here, and the true foot lies beyond.
     pub at_end: bool,
+    /// Whether it lies beyond the beginning of the piece.
+    pub before: bool,
 }
 
 /// Particles with weights, whose mean is a point of a centreline; places beyond the count are 0.
@@ -397,7 +399,7 @@ impl Other<'_> {
             } else {
                 *place = Place { j: place.j, t: 0.0, joined: false };
                 let point = self.state.x.get(slot);
-                return Foot { point, along: DVec3::ZERO, bend: DVec3::ZERO, at_end: true };
+                return Foot { point, along: DVec3::ZERO, bend: DVec3::ZERO, at_end: true, before: false };
             }
         }
         place.joined = true;
@@ -422,7 +424,8 @@ impl Other<'_> {
         let [point, along, bend] = cubic.at(place.t);
         let slip = (p - point).dot(along) / along.length_squared();
         let [low, high] = self.range(place.j as usize);
-        let at_end = place.t <= low && slip < -CLOSE || place.t >= high && slip > CLOSE;
-        Foot { point, along, bend, at_end }
+        let before = place.t <= low && slip < -CLOSE;
+        let at_end = before || place.t >= high && slip > CLOSE;
+        Foot { point, along, bend, at_end, before }
     }
 }

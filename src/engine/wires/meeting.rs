@@ -77,6 +77,15 @@ struct Lie {
     at_end: bool,
 }
 
+/// Whether going forward along the stretch leads over the other wire, for a stretch with the tangent `along` [m] that
+/// runs beside the other wire's end and whose foot lies beyond it; `None` for any other.
+#[inline(always)]
+fn along_the_end(foot: &Foot, along: DVec3) -> Option<bool> {
+    let cosine = along.dot(foot.along);
+    let beside = cosine * cosine > 0.25 * along.length_squared() * foot.along.length_squared();
+    (foot.at_end && beside).then_some((cosine > 0.0) == foot.before)
+}
+
 /// Where the force acts, and the unit normal from the first body to the second.
 struct Line {
     normal: DVec3,
@@ -115,10 +124,25 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         let (mut u, mut at) = (0.0, around.at(0.0));
         let mut foot = other.foot(at[0], &mut c.place);
         let mut gap = Gap::new(at, &foot);
-        let crossing = gap.second / at[1].length_squared();
-        let t = ((crossing - CROSSING[0]) / (CROSSING[1] - CROSSING[0])).clamp(0.0, 1.0);
-        if t > 0.0 {
-            u = (-t * t * (3.0 - 2.0 * t) * gap.first / gap.second).clamp(ends[0], ends[1]);
+        let moved = match along_the_end(&foot, at[1]) {
+            // Side by side beyond the end of the other wire: only what lies before the end counts.
+            Some(forward) => {
+                let end = -gap.first / gap.second;
+                let last = if forward { ends[1] } else { ends[0] };
+                if (last > end) != forward {
+                    return None;
+                }
+                Some(0.5 * (end.clamp(ends[0], ends[1]) + last))
+            }
+            None => {
+                let crossing = gap.second / at[1].length_squared();
+                let t = ((crossing - CROSSING[0]) / (CROSSING[1] - CROSSING[0])).clamp(0.0, 1.0);
+                let towards = || (-t * t * (3.0 - 2.0 * t) * gap.first / gap.second).clamp(ends[0], ends[1]);
+                (t > 0.0).then(towards)
+            }
+        };
+        if let Some(to) = moved {
+            u = to;
             at = around.at(u);
             if c.place.joined {
                 c.place.t += u * gap.rate;

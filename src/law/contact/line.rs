@@ -267,6 +267,7 @@ mod tests {
     use crate::law::contact::hertz::Hertz;
     use crate::law::contact::thornton::Thornton;
     use proptest::prelude::*;
+    use std::sync::LazyLock;
 
     const MODULUS: f64 = 65e9;
     /// Of two wires of 0.4 mm.
@@ -276,10 +277,12 @@ mod tests {
         assert!((value - expected).abs() <= tolerance * expected.abs(), "{value} is not {expected}");
     }
 
+    static TABLE: LazyLock<LineStiffness> = LazyLock::new(LineStiffness::default);
+
     /// A patch of wires that cross at `angle` [rad], wholly within the stretch.
     fn crossing(angle: f64, overlap: f64) -> Stretch {
         let curvature = angle.sin().powi(2) / (4.0 * RADIUS);
-        let stiffness = MODULUS * LineStiffness::default().at(RADIUS, curvature);
+        let stiffness = MODULUS * TABLE.at(RADIUS, curvature);
         Stretch { reduced_radius: RADIUS, stiffness, overlap, slope: 0.0, curvature, ends: [-1.0, 1.0] }
     }
 
@@ -287,7 +290,7 @@ mod tests {
     /// the table of E and K in Abramowitz & Stegun, 17.
     #[test]
     fn stiffness_is_that_of_hertz_ellipses_and_of_the_line() {
-        let table = LineStiffness::default();
+        let table = &TABLE;
         for (degrees, f2) in [(90.0f64, 1.0f64), (60.0, 0.98364), (30.0, 0.91509), (10.0, 0.76718), (2.0, 0.54871)] {
             let sine = degrees.to_radians().sin();
             near(table.at(RADIUS, sine * sine / (4.0 * RADIUS)), 0.5 * sine.sqrt() * f2.powf(-1.5), 1e-3);

@@ -297,7 +297,7 @@ fn shape(spec: &Spec) -> Ladders {
         Shape::Sphere => ("sphere", word("contact.shape", "wire", 1.0)),
         Shape::Wire => ("wire", with_spacing("sphere", 1.0)),
     };
-    // Coarse capsules in a scene of capsules belong to its spacing.
+    // Coarse smooth wires in a scene of smooth wires belong to its spacing.
     let levels = match contact.shape {
         Shape::Sphere => std::iter::once(other).chain(coarse).collect(),
         Shape::Wire => vec![other],

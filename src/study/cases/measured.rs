@@ -42,13 +42,13 @@ impl Curve {
     }
 
     /// Takes a row; one at a strain that was passed before (a strand that springs back) is left out.
-    fn push(&mut self, sample: &Sample) {
+    fn push(&mut self, sample: &Sample, plastic_work: f64) {
         if self.strain.last().is_some_and(|last| sample.strain <= *last) {
             return;
         }
         self.strain.push(sample.strain);
         self.stress_mpa.push(mpa(sample.stress));
-        self.plastic_work_j.push(plastic_work(sample));
+        self.plastic_work_j.push(plastic_work);
         self.layer_stress_mpa.resize_with(sample.layer_stress.len(), Vec::new);
         for (history, stress) in self.layer_stress_mpa.iter_mut().zip(&sample.layer_stress) {
             history.push(mpa(*stress));
@@ -129,6 +129,10 @@ impl Measured {
     }
 }
 
+/// Strain and stress of a row are means over the last eighth of a wave's passage; the middle of it lies this share of a
+/// passage before the row [-].
+const STRAIN_LAG: f64 = 1.0 / 16.0;
+
 /// Keeps the histories of a run.
 #[derive(Debug, Default)]
 pub struct Watcher {
@@ -136,6 +140,10 @@ pub struct Watcher {
     layers: Vec<String>,
     layer_wires: Vec<usize>,
     gauge_mm: Option<[f64; 2]>,
+    /// By how much the strain of a row is older than its energies [s].
+    lag: f64,
+    /// Time [s] and plastic work [J] of the row before.
+    before: Option<[f64; 2]>,
 }
 
 impl Observer for Watcher {
@@ -143,12 +151,18 @@ impl Observer for Watcher {
         let mut layer_wires = vec![0; info.layers.len()];
         info.wires.iter().for_each(|wire| layer_wires[wire.layer] += 1);
         let gauge_mm = info.gauge.map(|ends| ends.map(f64::from));
-        *self = Self { layers: info.layers.clone(), layer_wires, gauge_mm, ..Self::default() };
+        let lag = STRAIN_LAG * info.wave_passage;
+        *self = Self { layers: info.layers.clone(), layer_wires, gauge_mm, lag, ..Self::default() };
         Ok(())
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
-        self.curve.push(sample);
+        // Energies are those of the instant; between two rows plastic work grows evenly.
+        let work = plastic_work(sample);
+        let rate =
+            self.before.map_or(0.0, |[time, before]| (work - before) / (sample.time - time).max(f64::MIN_POSITIVE));
+        self.before = Some([sample.time, work]);
+        self.curve.push(sample, (work - rate * self.lag).max(0.0));
         Ok(())
     }
 
@@ -173,7 +187,7 @@ mod tests {
     fn a_strand_that_springs_back_keeps_its_history_rising() {
         let mut curve = Curve::default();
         for strain in [0.0, 0.1, 0.09, 0.2] {
-            curve.push(&Sample { strain, layer_stress: vec![1e6], ..Sample::default() });
+            curve.push(&Sample { strain, layer_stress: vec![1e6], ..Sample::default() }, 0.0);
         }
         assert_eq!(curve.strain, [0.0, 0.1, 0.2]);
         assert_eq!(curve.layer_stress_mpa, [[1.0, 1.0, 1.0]]);

@@ -73,15 +73,14 @@ struct Accuracy {
     started: f64,
 }
 
-/// Capsules: chords cut curved wires short, so that wires overlap from the start, and contacts give way; by how much was
-/// measured with this program.
+/// Smooth wires with particles one diameter apart.
 const SHAPE: Accuracy = Accuracy {
-    shape: "capsule",
-    spacing: 0.5,
-    force: [-0.03, 0.005],
-    torque: [-0.04, 0.03],
-    plastic: [-0.035, 0.01],
-    started: 0.04,
+    shape: "wire",
+    spacing: 1.0,
+    force: [-0.01, 0.01],
+    torque: [-0.02, 0.02],
+    plastic: [-0.01, 0.01],
+    started: 1e-6,
 };
 
 /// A strand of a core and six helical wires.

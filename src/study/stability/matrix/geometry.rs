@@ -75,9 +75,7 @@ fn numbers() -> Vec<Case> {
     vec![
         Case::new("wires-1", "one wire", WIRE).gives(pulled_wire),
         Case::new("wires-2", "two wires around each other", SEVEN).set([two]).gives(pulled_strand),
-        Case::new("wires-7", "one and six wires with capsule contacts", SEVEN)
-            .set(["contact.shape=wire"])
-            .gives(pulled_strand),
+        Case::new("wires-7", "one and six smooth wires", SEVEN).set(["contact.shape=wire"]).gives(pulled_strand),
         Case::new("wires-34", "the KA4 strand, 12 mm long", ka4).set(short).gives(pulled_strand),
         Case::new("wires-200", "200 wires in nine layers", SEVEN).set([many]).gives(pulled_layers),
     ]

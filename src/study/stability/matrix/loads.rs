@@ -99,7 +99,7 @@ fn compression() -> Vec<Case> {
             .gives(buckled),
         Case::new("compressed-strand", "seven wires compressed by 20 %: they bulge, buckle and knot", SEVEN)
             .set(["grip.speed=-2 m/s", "stop.strain=20 %"]),
-        Case::new("compressed-capsules", "the same with capsule contacts", SEVEN).set([
+        Case::new("compressed-wires", "the same with smooth wires", SEVEN).set([
             "grip.speed=-2 m/s",
             "stop.strain=20 %",
             "contact.shape=wire",
