@@ -383,7 +383,7 @@ mod tests {
         }
         assert_eq!((before, state), (0.0, 4e-6));
         near(work, plastic, 1e-2);
-        let dent = respond(&crossing(0.2, 3.5e-6), 4e8, &mut state.clone());
+        let dent = respond(&crossing(0.2, 3.4e-6), 4e8, &mut state.clone());
         assert_eq!(dent.force, 0.0, "what has sprung back no longer touches");
     }
 
