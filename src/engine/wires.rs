@@ -1,4 +1,4 @@
-//! Contact stage for smooth wires: centrelines run smoothly through the particles ([`curve`]), and force acts per length
+//! Contact stage for smooth wires: centrelines run smoothly through the particles (`curve`), and force acts per length
 //! ([`crate::law::contact::line`]).
 //!
 //! Of two wires one is followed particle by particle, the one with the finer spacing, or else the later one. Each of its

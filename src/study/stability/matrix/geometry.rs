@@ -12,7 +12,9 @@ pub fn cases() -> Vec<Case> {
 fn spacing() -> Vec<Case> {
     let mut cases = Vec::new();
     for shape in ["sphere", "wire"] {
-        for value in [0.25, 0.5, 2.0, 4.0] {
+        // Smooth wires do not follow a pitch of 45 mm with particles 4 diameters apart: they lie in each other.
+        let widest = if shape == "wire" { 2.0 } else { 4.0 };
+        for value in [0.25, 0.5, 2.0, 4.0].into_iter().filter(|value| *value <= widest) {
             let case = Case::new(
                 format!("spacing-{value}d-{shape}"),
                 format!("particles {value} diameters apart, contact shape {shape}"),
@@ -112,7 +114,7 @@ fn overlap() -> Vec<Case> {
         Case::new("overlap-strand-hertz", "the same with elastic contacts, which throw the wires apart", SEVEN)
             .set(near_core("0.36 mm"))
             .set(["contact.normal=hertz", "contact.hardness_strain="])
-            .warns(&["quasi-static"]),
+            .warns(&["of the radius deep"]),
         Case::new("overlap-strand-20%", "wires that overlap their core by 20 % of their diameter", SEVEN)
             .set(near_core("0.31 mm"))
             .told(&["overlap"]),
