@@ -16,32 +16,41 @@
 //! The two ends of a broken bond face each other: they meet again at the distance that the bond had without stress when it
 //! broke.
 
+mod batch;
+mod beside;
 mod curve;
 mod meeting;
+mod spread;
 
 use super::bytes::{Bytes, NUMBER, VECTOR, behind};
 use super::contacts::{Contacts, closing};
 use super::neighbours::{PairList, apart};
-use super::pair::{History, Laws, PairForce, foreseen_stiffness, leave};
+use super::pair::{History, Laws, foreseen_stiffness, leave};
 use super::spheres::SecondSides;
 use super::state::{CHUNK, Deepest, Partial, State};
 use super::time_step::Stiffness;
-use crate::base::triple::Triple;
 use crate::law::contact::NormalLaw;
-use crate::law::contact::constants::reduced_radius;
-use crate::law::contact::line::{LineStiffness, patch_length};
+use crate::law::contact::constants::{reduced_mass, reduced_radius};
+use crate::law::contact::line::{CELLS, LineStiffness, patch_length};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 use crate::strand::assembly::Assembly;
-use curve::{Chains, Place, Weights};
-use glam::DVec3;
-use meeting::Meets;
+use batch::{Answers, Batch, Gaps};
+use beside::Answer;
+use curve::{Around, Chains, Place};
+use meeting::{Meets, Sides};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use spread::{FarSum, NearSum, Spread};
 
 /// Movement of particles moves points of a centreline by up to this [-]: the weights of a cubic, or of a quartic near an
 /// end of the wire.
 const SPREAD: f64 = 2.2;
+
+/// Cells of a stretch beside another wire must be this much shorter than the patch in which wires touch that cross: the
+/// sine of the angle times the length of a stretch, over the sum of the radii [-]. Below, a patch 1 % of the radius deep
+/// has some ten cells.
+const RESOLVED: f64 = 0.25;
 
 /// What meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,17 +63,57 @@ enum Kind {
     Ends,
 }
 
-/// Particle `i` against another body near `place` of it.
+/// How a stretch meets a wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mode {
+    /// Side by side: cells along the stretch.
+    Line,
+    /// Across: a patch around the narrowest place, which the cells would not resolve.
+    Point,
+}
+
+/// What came out for a stretch beside another wire.
+enum Touch {
+    /// Nothing touches, at a gap of `gap` [m]; the foot is at `t`.
+    Apart { t: f64, gap: f64 },
+    /// They touch, or did at the last step.
+    Here {
+        answer: Answer<f64>,
+        t: f64,
+        /// Sum of the radii [m].
+        touching: f64,
+        per_length: f64,
+        /// Of the gap [1/m].
+        curvature: f64,
+    },
+}
+
+/// Particle `i` against another body near `place` of it. What a contact that is apart needs comes first, so that it takes
+/// one line of the cache: most candidates are apart.
 #[derive(Clone, Copy)]
+#[repr(C)]
 struct Contact<N: NormalLaw, T: TangentialLaw> {
+    /// Nothing can touch until [`State::travel`] has reached this [m].
+    quiet_until: f64,
+    place: Place,
     i: u32,
     kind: Kind,
-    /// Taken over by the next list.
-    taken: bool,
+    mode: Mode,
+    /// Whether an end of either wire is near.
+    edge: bool,
     /// Two pieces of one wire, one of which has not yet passed the end of the other.
     end_to_end: bool,
-    place: Place,
+    /// Taken over by the next list.
+    taken: bool,
     history: History<N, T>,
+    /// Greatest overlap of each cell so far [m]; across, of the patch in the first.
+    dents: [f64; CELLS],
+    /// Length of a cell along the undeformed wire [m].
+    cell_length: f64,
+    /// Stiffness per length [Pa], of the angle at which they came to touch: what is stored changes by work alone.
+    per_length: f64,
+    /// 2ξ√m* [√kg].
+    viscosity: f64,
     /// Overlap at the last step, at its deepest [m].
     overlap: f64,
     /// Sum of the radii at the last step, less the overlap that does not count [m].
@@ -74,16 +123,10 @@ struct Contact<N: NormalLaw, T: TangentialLaw> {
     curvature: f64,
     /// Elastic energy of the normal force [J].
     energy: f64,
-    /// Nothing can touch until [`State::travel`] has reached this [m].
-    quiet_until: f64,
-    action: PairForce,
-    /// n × friction [N].
-    twist: Triple,
+    /// Where the force acts, in bonds from the particle [-].
+    u: f64,
     /// Lever arms of the two sides [m].
     arm: [f64; 2],
-    /// Where the force acts on the two sides.
-    near: Weights<5>,
-    far: Weights<4>,
 }
 
 /// Contacts between smooth wires with normal law `N` and tangential law `T`.
@@ -95,6 +138,12 @@ pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
     spacing: Vec<f64>,
     contacts: Vec<Contact<N, T>>,
     old: Vec<Contact<N, T>>,
+    /// Per chunk of particles the first of its contacts, and their number at the end.
+    starts: Vec<usize>,
+    /// That of each contact.
+    quiet_until: Vec<f64>,
+    spread: Spread,
+    acting: Vec<Vec<FarSum>>,
     partial: Vec<Partial>,
     /// The deepest contact so far.
     deepest: Deepest,
@@ -105,24 +154,137 @@ pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
     arch: Arch,
 }
 
-/// The contacts of one chunk. They are taken one by one, but with the instructions of the machine: the laws round as
-/// these do, and without them a library function has to ([`Real::mul_add`](crate::base::lanes::Real::mul_add)).
+/// The contacts of one chunk of particles.
 struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     meets: Meets<'a, N, T>,
-    deepest: Deepest,
+    arch: Arch,
+    /// The first particle.
+    first: usize,
     contacts: &'a mut [Contact<N, T>],
+    /// That of each contact, in a row: most are not looked at.
+    quiet_until: &'a mut [f64],
+    near: &'a mut [NearSum],
+    sum: Partial,
+    /// What contacts do to the other wires' bonds.
+    acting: &'a mut Vec<FarSum>,
+    answers: Answers,
 }
 
-impl<N: NormalLaw, T: TangentialLaw> WithSimd for Chunk<'_, N, T> {
+/// One contact by itself, with the instructions of the machine: the laws round as these do, and without them a library
+/// function has to ([`Real::mul_add`](crate::base::lanes::Real::mul_add)).
+struct Alone<'a, 'b, N: NormalLaw, T: TangentialLaw> {
+    meets: &'b Meets<'a, N, T>,
+    contact: &'b mut Contact<N, T>,
+    act: &'b mut Sides,
+    deepest: &'b mut Deepest,
+}
+
+impl<N: NormalLaw, T: TangentialLaw> WithSimd for Alone<'_, '_, N, T> {
     type Output = Partial;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Partial {
-        let (mut sum, mut deepest) = (Partial::default(), self.deepest);
-        for c in self.contacts.iter_mut().filter(|c| c.quiet_until <= self.meets.state.travel) {
-            sum.add(&self.meets.contact(c, &mut deepest));
+        self.meets.contact(self.contact, self.act, self.deepest)
+    }
+}
+
+impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
+    /// The energies of the step.
+    fn compute(mut self) -> Partial {
+        self.acting.clear();
+        self.near.fill(NearSum::default());
+        let (mut gaps, mut batch) = (Gaps::default(), Batch::default());
+        for k in 0..self.contacts.len() {
+            if self.quiet_until[k] > self.meets.state.travel {
+                continue;
+            }
+            let c = &self.contacts[k];
+            if c.mode == Mode::Point || c.edge {
+                self.alone(k);
+            } else if c.history.touching() {
+                self.take(k, &mut batch);
+            } else {
+                gaps.take(k, c, self.meets.state);
+                if gaps.full() {
+                    self.part(&gaps, &mut batch);
+                    gaps.clear();
+                }
+            }
         }
-        Partial { deepest, ..sum }
+        self.part(&gaps, &mut batch);
+        self.run(&batch);
+        self.sum
+    }
+
+    /// Adds up what contact `k` does, with the energies that it gives off.
+    fn book(&mut self, k: usize, act: &Sides, partial: Partial) {
+        self.sum.add(&partial);
+        let c = &self.contacts[k];
+        self.quiet_until[k] = c.quiet_until;
+        if act.near.acts {
+            let sum = &mut self.near[c.i as usize - self.first];
+            sum.acts = true;
+            sum.force.iter_mut().zip(act.near.force).for_each(|(sum, f)| *sum += f);
+            sum.moment += act.near.moment;
+            self.acting.push(act.far);
+        }
+    }
+
+    /// A contact that is taken by itself.
+    #[inline(never)]
+    fn alone(&mut self, k: usize) {
+        let (mut act, mut deepest) = (Sides::default(), self.sum.deepest);
+        let contact = &mut self.contacts[k];
+        let alone = Alone { meets: &self.meets, contact, act: &mut act, deepest: &mut deepest };
+        let partial = self.arch.dispatch(alone);
+        self.book(k, &act, Partial { deepest, ..partial });
+    }
+
+    /// Puts a contact into the batch, which is run when it is full.
+    fn take(&mut self, k: usize, batch: &mut Batch) {
+        batch.take(k, &self.contacts[k], &self.meets);
+        if batch.full() {
+            self.run(batch);
+            batch.clear();
+        }
+    }
+
+    /// Looks whether contacts that were apart still are.
+    #[inline(never)]
+    fn part(&mut self, gaps: &Gaps, batch: &mut Batch) {
+        let found = self.arch.dispatch(gaps.find());
+        for (lane, k) in gaps.contacts().iter().enumerate() {
+            let [t, gap] = [found[0][lane], found[1][lane]];
+            if !(0.0..=1.0).contains(&t) {
+                // On to the next bond.
+                self.alone(*k);
+            } else if gap < 0.0 {
+                self.take(*k, batch);
+            } else {
+                let c = &mut self.contacts[*k];
+                c.place.t = t;
+                self.meets.apart(c, gap);
+                self.quiet_until[*k] = c.quiet_until;
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn run(&mut self, batch: &Batch) {
+        self.arch.dispatch(batch.answer(&self.meets, &mut self.answers));
+        for (lane, k) in batch.contacts().iter().enumerate() {
+            let t = self.answers.place(lane);
+            if !(0.0..=1.0).contains(&t) {
+                // On to the next bond.
+                self.alone(*k);
+                continue;
+            }
+            let (mut act, mut deepest) = (Sides::default(), self.sum.deepest);
+            let c = &mut self.contacts[*k];
+            let touch = self.answers.at(lane, c);
+            let partial = self.meets.finish(c, &touch, 0.0, &mut act, &mut deepest);
+            self.book(*k, &act, Partial { deepest, ..partial });
+        }
     }
 }
 
@@ -136,6 +298,10 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             spacing: assembly.wires.iter().map(|w| assembly.rest_length[w.first]).collect(),
             contacts: Vec::new(),
             old: Vec::new(),
+            starts: Vec::new(),
+            quiet_until: Vec::new(),
+            spread: Spread::default(),
+            acting: Vec::new(),
             partial: Vec::new(),
             deepest: Deepest::default(),
             directed: Vec::new(),
@@ -174,30 +340,50 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             radius = (radius * a).sqrt();
         }
         let end_to_end = kind == Kind::Stretch && self.end_to_end(i, j, state);
+        let rest = self.spacing.get(self.chains.wire_of[i as usize] as usize).copied().unwrap_or(0.0);
+        let [low, high] = self.chains.reach(i as usize);
         let mut contact = Contact {
+            quiet_until: 0.0,
             i,
             kind,
             taken: false,
             end_to_end,
+            mode: Mode::Point,
+            edge: false,
             place: Place { j, t: 0.0, joined: false },
             history: History::new(radius),
+            dents: [0.0; CELLS],
+            cell_length: (high - low) / CELLS as f64 * rest,
+            per_length: 0.0,
+            viscosity: 0.0,
             overlap: 0.0,
             reach: 0.0,
             length: 0.0,
             curvature: 0.0,
             energy: 0.0,
-            quiet_until: 0.0,
-            action: PairForce::default(),
-            twist: Triple::default(),
+            u: 0.0,
             arm: [0.0; 2],
-            near: Weights::default(),
-            far: Weights::default(),
         };
+        self.place(&mut contact, state);
         // During a run a new pair was beyond reach until now, or a bond has just broken.
         if state.step > 0 && kind != Kind::Ends && !end_to_end {
             contact.history.offset = self.meets(state).overlap(&mut contact).max(0.0);
         }
         contact
+    }
+
+    /// What a new list means for a contact, its mode while it has never touched.
+    fn place(&self, c: &mut Contact<N, T>, state: &State) {
+        let meets = self.meets(state);
+        if c.kind == Kind::Stretch {
+            let crossing = meets.crosses(c, RESOLVED);
+            if c.history.normal_force == 0.0 && c.dents == [0.0; CELLS] {
+                c.mode = if crossing { Mode::Point } else { Mode::Line };
+            }
+        }
+        c.edge = c.kind != Kind::Stretch || c.end_to_end || !c.place.joined || self.chains.near_end(c.i, c.place.j, state);
+        let mass = reduced_mass(state.mass[c.i as usize], c.place.between(&state.mass));
+        c.viscosity = viscous_coefficient(self.laws.damping, mass, 1.0);
     }
 
     /// Whether two particles of one wire are near to a break between them.
@@ -242,30 +428,6 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         out.sort_unstable();
         out
     }
-
-    /// Adds every contact to the particles that it acts on, in order.
-    fn scatter(&self, state: &mut State) {
-        for v in [&mut state.contact_force, &mut state.contact_torque] {
-            v.x.fill(0.0);
-            v.y.fill(0.0);
-            v.z.fill(0.0);
-        }
-        for c in self.contacts.iter().filter(|c| c.history.touching()) {
-            let (force, twist) = (DVec3::from(c.action.force), DVec3::from(c.twist));
-            for (node, share) in c.near.nodes.into_iter().zip(c.near.shares) {
-                state.contact_force.add(node as usize, force * share);
-            }
-            for (node, share) in c.far.nodes.into_iter().zip(c.far.shares) {
-                state.contact_force.add(node as usize, force * -share);
-            }
-            if T::ACTIVE {
-                state.contact_torque.add(c.i as usize, twist * c.arm[0]);
-                for (node, share) in c.place.linear() {
-                    state.contact_torque.add(node, twist * (c.arm[1] * share));
-                }
-            }
-        }
-    }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
@@ -291,9 +453,10 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
                 .min_by_key(|k| self.old[*k].place.j.abs_diff(j));
             match kept {
                 Some(k) => {
-                    // What is near may have changed: a bond broke, or the contact belongs to another bond now.
-                    self.contacts.push(Contact { quiet_until: 0.0, ..self.old[k] });
                     self.old[k].taken = true;
+                    let mut kept = Contact { taken: false, quiet_until: 0.0, ..self.old[k] };
+                    self.place(&mut kept, state);
+                    self.contacts.push(kept);
                 }
                 None => {
                     let fresh = self.fresh(i, j, kind, state);
@@ -304,22 +467,40 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         for c in self.old.iter().filter(|c| !c.taken && c.history.touching()) {
             lost.add(&Partial { released: c.energy, friction: leave(&self.laws, &c.history), ..Default::default() });
         }
+        let chunks = state.len().div_ceil(CHUNK);
+        let contacts = &self.contacts;
+        self.starts.clear();
+        self.starts.extend((0..=chunks).map(|chunk| contacts.partition_point(|c| (c.i as usize) < chunk * CHUNK)));
+        // What is near may have changed: a bond broke, or a contact belongs to another bond now.
+        self.quiet_until.clear();
+        self.quiet_until.resize(contacts.len(), 0.0);
+        self.spread.resize(state.len());
+        self.acting.resize(chunks, Vec::new());
         self.partial.clear();
-        self.partial.resize(self.contacts.len().div_ceil(CHUNK), Partial::default());
+        self.partial.resize(chunks, Partial::default());
         lost
     }
 
     fn compute(&mut self, state: &mut State) -> Partial {
-        let Self { laws, line, chains, closing, arch, deepest, contacts, partial, .. } = self;
+        let Self { laws, line, chains, closing, arch, deepest, contacts, starts, quiet_until, spread, acting, partial, .. } = self;
         let (arch, before) = (*arch, *deepest);
         let meets = Meets { laws, line, state: &*state, chains, closing: *closing };
-        (contacts.par_chunks_mut(CHUNK), partial.par_iter_mut()).into_par_iter().for_each(|(contacts, partial)| {
-            *partial = arch.dispatch(Chunk { meets, deepest: before, contacts });
-        });
-        self.scatter(state);
+        let mut tasks = Vec::with_capacity(partial.len());
+        let (mut contacts, mut quiet) = (&mut contacts[..], &mut quiet_until[..]);
+        for (chunk, (near, acting)) in spread.near.chunks_mut(CHUNK).zip(&mut *acting).enumerate() {
+            let count = starts[chunk + 1] - starts[chunk];
+            let (own, others) = contacts.split_at_mut(count);
+            let (quiet_until, other_quiet) = quiet.split_at_mut(count);
+            (contacts, quiet) = (others, other_quiet);
+            let (first, sum) = (chunk * CHUNK, Partial::beyond(before));
+            let answers = Answers::default();
+            tasks.push(Chunk { meets, arch, first, contacts: own, quiet_until, near, sum, acting, answers });
+        }
+        (tasks, &mut *partial).into_par_iter().for_each(|(task, partial)| *partial = task.compute());
+        spread.finish(acting, chains, state, T::ACTIVE);
         let mut sum = Partial::beyond(before);
-        self.partial.iter().for_each(|p| sum.add(p));
-        self.deepest = sum.deepest;
+        partial.iter().for_each(|p| sum.add(p));
+        *deepest = sum.deepest;
         sum
     }
 
@@ -350,32 +531,32 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
     }
 
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
-        let meets = self.meets(state);
         for c in self.contacts.iter().filter(|c| c.history.touching()) {
-            let normal = c.far.mean(|p| state.x.get(p)) - c.near.mean(|p| state.x.get(p));
-            let speed = c.near.mean(|p| state.v.get(p)) - c.far.mean(|p| state.v.get(p));
+            let (near, far) = (Around::new(&state.x, state, &self.chains, c.i as usize).weights(c.u), c.place.weights(state));
+            let normal = far.mean(|p| state.x.get(p)) - near.mean(|p| state.x.get(p));
+            let speed = near.mean(|p| state.v.get(p)) - far.mean(|p| state.v.get(p));
             let approach = speed.dot(normal) / normal.length();
             let known = match c.kind {
                 Kind::Stretch => Some(self.foreseen(c, approach.max(0.0) * horizon)),
                 _ => foreseen_stiffness(&self.laws, &c.history, c.overlap, approach, horizon),
             };
             let Some(k) = known else { continue };
-            let viscosity = viscous_coefficient(self.laws.damping, meets.mass(c), k[0]);
-            let [b0, b1, b2, b3] = c.far.shares.map(f64::abs);
+            let viscosity = c.viscosity * k[0].sqrt();
+            let [b0, b1, b2, b3] = far.shares.map(f64::abs);
             // What the outer particles of the two curves take is counted for those next to them, which weigh the same.
             let next = c.place.j + u32::from(c.place.joined);
-            out.contact([c.i, c.place.j, next], [c.near.sum(), b0 + b1, b2 + b3], k, c.arm, viscosity);
+            out.contact([c.i, c.place.j, next], [near.sum(), b0 + b1, b2 + b3], k, c.arm, viscosity);
         }
     }
 
     fn bytes(&self, particles: usize) -> Bytes {
-        let lists = self.chains.bytes() + behind(&self.directed) + behind(&self.partial);
-        // x, v, ω, radius and mass in; force and torque cleared, and added to.
-        let per_particle = 3 * VECTOR + 2 * NUMBER + 6 * VECTOR;
+        let lists = self.chains.bytes() + behind(&self.directed) + behind(&self.partial) + self.spread.bytes();
+        // x, v, ω and radius in; sums out and in; force and torque out.
+        let per_particle = 3 * VECTOR + NUMBER + 2 * (size_of::<NearSum>() + size_of::<FarSum>()) + 2 * VECTOR;
         Bytes {
-            kept: behind(&self.contacts) + behind(&self.old) + lists,
-            // Records in and out, and in again to be added up.
-            moved: 3 * size_of_val(&self.contacts[..]) + particles * per_particle,
+            kept: behind(&self.contacts) + behind(&self.old) + behind(&self.quiet_until) + self.acting.iter().map(|list| behind(list)).sum::<usize>() + lists,
+            // Records in and out; what they do to the other side out and in.
+            moved: 2 * (size_of_val(&self.contacts[..]) + self.acting.iter().map(|list| size_of_val(&list[..])).sum::<usize>()) + particles * per_particle,
         }
     }
 }
@@ -384,8 +565,7 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
     /// Normal and tangential stiffness of a stretch that comes nearer by `closer` [m], in [N/m].
     fn foreseen(&self, c: &Contact<N, T>, closer: f64) -> [f64; 2] {
         let modulus = self.laws.normal.effective_modulus();
-        let per_length = modulus * self.line.at(c.history.reduced_radius, c.curvature);
-        let normal = per_length * patch_length(c.overlap + closer, c.curvature, c.length);
+        let normal = c.per_length * patch_length(c.overlap + closer, c.curvature, c.length);
         let mut across = 0.0;
         if T::ACTIVE {
             let mut tangential = c.history.tangential;

@@ -11,6 +11,7 @@
 //! the particles, and neither momentum nor energy is lost.
 
 use crate::engine::bytes::behind;
+use crate::base::vectors::Vectors;
 use crate::engine::state::State;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
@@ -22,6 +23,9 @@ const HOPS: usize = 8;
 const STEPS: usize = 3;
 /// A foot that is cut off by an end lies further than this beyond it [-].
 const CLOSE: f64 = 1e-5;
+
+/// Bonds to either side that must hold for a bond to count as far from an end.
+const MARGIN: usize = 4;
 
 /// Which particles are joined to which.
 pub struct Chains {
@@ -118,6 +122,14 @@ impl Chains {
         !state.whole[p] && !before(state, p)
     }
 
+    /// Whether particle `i` lies near an end of its piece, or bond `j` near one of its: within a few bonds, so that no
+    /// contact reaches the end before the next list. A wire beside itself counts as near.
+    pub fn near_end(&self, i: u32, j: u32, state: &State) -> bool {
+        let (i, j) = (i as usize, j as usize);
+        let holds = |from: usize, to: usize| state.whole.get(from..to).is_some_and(|near| near.iter().all(|w| *w));
+        self.one_wire(i as u32, j as u32) || i < 2 || j < MARGIN || !holds(i - 2, i + 2) || !holds(j - MARGIN, j + MARGIN + 1)
+    }
+
     /// How far the length that particle `p` stands for reaches to either side, in bonds [-]: half a bond, also where it
     /// broke, and nothing beyond the ends that the wire has had from the start.
     pub fn reach(&self, p: usize) -> [f64; 2] {
@@ -144,9 +156,10 @@ pub struct Around {
 }
 
 impl Around {
-    /// Around particle `i`, which has a bond.
+    /// Around particle `i`, from its own and its neighbours' `vectors`: positions, or velocities. A particle without a bond
+    /// stays where it is.
     #[inline(always)]
-    pub fn new(state: &State, chains: &Chains, i: usize) -> Self {
+    pub fn new(vectors: &Vectors, state: &State, chains: &Chains, i: usize) -> Self {
         let whole = &state.whole;
         let inner = i >= 2 && whole.get(i - 2..i + 2).is_some_and(|near| near.iter().all(|w| *w));
         // Bonds that hold one after the other to either side, as far as they matter.
@@ -158,10 +171,14 @@ impl Around {
         let swings = left == 0 && low < 0.0 || right == 0 && high > 0.0;
         let half = if left + right >= 4 && !swings { 2 } else { usize::from(left + right >= 2) };
         let first = if right < half { i + right - 2 * half } else { i - left.min(half) };
+        let zero = DVec3::ZERO;
+        if left + right == 0 {
+            let powers = [vectors.get(i), zero, zero, zero, zero];
+            return Self { first: i as u32, count: 1, shift: 0.0, powers };
+        }
         if half == 0 {
             let first = i - left.min(1);
-            let (a, b) = (state.x.get(first), state.x.get(first + 1));
-            let zero = DVec3::ZERO;
+            let (a, b) = (vectors.get(first), vectors.get(first + 1));
             return Self {
                 first: first as u32,
                 count: 2,
@@ -170,7 +187,7 @@ impl Around {
             };
         }
         let shift = i as f64 - (first + half) as f64;
-        let x = |k: usize| state.x.get(first + k);
+        let x = |k: usize| vectors.get(first + k);
         let powers = if half == 1 {
             let (a, b, c) = (x(0), x(1), x(2));
             [b, (c - a) * 0.5, (a + c) * 0.5 - b, DVec3::ZERO, DVec3::ZERO]
@@ -206,6 +223,7 @@ impl Around {
         let u = u + self.shift;
         let square = u * u;
         let shares = match self.count {
+            1 => [1.0, 0.0, 0.0, 0.0, 0.0],
             2 => [1.0 - u, u, 0.0, 0.0, 0.0],
             3 => [0.5 * (square - u), 1.0 - square, 0.5 * (square + u), 0.0, 0.0],
             _ => {
@@ -222,28 +240,80 @@ impl Around {
         let last = self.count - 1;
         Weights { nodes: [0, 1, 2, 3, 4].map(|k: u32| self.first + k.min(last)), shares }
     }
+
+    /// Hands forces at places `u` from particle `i`, given as sums of force times each power of u, to the particles.
+    #[inline(always)]
+    pub fn spread(&self, i: usize, moments: &[DVec3; 5], add: &mut impl FnMut(usize, DVec3)) {
+        let first = self.first as usize;
+        if self.count == 1 {
+            return add(i, moments[0]);
+        }
+        let [a, b, c, d, e] = if self.shift == 0.0 { *moments } else { shifted(moments, self.shift) };
+        // The coefficients are those of `new`, particle by particle.
+        match self.count {
+            2 => {
+                add(first, a - b);
+                add(first + 1, b);
+            }
+            3 => {
+                add(first, (c - b) * 0.5);
+                add(first + 1, a - c);
+                add(first + 2, (c + b) * 0.5);
+            }
+            _ => {
+                let (odd, even) = ((b * 4.0 - d) * (1.0 / 6.0), (c * 4.0 - e) * (1.0 / 6.0));
+                let (far_odd, far_even) = ((d - b) * (1.0 / 12.0), (e - c) * (1.0 / 24.0));
+                add(first, far_even - far_odd);
+                add(first + 1, even - odd);
+                add(first + 2, a + (e - c * 5.0) * 0.25);
+                add(first + 3, even + odd);
+                add(first + 4, far_even + far_odd);
+            }
+        }
+    }
+}
+
+/// Sums of force times powers of u + `shift`, from those of u.
+pub fn shifted(moments: &[DVec3; 5], shift: f64) -> [DVec3; 5] {
+    let mut out = *moments;
+    // (u + s)ⁿ by Horner's scheme in all powers at once.
+    for n in (1..5).rev() {
+        let mut sum = moments[0];
+        let mut row = [1.0f64; 5];
+        for k in 0..n {
+            row[k + 1] = row[k] * (n - k) as f64 / (k + 1) as f64;
+        }
+        sum *= shift.powi(n as i32);
+        for k in 1..=n {
+            sum += moments[k] * (row[k] * shift.powi((n - k) as i32));
+        }
+        out[n] = sum;
+    }
+    out
 }
 
 /// The cubic of one bond.
 #[derive(Clone, Copy)]
-struct Cubic {
-    coefficients: [DVec3; 4],
+pub struct Cubic {
+    /// Coefficients of the powers of t [m].
+    pub coefficients: [DVec3; 4],
 }
 
 impl Cubic {
+    /// Of bond `slot`, from its own and its neighbours' `vectors`.
     #[inline(always)]
-    fn new(state: &State, slot: usize) -> Self {
-        let (x1, x2) = (state.x.get(slot), state.x.get(slot + 1));
+    pub fn new(vectors: &Vectors, state: &State, slot: usize) -> Self {
+        let (x1, x2) = (vectors.get(slot), vectors.get(slot + 1));
         let (left, right) = (before(state, slot), state.whole[slot + 1]);
         // Beyond an end: see `cubic_weights`.
         let (x0, x3) = match (left, right) {
-            (true, true) => (state.x.get(slot - 1), state.x.get(slot + 2)),
+            (true, true) => (vectors.get(slot - 1), vectors.get(slot + 2)),
             (true, false) => {
-                let x0 = state.x.get(slot - 1);
+                let x0 = vectors.get(slot - 1);
                 (x0, x0 + (x2 - x1) * 3.0)
             }
             (false, true) => {
-                let x3 = state.x.get(slot + 2);
+                let x3 = vectors.get(slot + 2);
                 (x3 - (x2 - x1) * 3.0, x3)
             }
             (false, false) => (x1 * 2.0 - x2, x2 * 2.0 - x1),
@@ -294,6 +364,37 @@ pub fn cubic_weights(state: &State, slot: usize, t: f64) -> Weights<4> {
         nodes[3] = slot as u32 + 1;
     }
     Weights { nodes, shares }
+}
+
+/// Hands forces on bond `slot`, given as sums of force times each power of t, to the particles; where there is no bond, to
+/// its first particle.
+#[inline(always)]
+pub fn spread_cubic(state: &State, slot: usize, moments: &[DVec3; 4], add: &mut impl FnMut(usize, DVec3)) {
+    let [a, b, c, d] = *moments;
+    if !state.whole[slot] {
+        return add(slot, a);
+    }
+    let (x0, x3) = ((c * 2.0 - b - d) * 0.5, (d - c) * 0.5);
+    let (mut x1, mut x2) = (a + d * 1.5 - c * 2.5, b * 0.5 + c * 2.0 - d * 1.5);
+    let (left, right) = (before(state, slot), state.whole[slot + 1]);
+    // Beyond an end: see `cubic_weights`.
+    match (left, right) {
+        (true, true) => {
+            add(slot - 1, x0);
+            add(slot + 2, x3);
+        }
+        (true, false) => {
+            (x1, x2) = (x1 - x3 * 3.0, x2 + x3 * 3.0);
+            add(slot - 1, x0 + x3);
+        }
+        (false, true) => {
+            (x1, x2) = (x1 + x0 * 3.0, x2 - x0 * 3.0);
+            add(slot + 2, x3 + x0);
+        }
+        (false, false) => (x1, x2) = (x1 + x0 * 2.0 - x3, x2 - x0 + x3 * 2.0),
+    }
+    add(slot, x1);
+    add(slot + 1, x2);
 }
 
 /// A place on the other wire: `t` along the bond from particle `j`, or particle `j` alone.
@@ -403,7 +504,7 @@ impl Other<'_> {
             }
         }
         place.joined = true;
-        let mut cubic = Cubic::new(self.state, place.j as usize);
+        let mut cubic = Cubic::new(&self.state.x, self.state, place.j as usize);
         for _ in 0..HOPS {
             // From the foot on the chord and with a fixed number of steps, so that it depends on the positions alone.
             place.t = cubic.on_chord(self.state, place.j as usize, p);
@@ -419,7 +520,7 @@ impl Other<'_> {
             if place.j == from {
                 break;
             }
-            cubic = Cubic::new(self.state, place.j as usize);
+            cubic = Cubic::new(&self.state.x, self.state, place.j as usize);
         }
         let [point, along, bend] = cubic.at(place.t);
         let slip = (p - point).dot(along) / along.length_squared();

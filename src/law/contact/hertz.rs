@@ -1,6 +1,5 @@
 //! Elastic contact of two spheres: F = (4/3) E* √R* δ^(3/2) (Hertz 1882; Johnson, Contact Mechanics, eq. 4.23).
 
-use super::line::{LineResponse, Stretch, respond};
 use super::{NormalLaw, NormalResponse};
 use crate::base::lanes::Real;
 
@@ -50,8 +49,8 @@ impl NormalLaw for Hertz {
     }
 
     #[inline(always)]
-    fn line_response(&self, (): &mut (), stretch: &Stretch) -> LineResponse {
-        respond(stretch, f64::INFINITY, &mut 0.0)
+    fn limiting_pressure(&self) -> f64 {
+        f64::INFINITY
     }
 
     fn effective_modulus(&self) -> f64 {

@@ -5,7 +5,7 @@
 //! | `hertz` | F = 4/3 E* √R* δ^(3/2) | Hertz 1882 |
 //! | `thornton` | Hertz to p_y, then F_y + π p_y R* (δ − δ_y); unloading with R_p | Thornton 1997 |
 //!
-//! Both also answer for a stretch of a smooth wire, by force per length: [`line`].
+//! Both also hold for smooth wires, as force per length: [`line`].
 
 pub mod constants;
 pub mod geometry;
@@ -14,7 +14,6 @@ pub mod line;
 pub mod thornton;
 
 use crate::base::lanes::Real;
-use line::{LineResponse, Stretch};
 
 /// What a normal law answers for one contact, or for several.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -49,8 +48,8 @@ pub trait NormalLaw: Copy + Send + Sync + 'static {
     /// Response at overlap `overlap` [m] (> 0 or not: no force at ≤ 0) for reduced radius `reduced_radius` R* [m].
     fn response<R: Real>(&self, state: &mut Self::State<R>, reduced_radius: R, overlap: R) -> NormalResponse<R>;
 
-    /// Response of a stretch of a smooth wire against another; see [`line`].
-    fn line_response(&self, state: &mut Self::State<f64>, stretch: &Stretch) -> LineResponse;
+    /// Limiting contact pressure [Pa], infinite for elastic bodies; what [`line`] needs to know of a law besides E*.
+    fn limiting_pressure(&self) -> f64;
 
     /// Effective modulus E* of the pair [Pa].
     fn effective_modulus(&self) -> f64;

@@ -12,7 +12,6 @@
 use std::f64::consts::PI;
 
 use super::hertz::{hertzian, hertzian_energy};
-use super::line::{LineResponse, Stretch, respond};
 use super::{NormalLaw, NormalResponse};
 use crate::base::lanes::{Mask, Real};
 
@@ -159,8 +158,8 @@ impl NormalLaw for Thornton {
     }
 
     #[inline(always)]
-    fn line_response(&self, state: &mut ThorntonState, stretch: &Stretch) -> LineResponse {
-        respond(stretch, self.limiting_pressure, &mut state.greatest_overlap)
+    fn limiting_pressure(&self) -> f64 {
+        self.limiting_pressure
     }
 
     fn effective_modulus(&self) -> f64 {
