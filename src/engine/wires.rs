@@ -18,6 +18,7 @@
 
 mod batch;
 mod beside;
+mod chunk;
 mod curve;
 mod meeting;
 mod spread;
@@ -35,11 +36,12 @@ use crate::law::contact::line::{CELLS, LineStiffness, patch_length};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 use crate::strand::assembly::Assembly;
-use batch::{Answers, Batch, Gaps};
+use batch::Answers;
 use beside::Answer;
+use chunk::Chunk;
 use curve::{Around, Chains, Place};
-use meeting::{Meets, Sides};
-use pulp::{Arch, Simd, WithSimd};
+use meeting::Meets;
+use pulp::Arch;
 use rayon::prelude::*;
 use spread::{FarSum, NearSum, Spread};
 
@@ -73,6 +75,7 @@ enum Mode {
 }
 
 /// What came out for a stretch beside another wire.
+#[expect(clippy::large_enum_variant, reason = "it lives on the stack for one contact")]
 enum Touch {
     /// Nothing touches, at a gap of `gap` [m]; the foot is at `t`.
     Apart { t: f64, gap: f64 },
@@ -103,11 +106,15 @@ struct Contact<N: NormalLaw, T: TangentialLaw> {
     edge: bool,
     /// Two pieces of one wire, one of which has not yet passed the end of the other.
     end_to_end: bool,
+    /// Beyond an end of the other wire: what overlaps when it comes back did so without work.
+    beyond: bool,
     /// Taken over by the next list.
     taken: bool,
     history: History<N, T>,
     /// Greatest overlap of each cell so far [m]; across, of the patch in the first.
     dents: [f64; CELLS],
+    /// What part of each cell counted at the last step [-].
+    shares: [f64; CELLS],
     /// Length of a cell along the undeformed wire [m].
     cell_length: f64,
     /// Stiffness per length [Pa], of the angle at which they came to touch: what is stored changes by work alone.
@@ -152,140 +159,6 @@ pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
     /// See [`closing`].
     closing: f64,
     arch: Arch,
-}
-
-/// The contacts of one chunk of particles.
-struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
-    meets: Meets<'a, N, T>,
-    arch: Arch,
-    /// The first particle.
-    first: usize,
-    contacts: &'a mut [Contact<N, T>],
-    /// That of each contact, in a row: most are not looked at.
-    quiet_until: &'a mut [f64],
-    near: &'a mut [NearSum],
-    sum: Partial,
-    /// What contacts do to the other wires' bonds.
-    acting: &'a mut Vec<FarSum>,
-    answers: Answers,
-}
-
-/// One contact by itself, with the instructions of the machine: the laws round as these do, and without them a library
-/// function has to ([`Real::mul_add`](crate::base::lanes::Real::mul_add)).
-struct Alone<'a, 'b, N: NormalLaw, T: TangentialLaw> {
-    meets: &'b Meets<'a, N, T>,
-    contact: &'b mut Contact<N, T>,
-    act: &'b mut Sides,
-    deepest: &'b mut Deepest,
-}
-
-impl<N: NormalLaw, T: TangentialLaw> WithSimd for Alone<'_, '_, N, T> {
-    type Output = Partial;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Partial {
-        self.meets.contact(self.contact, self.act, self.deepest)
-    }
-}
-
-impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
-    /// The energies of the step.
-    fn compute(mut self) -> Partial {
-        self.acting.clear();
-        self.near.fill(NearSum::default());
-        let (mut gaps, mut batch) = (Gaps::default(), Batch::default());
-        for k in 0..self.contacts.len() {
-            if self.quiet_until[k] > self.meets.state.travel {
-                continue;
-            }
-            let c = &self.contacts[k];
-            if c.mode == Mode::Point || c.edge {
-                self.alone(k);
-            } else if c.history.touching() {
-                self.take(k, &mut batch);
-            } else {
-                gaps.take(k, c, self.meets.state);
-                if gaps.full() {
-                    self.part(&gaps, &mut batch);
-                    gaps.clear();
-                }
-            }
-        }
-        self.part(&gaps, &mut batch);
-        self.run(&batch);
-        self.sum
-    }
-
-    /// Adds up what contact `k` does, with the energies that it gives off.
-    fn book(&mut self, k: usize, act: &Sides, partial: Partial) {
-        self.sum.add(&partial);
-        let c = &self.contacts[k];
-        self.quiet_until[k] = c.quiet_until;
-        if act.near.acts {
-            let sum = &mut self.near[c.i as usize - self.first];
-            sum.acts = true;
-            sum.force.iter_mut().zip(act.near.force).for_each(|(sum, f)| *sum += f);
-            sum.moment += act.near.moment;
-            self.acting.push(act.far);
-        }
-    }
-
-    /// A contact that is taken by itself.
-    #[inline(never)]
-    fn alone(&mut self, k: usize) {
-        let (mut act, mut deepest) = (Sides::default(), self.sum.deepest);
-        let contact = &mut self.contacts[k];
-        let alone = Alone { meets: &self.meets, contact, act: &mut act, deepest: &mut deepest };
-        let partial = self.arch.dispatch(alone);
-        self.book(k, &act, Partial { deepest, ..partial });
-    }
-
-    /// Puts a contact into the batch, which is run when it is full.
-    fn take(&mut self, k: usize, batch: &mut Batch) {
-        batch.take(k, &self.contacts[k], &self.meets);
-        if batch.full() {
-            self.run(batch);
-            batch.clear();
-        }
-    }
-
-    /// Looks whether contacts that were apart still are.
-    #[inline(never)]
-    fn part(&mut self, gaps: &Gaps, batch: &mut Batch) {
-        let found = self.arch.dispatch(gaps.find());
-        for (lane, k) in gaps.contacts().iter().enumerate() {
-            let [t, gap] = [found[0][lane], found[1][lane]];
-            if !(0.0..=1.0).contains(&t) {
-                // On to the next bond.
-                self.alone(*k);
-            } else if gap < 0.0 {
-                self.take(*k, batch);
-            } else {
-                let c = &mut self.contacts[*k];
-                c.place.t = t;
-                self.meets.apart(c, gap);
-                self.quiet_until[*k] = c.quiet_until;
-            }
-        }
-    }
-
-    #[inline(never)]
-    fn run(&mut self, batch: &Batch) {
-        self.arch.dispatch(batch.answer(&self.meets, &mut self.answers));
-        for (lane, k) in batch.contacts().iter().enumerate() {
-            let t = self.answers.place(lane);
-            if !(0.0..=1.0).contains(&t) {
-                // On to the next bond.
-                self.alone(*k);
-                continue;
-            }
-            let (mut act, mut deepest) = (Sides::default(), self.sum.deepest);
-            let c = &mut self.contacts[*k];
-            let touch = self.answers.at(lane, c);
-            let partial = self.meets.finish(c, &touch, 0.0, &mut act, &mut deepest);
-            self.book(*k, &act, Partial { deepest, ..partial });
-        }
-    }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
@@ -347,12 +220,14 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             i,
             kind,
             taken: false,
+            beyond: false,
             end_to_end,
             mode: Mode::Point,
             edge: false,
             place: Place { j, t: 0.0, joined: false },
             history: History::new(radius),
             dents: [0.0; CELLS],
+            shares: [1.0; CELLS],
             cell_length: (high - low) / CELLS as f64 * rest,
             per_length: 0.0,
             viscosity: 0.0,
@@ -381,7 +256,8 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
                 c.mode = if crossing { Mode::Point } else { Mode::Line };
             }
         }
-        c.edge = c.kind != Kind::Stretch || c.end_to_end || !c.place.joined || self.chains.near_end(c.i, c.place.j, state);
+        c.edge =
+            c.kind != Kind::Stretch || c.end_to_end || !c.place.joined || self.chains.near_end(c.i, c.place.j, state);
         let mass = reduced_mass(state.mass[c.i as usize], c.place.between(&state.mass));
         c.viscosity = viscous_coefficient(self.laws.damping, mass, 1.0);
     }
@@ -482,7 +358,21 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
     }
 
     fn compute(&mut self, state: &mut State) -> Partial {
-        let Self { laws, line, chains, closing, arch, deepest, contacts, starts, quiet_until, spread, acting, partial, .. } = self;
+        let Self {
+            laws,
+            line,
+            chains,
+            closing,
+            arch,
+            deepest,
+            contacts,
+            starts,
+            quiet_until,
+            spread,
+            acting,
+            partial,
+            ..
+        } = self;
         let (arch, before) = (*arch, *deepest);
         let meets = Meets { laws, line, state: &*state, chains, closing: *closing };
         let mut tasks = Vec::with_capacity(partial.len());
@@ -532,7 +422,8 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
 
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
         for c in self.contacts.iter().filter(|c| c.history.touching()) {
-            let (near, far) = (Around::new(&state.x, state, &self.chains, c.i as usize).weights(c.u), c.place.weights(state));
+            let (near, far) =
+                (Around::new(&state.x, state, &self.chains, c.i as usize).weights(c.u), c.place.weights(state));
             let normal = far.mean(|p| state.x.get(p)) - near.mean(|p| state.x.get(p));
             let speed = near.mean(|p| state.v.get(p)) - far.mean(|p| state.v.get(p));
             let approach = speed.dot(normal) / normal.length();
@@ -554,9 +445,16 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         // x, v, ω and radius in; sums out and in; force and torque out.
         let per_particle = 3 * VECTOR + NUMBER + 2 * (size_of::<NearSum>() + size_of::<FarSum>()) + 2 * VECTOR;
         Bytes {
-            kept: behind(&self.contacts) + behind(&self.old) + behind(&self.quiet_until) + self.acting.iter().map(|list| behind(list)).sum::<usize>() + lists,
+            kept: behind(&self.contacts)
+                + behind(&self.old)
+                + behind(&self.quiet_until)
+                + self.acting.iter().map(behind).sum::<usize>()
+                + lists,
             // Records in and out; what they do to the other side out and in.
-            moved: 2 * (size_of_val(&self.contacts[..]) + self.acting.iter().map(|list| size_of_val(&list[..])).sum::<usize>()) + particles * per_particle,
+            moved: 2
+                * (size_of_val(&self.contacts[..])
+                    + self.acting.iter().map(|list| size_of_val(&list[..])).sum::<usize>())
+                + particles * per_particle,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Stretches beside other wires, far from any end, as many at once as a register holds.
 
-use super::beside::{Act, Answer, Beside};
+use super::beside::{Act, Answer, Beside, ROUNDS};
 use super::meeting::Meets;
 use super::{Contact, Touch};
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
@@ -121,7 +121,7 @@ impl WithSimd for Find<'_> {
             let beside = Beside {
                 near: rows.quartic(0),
                 near_velocity: [nowhere; 3],
-                far: rows.cubic(15),
+                far: rows.arc(15),
                 far_velocity: [nowhere; 4],
                 spin: [nowhere; 3],
                 radius: [rows.row(GAP_RADIUS), rows.row(GAP_RADIUS + 1), rows.row(GAP_RADIUS + 2)],
@@ -134,7 +134,7 @@ impl WithSimd for Find<'_> {
                 reach: zero,
                 viscosity: zero,
             };
-            let at = beside.expand();
+            let at = beside.expand(ROUNDS);
             let deepest = Beside::deepest(&beside.gap(&at, rows.row(GAP_OFFSET), zero), &[zero.like(1.0); CELLS]);
             at.t.store(&mut found[0], lane);
             (-deepest).store(&mut found[1], lane);
@@ -273,7 +273,7 @@ impl<N: NormalLaw, T: TangentialLaw> Run<'_, N, T> {
         let out = &mut self.answers.rows;
         let rows = Rows { simd, rows: &self.batch.rows, lane };
         let mut beside = rows.beside::<T>();
-        let at = beside.expand();
+        let at = beside.expand(ROUNDS);
         let mut history = History::<N, T, _>::of(rows.row(REDUCED), |k| rows.row(HISTORY + k));
         let zero = at.t.like(0.0);
         let all = [zero.like(1.0); CELLS];
@@ -413,15 +413,15 @@ impl<S: Simd> Rows<'_, S> {
         [c, slope, bend]
     }
 
-    /// See [`Cubic::new`](super::curve::Cubic::new).
+    /// See [`Arc::new`](super::curve::Arc::new).
     #[inline(always)]
-    fn cubic(self, first: usize) -> [Triple<Lanes<S>>; 4] {
+    fn arc(self, first: usize) -> [Triple<Lanes<S>>; 4] {
         let (a, b) = (self.vector(first, 4, 0), self.vector(first, 4, 1));
         let (c, d) = (self.vector(first, 4, 2), self.vector(first, 4, 3));
-        let half = a.x.like(0.5);
-        let square = a - b * half.like(2.5) + c * half.like(2.0) - d * half;
-        let cube = ((b - c) * half.like(3.0) + d - a) * half;
-        [b, (c - a) * half, square, cube]
+        let (half, three) = (a.x.like(0.5), a.x.like(3.0));
+        let square = (a - b * half.like(2.0) + c) * half;
+        let blend = (d - a + (b - c) * three) * half;
+        [b, (c - a) * half, square, blend]
     }
 
     #[inline(always)]
@@ -434,8 +434,8 @@ impl<S: Simd> Rows<'_, S> {
         Beside {
             near: self.quartic(NEAR),
             near_velocity: self.quartic(NEAR_VELOCITY),
-            far: self.cubic(FAR),
-            far_velocity: self.cubic(FAR_VELOCITY),
+            far: self.arc(FAR),
+            far_velocity: self.arc(FAR_VELOCITY),
             spin,
             radius: [self.row(RADIUS), self.row(RADIUS + 1), self.row(RADIUS + 2)],
             t: like,

@@ -9,6 +9,7 @@
 //! moments ∫ f uⁿ ds up to n = 2, and are the gradient of the energy that the cells store: what pushes takes exactly as
 //! much from the motion as it keeps.
 
+use super::curve::blend;
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
 use crate::engine::pair::{Given, History, Laws, Meeting, press};
@@ -16,8 +17,11 @@ use crate::law::contact::line::{CELLS, CellGap, CellResponse, respond_cells};
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::TangentialLaw;
 
-/// Rounds of Newton's method for the foot, from the last one.
-const ROUNDS: usize = 2;
+/// Rounds of Newton's method for the foot, from that of the last step.
+pub const ROUNDS: usize = 2;
+/// Share of the square of the tangent below which the denominator of t' does not fall [-]: beside a wire that is bent more
+/// sharply than it is away, the foot jumps.
+const STIFF: f64 = 0.1;
 
 /// Two wires near a stretch.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +30,7 @@ pub struct Beside<R> {
     pub near: [Triple<R>; 3],
     /// Its velocity, in the same way [m/s].
     pub near_velocity: [Triple<R>; 3],
-    /// The cubic of the other wire's bond, by powers [m].
+    /// The other wire's bond; see [`Arc`](super::curve::Arc) [m].
     pub far: [Triple<R>; 4],
     /// Its velocity, in the same way [m/s].
     pub far_velocity: [Triple<R>; 4],
@@ -61,7 +65,9 @@ pub struct Expansion<R> {
     pub rate: R,
     /// See `rate`.
     pub bend: R,
-    /// Normal from the foot to the point, and its derivatives [-].
+    /// From the foot to the point, and its derivatives [m].
+    pub away: [Triple<R>; 3],
+    /// Unit normal along it, and its derivatives [-].
     pub normal: [Triple<R>; 3],
     /// Distance and its derivatives [m].
     pub distance: [R; 3],
@@ -74,7 +80,7 @@ pub struct Expansion<R> {
 pub struct Act<R> {
     /// On the stretch, per power of u [N].
     pub near: [Triple<R>; 3],
-    /// On the other bond, per power of t [N].
+    /// On the other bond, times 1, t, t² and h(t) [N].
     pub far: [Triple<R>; 4],
     /// Moments on the stretch's particle, on the first of the other two, and on both [N m].
     pub twist: [Triple<R>; 3],
@@ -97,42 +103,39 @@ pub struct Answer<R> {
     pub arms: [R; 2],
 }
 
+/// A curve with the coefficients of [`Arc`](super::curve::Arc), and its derivatives at `t`.
 #[inline(always)]
-fn polynomial<R: Real>(powers: &[Triple<R>; 4], t: R) -> Triple<R> {
-    ((powers[3] * t + powers[2]) * t + powers[1]) * t + powers[0]
+fn arc<R: Real>([a, b, c, d]: [Triple<R>; 4], t: R) -> [Triple<R>; 3] {
+    let [h, h1, h2, _] = blend(t);
+    let two = t.like(2.0);
+    [a + (b + c * t) * t + d * h, b + c * (t * two) + d * h1, c * two + d * h2]
 }
 
 impl<R: Real> Beside<R> {
-    /// Point and derivatives of the other curve.
+    /// Follows the foot in `rounds` of Newton's method and expands the gap around the middle of the stretch.
     #[inline(always)]
-    fn foot(&self, t: R) -> [Triple<R>; 3] {
-        let [_, b, c, d] = self.far;
-        let bend = d * (t * 6.0);
-        [polynomial(&self.far, t), (d * (t * 3.0) + c * t.like(2.0)) * t + b, bend + c * t.like(2.0)]
-    }
-
-    /// Follows the foot and expands the gap around the middle of the stretch.
-    #[inline(always)]
-    pub fn expand(&self) -> Expansion<R> {
+    pub fn expand(&self, rounds: usize) -> Expansion<R> {
         let [p, p1, p2] = self.near;
         let mut t = self.t;
-        for _ in 0..ROUNDS {
-            let [q, q1, q2] = self.foot(t);
+        for _ in 0..rounds {
+            let [q, q1, q2] = arc(self.far, t);
             let (away, square) = (q - p, q1.length_squared());
             // Far from the foot the distance may be concave; then the straight line decides.
             let rise = square + away.dot(q2).greater(square * -0.5);
             t -= away.dot(q1) * rise.inverse() * self.moves;
         }
-        let [q, q1, q2] = self.foot(t);
+        let [q, q1, q2] = arc(self.far, t);
         let e = p - q;
-        let inverse_rise = (q1.length_squared() - e.dot(q2)).inverse();
+        let square = q1.length_squared();
+        let inverse_rise = (square - e.dot(q2)).greater(square * STIFF).inverse();
         let cross = p1.dot(q1);
         let rate = cross * inverse_rise * self.moves;
         let e1 = p1 - q1 * rate;
         let square = rate * rate;
-        let bend = (p2.dot(q1) - square * q2.dot(q1) + rate * 2.0 * e1.dot(q2) + square * 6.0 * e.dot(self.far[3]))
-            * inverse_rise
-            * self.moves;
+        let bend =
+            (p2.dot(q1) - square * q2.dot(q1) + rate * 2.0 * e1.dot(q2) + square * blend(t)[3] * e.dot(self.far[3]))
+                * inverse_rise
+                * self.moves;
         let e2 = p2 - q2 * square - q1 * bend;
         let inverse = e.length_squared().inverse_sqrt();
         let distance = e.length_squared() * inverse;
@@ -144,7 +147,7 @@ impl<R: Real> Beside<R> {
         let n2 = (e2 - n1 * (r1 * 2.0) - n * r2) * inverse;
         let between = t.greater(t.like(0.0)).lesser(t.like(1.0));
         let touching = self.radius[0] + (self.radius[2] - self.radius[1]).mul_add(between, self.radius[1]);
-        Expansion { t, rate, bend, normal: [n, n1, n2], distance: [distance, r1, r2], touching }
+        Expansion { t, rate, bend, away: [e, e1, e2], normal: [n, n1, n2], distance: [distance, r1, r2], touching }
     }
 
     /// The cells over an expansion, where `offset` of the overlap does not count [m].
@@ -194,13 +197,21 @@ impl<R: Real> Beside<R> {
         // Mean of u and u² where the force acts.
         let (mean, square) = (first * inverse_force, second * inverse_force);
         let [n, n1, n2] = at.normal;
-        // The mean normal, from the stretch to the other wire.
-        let toward = (n + n1 * mean + n2 * (square * 0.5)) * zero.like(-1.0);
-        let normal = toward * toward.length_squared().inverse_sqrt();
-        let mean_distance = at.distance[0] + at.distance[1] * mean + at.distance[2] * (square * 0.5);
+        // The mean line from the stretch to the other wire: friction along it would turn the two.
+        let [e, e1, e2] = at.away;
+        let toward = (e + e1 * mean + e2 * (square * 0.5)) * zero.like(-1.0);
+        let inverse = toward.length_squared().inverse_sqrt();
+        let (normal, mean_distance) = (toward * inverse, toward.length_squared() * inverse);
         let arm = self.radius[0] - (at.touching - mean_distance) * 0.5;
         let arms = [arm, mean_distance - arm];
-        let velocity = self.velocity(at, mean, square, normal, arms, T::ACTIVE);
+        // The normal force spread over the particles' polynomials, per force.
+        let push_a = n + n1 * mean + n2 * (square * 0.5);
+        let push = [push_a, n * mean + n1 * square, n * (square * 0.5)];
+        let spread = [normal, normal * mean, normal * (square * 0.5)];
+        let slide = self.velocity(at, mean, square, normal, arms, T::ACTIVE);
+        // The dashpot takes what the spread force does.
+        let approach = zero - self.power(at, &push);
+        let velocity = slide + normal * (approach - self.power(at, &spread));
         let stiffness = cells.stiffness;
         let radius = stiffness * (0.5 / laws.normal.effective_modulus());
         let answer = NormalResponse {
@@ -216,12 +227,11 @@ impl<R: Real> Beside<R> {
         let meeting = Meeting { normal, overlap, thinner, velocity, viscosity: self.viscosity, dt };
         let (pair, given) = press(laws, history, &meeting, &answer);
         // All that pushes along the normal is spread as the force of the cells is.
-        let scale = (pair.friction - pair.force).dot(normal) * inverse_force;
-        let (force, first, second) = (force * scale, first * scale, second * scale);
+        let whole = (pair.friction - pair.force).dot(normal);
         let friction = pair.friction;
-        let a = n * force + n1 * first + n2 * (second * 0.5) + friction;
-        let b = n * first + n1 * second + friction * mean;
-        let c = n * (second * 0.5) + friction * (square * 0.5);
+        let a = push[0] * whole + friction;
+        let b = push[1] * whole + friction * mean;
+        let c = push[2] * whole + friction * (square * 0.5);
         let act = self.act(at, [a, b, c], normal.cross(friction), arms);
         Answer { act, given, cells, deepest, reach, arms }
     }
@@ -239,19 +249,26 @@ impl<R: Real> Beside<R> {
     ) -> Triple<R> {
         let [v, v1, v2] = self.near_velocity;
         let near = v + v1 * mean + v2 * (square * 0.5);
-        let [_, b, c, d] = self.far_velocity;
-        let (t, two) = (at.t, at.t.like(2.0));
-        let along = (d * (t * 3.0) + c * two) * t + b;
-        let bend = d * (t * 6.0) + c * two;
-        let far = polynomial(&self.far_velocity, t)
-            + along * (at.rate * mean + at.bend * square * 0.5)
-            + bend * (at.rate * at.rate * square * 0.5);
+        let t = at.t;
+        let [there, along, bend] = arc(self.far_velocity, t);
+        let far = there + along * (at.rate * mean + at.bend * square * 0.5) + bend * (at.rate * at.rate * square * 0.5);
         let slide = far - near;
         if !turns {
             return slide;
         }
         let spin = self.spin[1] + (self.spin[2] - self.spin[1]) * self.between(t);
         slide - (self.spin[0] * arms[0] + spin * arms[1]).cross(normal)
+    }
+
+    /// Velocity of the other wire relative to the stretch along a force that is spread as [`Self::act`] does [m/s], per
+    /// force.
+    #[inline(always)]
+    fn power(&self, at: &Expansion<R>, [a, b, c]: &[Triple<R>; 3]) -> R {
+        let [v, v1, v2] = self.near_velocity;
+        let [far, along, bend] = arc(self.far_velocity, at.t);
+        let once = *b * at.rate + *c * at.bend;
+        let twice = *c * (at.rate * at.rate);
+        a.dot(far - v) + once.dot(along) + twice.dot(bend) - b.dot(v1) - c.dot(v2)
     }
 
     #[inline(always)]
@@ -264,6 +281,7 @@ impl<R: Real> Beside<R> {
     fn act(&self, at: &Expansion<R>, [a, b, c]: [Triple<R>; 3], twist: Triple<R>, arms: [R; 2]) -> Act<R> {
         let two = at.t.like(2.0);
         let (t, square) = (at.t, at.t * at.t);
+        let [h, h1, h2, _] = blend(t);
         let once = b * at.rate + c * at.bend;
         let twice = c * (at.rate * at.rate);
         let minus = t.like(-1.0);
@@ -271,7 +289,7 @@ impl<R: Real> Beside<R> {
             a * minus,
             (a * t + once) * minus,
             (a * square + (once * t + twice) * two) * minus,
-            (a * (square * t) + once * (square * 3.0) + twice * (t * 6.0)) * minus,
+            (a * h + once * h1 + twice * h2) * minus,
         ];
         let other = twist * arms[1];
         Act {
@@ -281,4 +299,3 @@ impl<R: Real> Beside<R> {
         }
     }
 }
-

@@ -1,8 +1,10 @@
 //! Smooth centrelines through the particles of a wire.
 //!
-//! Between two bonded particles the centreline is a Catmull-Rom cubic: its tangents are half the way between the
-//! neighbours, so that it has no corners, and points of it are weighted means of four particles. On a helix that goes by
-//! an angle φ from one particle to the next it departs from the lay radius R by 0.023 R φ⁴ at most (a chord: 0.125 R φ²).
+//! Between two bonded particles the centreline passes from the parabola through the first and its neighbours to that of the
+//! second, P₁ + (3t² − 2t³)(P₂ − P₁): points of it are weighted means of four particles, and tangent and curvature go on
+//! from bond to bond, so that nothing jumps where a contact walks over a particle (a Catmull-Rom cubic, which passes with t,
+//! has a jump of curvature there). On a helix that goes by an angle φ from one particle to the next it departs from the lay
+//! radius R by 0.023 R φ⁴ at most (a chord: 0.125 R φ²).
 //! Around a particle the wire of that particle is the quartic through it and its four next neighbours, good to R φ⁶/700.
 //!
 //! Where neighbours are missing, the parabola of the three last particles goes on; two particles make a straight piece.
@@ -10,8 +12,9 @@
 //! A force at a point of a centreline goes to the particles with the weights of the point, so that its power is that of
 //! the particles, and neither momentum nor energy is lost.
 
-use crate::engine::bytes::behind;
+use crate::base::lanes::Real;
 use crate::base::vectors::Vectors;
+use crate::engine::bytes::behind;
 use crate::engine::state::State;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
@@ -127,7 +130,11 @@ impl Chains {
     pub fn near_end(&self, i: u32, j: u32, state: &State) -> bool {
         let (i, j) = (i as usize, j as usize);
         let holds = |from: usize, to: usize| state.whole.get(from..to).is_some_and(|near| near.iter().all(|w| *w));
-        self.one_wire(i as u32, j as u32) || i < 2 || j < MARGIN || !holds(i - 2, i + 2) || !holds(j - MARGIN, j + MARGIN + 1)
+        self.one_wire(i as u32, j as u32)
+            || i < 2
+            || j < MARGIN
+            || !holds(i - 2, i + 2)
+            || !holds(j - MARGIN, j + MARGIN + 1)
     }
 
     /// How far the length that particle `p` stands for reaches to either side, in bonds [-]: half a bond, also where it
@@ -292,20 +299,20 @@ pub fn shifted(moments: &[DVec3; 5], shift: f64) -> [DVec3; 5] {
     out
 }
 
-/// The cubic of one bond.
+/// The curve of one bond, a + b t + c t² + d h(t); see [`blend`].
 #[derive(Clone, Copy)]
-pub struct Cubic {
-    /// Coefficients of the powers of t [m].
+pub struct Arc {
+    /// The coefficients [m].
     pub coefficients: [DVec3; 4],
 }
 
-impl Cubic {
+impl Arc {
     /// Of bond `slot`, from its own and its neighbours' `vectors`.
     #[inline(always)]
     pub fn new(vectors: &Vectors, state: &State, slot: usize) -> Self {
         let (x1, x2) = (vectors.get(slot), vectors.get(slot + 1));
         let (left, right) = (before(state, slot), state.whole[slot + 1]);
-        // Beyond an end: see `cubic_weights`.
+        // Beyond an end: see `arc_weights`.
         let (x0, x3) = match (left, right) {
             (true, true) => (vectors.get(slot - 1), vectors.get(slot + 2)),
             (true, false) => {
@@ -318,8 +325,7 @@ impl Cubic {
             }
             (false, false) => (x1 * 2.0 - x2, x2 * 2.0 - x1),
         };
-        let coefficients =
-            [x1, (x2 - x0) * 0.5, x0 - x1 * 2.5 + x2 * 2.0 - x3 * 0.5, ((x1 - x2) * 3.0 + x3 - x0) * 0.5];
+        let coefficients = [x1, (x2 - x0) * 0.5, (x0 - x1 * 2.0 + x2) * 0.5, (x3 - x0 + (x1 - x2) * 3.0) * 0.5];
         Self { coefficients }
     }
 
@@ -333,20 +339,29 @@ impl Cubic {
     #[inline(always)]
     fn at(&self, t: f64) -> [DVec3; 3] {
         let [a, b, c, d] = self.coefficients;
-        [a + (b + (c + d * t) * t) * t, b + (c * 2.0 + d * (3.0 * t)) * t, c * 2.0 + d * (6.0 * t)]
+        let [h, h1, h2, _] = blend(t);
+        [a + (b + c * t) * t + d * h, b + c * (2.0 * t) + d * h1, c * 2.0 + d * h2]
     }
+}
+
+/// h(t) = (t² − t)(3t² − 2t³) and its derivatives.
+#[inline(always)]
+pub fn blend<R: Real>(t: R) -> [R; 4] {
+    let one = |value: f64| t.like(value);
+    let square = t * t;
+    [
+        square * t * ((one(5.0) - t * 2.0) * t - 3.0),
+        square * ((one(20.0) - t * 10.0) * t - 9.0),
+        t * ((one(60.0) - t * 40.0) * t - 18.0),
+        (one(120.0) - t * 120.0) * t - 18.0,
+    ]
 }
 
 /// The weights of the point `t` of bond `slot`.
 #[inline(always)]
-pub fn cubic_weights(state: &State, slot: usize, t: f64) -> Weights<4> {
-    let (t2, t3) = (t * t, t * t * t);
-    let mut shares = [
-        0.5 * (2.0 * t2 - t3 - t),
-        0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
-        0.5 * (4.0 * t2 - 3.0 * t3 + t),
-        0.5 * (t3 - t2),
-    ];
+pub fn arc_weights(state: &State, slot: usize, t: f64) -> Weights<4> {
+    let (t2, h) = (t * t, blend(t)[0]);
+    let mut shares = [0.5 * (t2 - t - h), 1.0 - t2 + 1.5 * h, 0.5 * (t2 + t) - 1.5 * h, 0.5 * h];
     let (left, right) = (before(state, slot), state.whole[slot + 1]);
     let mut nodes = [slot.saturating_sub(1), slot, slot + 1, slot + 2].map(|p| p as u32);
     let [first, last] = [shares[0], shares[3]];
@@ -366,18 +381,18 @@ pub fn cubic_weights(state: &State, slot: usize, t: f64) -> Weights<4> {
     Weights { nodes, shares }
 }
 
-/// Hands forces on bond `slot`, given as sums of force times each power of t, to the particles; where there is no bond, to
+/// Hands forces on bond `slot`, given as sums of force times 1, t, t² and h(t), to the particles; where there is no bond, to
 /// its first particle.
 #[inline(always)]
-pub fn spread_cubic(state: &State, slot: usize, moments: &[DVec3; 4], add: &mut impl FnMut(usize, DVec3)) {
+pub fn spread_arc(state: &State, slot: usize, moments: &[DVec3; 4], add: &mut impl FnMut(usize, DVec3)) {
     let [a, b, c, d] = *moments;
     if !state.whole[slot] {
         return add(slot, a);
     }
-    let (x0, x3) = ((c * 2.0 - b - d) * 0.5, (d - c) * 0.5);
-    let (mut x1, mut x2) = (a + d * 1.5 - c * 2.5, b * 0.5 + c * 2.0 - d * 1.5);
+    let (x0, x3) = ((c - b - d) * 0.5, d * 0.5);
+    let (mut x1, mut x2) = (a - c + d * 1.5, (b + c) * 0.5 - d * 1.5);
     let (left, right) = (before(state, slot), state.whole[slot + 1]);
-    // Beyond an end: see `cubic_weights`.
+    // Beyond an end: see `arc_weights`.
     match (left, right) {
         (true, true) => {
             add(slot - 1, x0);
@@ -413,7 +428,7 @@ impl Place {
     #[inline(always)]
     pub fn weights(&self, state: &State) -> Weights<4> {
         if self.joined {
-            cubic_weights(state, self.j as usize, self.t)
+            arc_weights(state, self.j as usize, self.t)
         } else {
             Weights { nodes: [self.j; 4], shares: [1.0, 0.0, 0.0, 0.0] }
         }
@@ -504,12 +519,12 @@ impl Other<'_> {
             }
         }
         place.joined = true;
-        let mut cubic = Cubic::new(&self.state.x, self.state, place.j as usize);
+        let mut arc = Arc::new(&self.state.x, self.state, place.j as usize);
         for _ in 0..HOPS {
             // From the foot on the chord and with a fixed number of steps, so that it depends on the positions alone.
-            place.t = cubic.on_chord(self.state, place.j as usize, p);
+            place.t = arc.on_chord(self.state, place.j as usize, p);
             for _ in 0..STEPS {
-                let [point, along, bend] = cubic.at(place.t);
+                let [point, along, bend] = arc.at(place.t);
                 let (away, square) = (point - p, along.length_squared());
                 // Far from the foot the distance may be concave; then the straight line decides.
                 let rise = square + away.dot(bend).max(-0.5 * square);
@@ -520,9 +535,9 @@ impl Other<'_> {
             if place.j == from {
                 break;
             }
-            cubic = Cubic::new(&self.state.x, self.state, place.j as usize);
+            arc = Arc::new(&self.state.x, self.state, place.j as usize);
         }
-        let [point, along, bend] = cubic.at(place.t);
+        let [point, along, bend] = arc.at(place.t);
         let slip = (p - point).dot(along) / along.length_squared();
         let [low, high] = self.range(place.j as usize);
         let before = place.t <= low && slip < -CLOSE;

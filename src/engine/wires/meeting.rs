@@ -1,14 +1,14 @@
 //! One contact at one step: where two bodies meet, and how.
 
 use super::beside::Beside;
-use super::curve::{Around, Chains, Cubic, Foot, Other, shifted};
+use super::curve::{Arc, Around, Chains, Foot, Other, blend, shifted};
 use super::spread::{FarSum, NearSum};
 use super::{Contact, Kind, Mode, Touch};
 use crate::base::triple::Triple;
 use crate::base::vectors::Vectors;
 use crate::engine::pair::{Laws, Meeting, meet, press};
 use crate::engine::state::{Deepest, Partial, State};
-use crate::law::contact::line::{CELLS, LineResponse, LineStiffness, Stretch, respond};
+use crate::law::contact::line::{CELLS, LineResponse, LineStiffness, Stretch, respond, respond_cells};
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::TangentialLaw;
 use glam::DVec3;
@@ -132,7 +132,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
     pub fn overlap(&self, c: &mut Contact<N, T>) -> f64 {
         match c.kind {
             Kind::Stretch if c.mode == Mode::Line => self.beside(c).map_or(0.0, |(beside, shares, _)| {
-                let gap = beside.gap(&beside.expand(), 0.0, c.history.reduced_radius);
+                let gap = beside.gap(&beside.expand(0), 0.0, c.history.reduced_radius);
                 Beside::deepest(&gap, &shares)
             }),
             Kind::Stretch => self.lie(c).map_or(0.0, |lie| lie.stretch.overlap + c.history.offset),
@@ -196,7 +196,8 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         let slope = -rise / bond;
         let curvature = (gap.second - rise * rise) / (distance * bond * bond);
         let touching = self.state.radius[i] + c.place.between(&self.state.radius);
-        let overlap = touching - c.history.offset - distance;
+        let reach = touching - c.history.offset;
+        let overlap = reach - distance;
         let (from, to) = (from * bond, to * bond);
         let depth = |x: f64| overlap + x * (slope - 0.5 * curvature * x);
         let deepest = if curvature > 0.0 {
@@ -212,7 +213,8 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         let stretch = Stretch {
             reduced_radius: c.history.reduced_radius,
             stiffness: 0.0,
-            overlap: depth(deepest),
+            // No two centrelines are nearer than 0, whatever the parabola says.
+            overlap: depth(deepest).min(reach),
             slope: slope - curvature * deepest,
             curvature,
             ends: [from - deepest, to - deepest],
@@ -234,7 +236,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         };
         let velocity = Around::new(&state.v, state, self.chains, i).at(look.u);
         let far = |vectors: &Vectors| match c.place.joined {
-            true => Cubic::new(vectors, state, c.place.j as usize).coefficients,
+            true => Arc::new(vectors, state, c.place.j as usize).coefficients,
             false => [vectors.get(c.place.j as usize), DVec3::ZERO, DVec3::ZERO, DVec3::ZERO],
         };
         let j = c.place.j as usize;
@@ -262,11 +264,17 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
     /// Takes a stretch beside the other wire through the laws by itself.
     fn line(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> Partial {
         let Some((mut beside, shares, look)) = self.beside(c) else { return self.let_go(c) };
-        let at = beside.expand();
-        let overlap = Beside::deepest(&beside.gap(&at, c.history.offset, c.history.reduced_radius), &shares);
+        let at = beside.expand(0);
+        let reach = at.touching - c.history.offset;
+        // No two centrelines are nearer than 0, whatever the parabola says.
+        let overlap = Beside::deepest(&beside.gap(&at, c.history.offset, c.history.reduced_radius), &shares).min(reach);
         let bond = look.at[1].length();
         if c.end_to_end {
             return self.passing(c, overlap, look.foot.at_end || self.near_end(c, look.u));
+        }
+        if std::mem::take(&mut c.beyond) && !c.history.touching() {
+            c.history.offset = (overlap + c.history.offset).max(0.0);
+            return Partial::default();
         }
         if overlap <= 0.0 && !c.history.touching() {
             return self.finish(c, &Touch::Apart { t: at.t, gap: -overlap }, look.u, act, deepest);
@@ -275,10 +283,27 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             beside.per_length = self.per_length(c.history.reduced_radius, at.distance[2] / (bond * bond));
         }
         let (mut dents, mut history) = (c.dents, c.history);
+        // What slides beyond an end takes with it what it had stored.
+        let mut released = 0.0;
+        if c.history.touching() && shares != c.shares {
+            let gap = beside.gap(&at, c.history.offset, c.history.reduced_radius);
+            let stored = |share: &[f64; CELLS]| {
+                respond_cells(&gap, self.laws.normal.limiting_pressure(), share, &mut dents.clone()).energy
+            };
+            released = stored(&c.shares) - stored(&shares);
+        }
+        c.shares = shares;
         let answer = beside.respond(self.laws, &at, &shares, &mut dents, &mut history, self.state.dt);
-        let touch = Touch::Here { answer, t: at.t, touching: at.touching, per_length: beside.per_length, curvature: at.distance[2] / (bond * bond) };
+        let touch = Touch::Here {
+            answer,
+            t: at.t,
+            touching: at.touching,
+            per_length: beside.per_length,
+            curvature: at.distance[2] / (bond * bond),
+        };
         (c.dents, c.history) = (dents, history);
-        self.finish(c, &touch, look.u, act, deepest)
+        let partial = self.finish(c, &touch, look.u, act, deepest);
+        Partial { released, ..partial }
     }
 
     /// Stiffness per length [Pa] where the gap has this curvature [1/m].
@@ -352,6 +377,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
 
     /// Beyond the end of the other wire: what was touching there has let go.
     fn let_go(&self, c: &mut Contact<N, T>) -> Partial {
+        c.beyond = true;
         if c.end_to_end || !c.history.touching() {
             return Partial::default();
         }
@@ -409,6 +435,10 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         let Some(mut lie) = self.lie(c) else { return self.let_go(c) };
         if c.end_to_end {
             return self.passing(c, lie.stretch.overlap, lie.at_end);
+        }
+        if std::mem::take(&mut c.beyond) && !c.history.touching() {
+            c.history.offset = (lie.stretch.overlap + c.history.offset).max(0.0);
+            return Partial::default();
         }
         if self.apart(c, -lie.stretch.overlap) {
             return Partial::default();
@@ -506,7 +536,8 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             *act = Sides {
                 near: NearSum { force: [a, b, c2, d, d * c.u], moment: twist * c.arm[0], acts: true },
                 far: FarSum {
-                    force: if c.place.joined { powers(t) } else { powers(0.0) }.map(|power| force * -power),
+                    force: if c.place.joined { [1.0, t, t * t, blend(t)[0]] } else { [1.0, 0.0, 0.0, 0.0] }
+                        .map(|power| force * -power),
                     moment: [twist * (c.arm[1] * one), twist * (c.arm[1] * two)],
                     bond: c.place.j,
                     acts: true,

@@ -1,11 +1,10 @@
 //! From what contacts do to stretches and bonds to forces on particles.
 //!
-//! A contact acts at points of two centrelines that are polynomials of the particles' positions: of the place u on the
-//! stretch around a particle, of t on a bond. So it is enough to add up, per particle and per bond, the force times each
-//! power of u and of t; what that does to particles then follows once for all contacts, with the same coefficients that
+//! A contact acts at points of two centrelines: at the place u on the stretch around a particle, at t on a bond. So it is
+//! enough to add up, per particle and per bond, the force times each function of u and of t that these curves are made of; what that does to particles then follows once for all contacts, with the same coefficients that
 //! give the points. Neither momentum nor energy is lost.
 
-use super::curve::{Around, Chains, spread_cubic};
+use super::curve::{Around, Chains, spread_arc};
 use crate::engine::bytes::behind;
 use crate::engine::state::{CHUNK, State};
 use glam::DVec3;
@@ -29,7 +28,7 @@ pub struct NearSum {
 /// What one contact, or all, do to a bond of the other wire, or to its first particle where there is no bond.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FarSum {
-    /// Force times each power of t [N].
+    /// Force times 1, t, t² and h(t) [N]; see [`blend`](super::curve::blend).
     pub force: [DVec3; 4],
     /// Moments on the bond's two particles [N m].
     pub moment: [DVec3; 2],
@@ -101,7 +100,8 @@ impl Spread {
             }
         });
         let (near, far) = (&near[..], &far[..]);
-        let (mut force, mut torque) = (std::mem::take(&mut state.contact_force), std::mem::take(&mut state.contact_torque));
+        let (mut force, mut torque) =
+            (std::mem::take(&mut state.contact_force), std::mem::take(&mut state.contact_torque));
         let seen = &*state;
         let rows = (
             force.x.par_chunks_mut(CHUNK),
@@ -122,15 +122,13 @@ impl Spread {
                     z[node - first] += f.z;
                 }
             };
-            for i in first.saturating_sub(NEAR)..(end + NEAR).min(near.len()) {
-                if near[i].acts {
-                    Around::new(&seen.x, seen, chains, i).spread(i, &near[i].force, &mut add);
-                }
+            let from = first.saturating_sub(NEAR);
+            for (i, sum) in (from..).zip(&near[from..(end + NEAR).min(near.len())]).filter(|(_, sum)| sum.acts) {
+                Around::new(&seen.x, seen, chains, i).spread(i, &sum.force, &mut add);
             }
-            for bond in first.saturating_sub(FAR)..(end + FAR).min(far.len()) {
-                if far[bond].acts {
-                    spread_cubic(seen, bond, &far[bond].force, &mut add);
-                }
+            let from = first.saturating_sub(FAR);
+            for (bond, sum) in (from..).zip(&far[from..(end + FAR).min(far.len())]).filter(|(_, sum)| sum.acts) {
+                spread_arc(seen, bond, &sum.force, &mut add);
             }
             if turn {
                 for p in first..end {
