@@ -12,6 +12,8 @@ use std::ops::Range;
 
 /// Window of the running means, over the time in which an elastic wave runs along the body [-].
 const WINDOW: f64 = 0.125;
+/// By how much strain and stress of a row lag behind its instant, over the same time: the middle of the window [-].
+pub const MEAN_LAG: f64 = 0.5 * WINDOW;
 
 /// Running means of what a row of the curve says, and who is broken.
 ///

@@ -3,10 +3,13 @@
 //!
 //! Of two wires one is followed particle by particle, the one with the finer spacing, or else the later one. Each of its
 //! particles stands for the stretch of wire half a bond to either side. A contact is such a stretch against the other
-//! wire: the gap between the two smooth centrelines is taken along the stretch as a parabola around its narrowest place,
-//! and the law integrates the force over what overlaps. So wires that cross meet where they cross, whatever particles are
-//! near, wires side by side share a line, and neither depends on the spacing. A contact walks along the other wire from
-//! bond to bond and keeps its history.
+//! wire; it walks along the other wire from bond to bond and keeps its history.
+//!
+//! Where wires lie side by side (`beside`), the gap is expanded to the second order along the stretch, whose cells push
+//! each by itself. Where they cross so steeply that cells would not resolve the patch in which they touch, the law
+//! integrates over a patch around the narrowest place (`meeting`): Hertz's ellipse, whatever particles are near. Both are
+//! one force per length, and neither depends on the spacing. Which of the two holds is said by the angle when a list of
+//! candidates is made and nothing has touched yet.
 //!
 //! Distance of a point p(u) of the stretch from the other curve q(t), e = p − q with e·q' = 0 at the foot:
 //! (½e²)' = e·p', (½e²)'' = e·p'' + p'² − (p'·q')²/(q'² − e·q''); for straight wires ½e² is a parabola, and Newton's method
@@ -18,6 +21,7 @@
 
 mod batch;
 mod beside;
+mod chains;
 mod chunk;
 mod curve;
 mod meeting;
@@ -38,8 +42,9 @@ use crate::law::tangential::{TangentialInput, TangentialLaw};
 use crate::strand::assembly::Assembly;
 use batch::Answers;
 use beside::Answer;
+use chains::Chains;
 use chunk::Chunk;
-use curve::{Around, Chains, Place};
+use curve::{Around, Place};
 use meeting::Meets;
 use pulp::Arch;
 use rayon::prelude::*;

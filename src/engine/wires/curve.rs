@@ -4,7 +4,7 @@
 //! second, P₁ + (3t² − 2t³)(P₂ − P₁): points of it are weighted means of four particles, and tangent and curvature go on
 //! from bond to bond, so that nothing jumps where a contact walks over a particle (a Catmull-Rom cubic, which passes with t,
 //! has a jump of curvature there). On a helix that goes by an angle φ from one particle to the next it departs from the lay
-//! radius R by 0.023 R φ⁴ at most (a chord: 0.125 R φ²).
+//! radius R by 0.023 R φ⁴ at most (a chord: 0.125 R φ²), and sideways by 0.025 R φ³.
 //! Around a particle the wire of that particle is the quartic through it and its four next neighbours, good to R φ⁶/700.
 //!
 //! Where neighbours are missing, the parabola of the three last particles goes on; two particles make a straight piece.
@@ -12,11 +12,10 @@
 //! A force at a point of a centreline goes to the particles with the weights of the point, so that its power is that of
 //! the particles, and neither momentum nor energy is lost.
 
+use super::chains::{Chains, before};
 use crate::base::lanes::Real;
 use crate::base::vectors::Vectors;
-use crate::engine::bytes::behind;
 use crate::engine::state::State;
-use crate::strand::assembly::Assembly;
 use glam::DVec3;
 
 /// Longest walk of a foot from bond to bond in one search.
@@ -26,19 +25,6 @@ const HOPS: usize = 8;
 const STEPS: usize = 3;
 /// A foot that is cut off by an end lies further than this beyond it [-].
 const CLOSE: f64 = 1e-5;
-
-/// Bonds to either side that must hold for a bond to count as far from an end.
-const MARGIN: usize = 4;
-
-/// Which particles are joined to which.
-pub struct Chains {
-    /// Wire of each particle; `u32::MAX` for free spheres.
-    pub wire_of: Vec<u32>,
-    /// Per wire, the number of bonds within which it cannot touch itself.
-    pub apart: Vec<u32>,
-    /// Whether each slot had a bond at the start.
-    bonded: Vec<bool>,
-}
 
 /// A point of the centreline nearest to another point.
 #[derive(Debug, Clone, Copy)]
@@ -81,73 +67,6 @@ impl<const N: usize> Weights<N> {
     pub fn sum(&self) -> f64 {
         self.shares.iter().map(|s| s.abs()).sum()
     }
-}
-
-impl Chains {
-    /// Of `assembly`; `apart` per wire as [`crate::engine::neighbours::apart`] gives it.
-    pub fn new(assembly: &Assembly, apart: Vec<u32>) -> Self {
-        let bonded = (0..assembly.len()).map(|slot| assembly.is_bond(slot)).collect();
-        Self { wire_of: assembly.wire_of.clone(), apart, bonded }
-    }
-
-    /// Whether two particles belong to one wire.
-    pub fn one_wire(&self, a: u32, b: u32) -> bool {
-        let wire = self.wire_of[a as usize];
-        wire != u32::MAX && wire == self.wire_of[b as usize]
-    }
-
-    /// Whether two particles belong to one wire and all bonds between them hold.
-    pub fn one_piece(&self, a: u32, b: u32, state: &State) -> bool {
-        let (first, last) = (a.min(b) as usize, a.max(b) as usize);
-        self.one_wire(a, b) && state.whole[first..last].iter().all(|w| *w)
-    }
-
-    /// Whether bond `k` belongs to the surroundings of particle `i` on its own wire, which it never touches. A contact of
-    /// a wire with itself would otherwise walk home along the wire.
-    fn beside(&self, i: usize, k: usize, state: &State) -> bool {
-        let apart = self.apart[self.wire_of[i] as usize] as usize;
-        let between = if k < i { k + 1..i } else { i..k };
-        between.len() < apart && state.whole[between].iter().all(|w| *w)
-    }
-
-    /// Memory that it keeps [bytes].
-    pub fn bytes(&self) -> usize {
-        behind(&self.wire_of) + behind(&self.apart) + behind(&self.bonded)
-    }
-
-    /// Slots whose bond broke.
-    pub fn broken<'a>(&'a self, state: &'a State) -> impl Iterator<Item = usize> + 'a {
-        (0..self.bonded.len()).filter(|slot| self.bonded[*slot] && !state.whole[*slot])
-    }
-
-    /// Whether a particle has no bond: a free sphere, or what two breaks have left.
-    pub fn alone(&self, p: usize, state: &State) -> bool {
-        !state.whole[p] && !before(state, p)
-    }
-
-    /// Whether particle `i` lies near an end of its piece, or bond `j` near one of its: within a few bonds, so that no
-    /// contact reaches the end before the next list. A wire beside itself counts as near.
-    pub fn near_end(&self, i: u32, j: u32, state: &State) -> bool {
-        let (i, j) = (i as usize, j as usize);
-        let holds = |from: usize, to: usize| state.whole.get(from..to).is_some_and(|near| near.iter().all(|w| *w));
-        self.one_wire(i as u32, j as u32)
-            || i < 2
-            || j < MARGIN
-            || !holds(i - 2, i + 2)
-            || !holds(j - MARGIN, j + MARGIN + 1)
-    }
-
-    /// How far the length that particle `p` stands for reaches to either side, in bonds [-]: half a bond, also where it
-    /// broke, and nothing beyond the ends that the wire has had from the start.
-    pub fn reach(&self, p: usize) -> [f64; 2] {
-        let half = |bonded: bool| if bonded { 0.5 } else { 0.0 };
-        [-half(p > 0 && self.bonded[p - 1]), half(self.bonded[p])]
-    }
-}
-
-/// Whether the bond before particle `p` holds.
-fn before(state: &State, p: usize) -> bool {
-    p > 0 && state.whole[p - 1]
 }
 
 /// The wire around a particle: a quartic, or less where neighbours are missing.
@@ -543,5 +462,90 @@ impl Other<'_> {
         let before = place.t <= low && slip < -CLOSE;
         let at_end = before || place.t >= high && slip > CLOSE;
         Foot { point, along, bend, at_end, before }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::random::uniform;
+    use crate::strand::assembly::Assembly;
+    use proptest::prelude::*;
+
+    /// One crooked wire of nine particles, of whose bonds those in `broken` are broken.
+    fn wire(broken: &[usize]) -> (Chains, State) {
+        let n = 9;
+        let position: Vectors = (0..n as u64)
+            .map(|i| DVec3::new(uniform(7, i, 0), uniform(7, i, 1), i as f64 + 0.3 * uniform(7, i, 2)))
+            .collect();
+        let mut rest_length = vec![1.0; n];
+        rest_length[n - 1] = 0.0;
+        let assembly = Assembly {
+            layers: Vec::new(),
+            wires: Vec::new(),
+            wire_particles: n,
+            velocity: Vectors::zeros(n),
+            spin: Vectors::zeros(n),
+            radius: vec![0.5; n],
+            mass: vec![1.0; n],
+            inertia: vec![1.0; n],
+            rest_length,
+            wire_of: vec![0; n],
+            length: 0.0,
+            area: 0.0,
+            position,
+        };
+        let mut state = State::new(&assembly, true);
+        broken.iter().for_each(|slot| state.whole[*slot] = false);
+        (Chains::new(&assembly, vec![2]), state)
+    }
+
+    /// Breaks that leave ends, pairs and single particles.
+    const BREAKS: [&[usize]; 5] = [&[], &[3], &[2, 4], &[1, 2, 5], &[0, 1, 2, 3, 4, 5, 6, 7]];
+
+    #[test]
+    fn tangent_and_curvature_go_on_from_bond_to_bond() {
+        let (_, state) = wire(&[]);
+        for slot in 0..7 {
+            let end = Arc::new(&state.x, &state, slot).at(1.0);
+            let next = Arc::new(&state.x, &state, slot + 1).at(0.0);
+            for (one, other) in end.into_iter().zip(next) {
+                assert!((one - other).length() < 1e-12, "after bond {slot}: {one} {other}");
+            }
+        }
+    }
+
+    proptest! {
+        /// The power of the particles is that of the points at which forces act.
+        #[test]
+        fn forces_do_the_work_of_the_points(u in -0.5..0.5f64, t in 0.0..1.0f64, case in 0..BREAKS.len(), i in 0..9usize) {
+            let (chains, state) = wire(BREAKS[case]);
+            let force = DVec3::new(1.0, -2.0, 0.5);
+            let mut power = 0.0;
+            let mut sum = DVec3::ZERO;
+            let around = Around::new(&state.x, &state, &chains, i);
+            let powers = [1.0, u, u * u, u * u * u, u * u * u * u].map(|power| force * power);
+            let moments = if chains.alone(i, &state) { [force, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO] } else { powers };
+            around.spread(i, &moments, &mut |node, f| {
+                power += f.dot(state.x.get(node));
+                sum += f;
+            });
+            let point = if chains.alone(i, &state) { state.x.get(i) } else { around.at(u)[0] };
+            prop_assert!((power - force.dot(point)).abs() < 1e-12 && (sum - force).length() < 1e-12);
+            let weighted = around.weights(u).mean(|p| state.x.get(p));
+            prop_assert!((weighted - point).length() < 1e-12);
+
+            let (mut power, mut sum) = (0.0, DVec3::ZERO);
+            let functions = [1.0, t, t * t, blend(t)[0]].map(|value| force * value);
+            spread_arc(&state, i, &functions, &mut |node, f| {
+                power += f.dot(state.x.get(node));
+                sum += f;
+            });
+            let point = if state.whole[i] { Arc::new(&state.x, &state, i).at(t)[0] } else { state.x.get(i) };
+            prop_assert!((power - force.dot(point)).abs() < 1e-12 && (sum - force).length() < 1e-12);
+            if state.whole[i] {
+                prop_assert!((arc_weights(&state, i, t).mean(|p| state.x.get(p)) - point).length() < 1e-12);
+            }
+        }
     }
 }

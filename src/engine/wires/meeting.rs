@@ -1,7 +1,8 @@
 //! One contact at one step: where two bodies meet, and how.
 
 use super::beside::Beside;
-use super::curve::{Arc, Around, Chains, Foot, Other, blend, shifted};
+use super::chains::Chains;
+use super::curve::{Arc, Around, Foot, Other, blend, shifted};
 use super::spread::{FarSum, NearSum};
 use super::{Contact, Kind, Mode, Touch};
 use crate::base::triple::Triple;

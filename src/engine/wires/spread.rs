@@ -4,7 +4,8 @@
 //! enough to add up, per particle and per bond, the force times each function of u and of t that these curves are made of; what that does to particles then follows once for all contacts, with the same coefficients that
 //! give the points. Neither momentum nor energy is lost.
 
-use super::curve::{Around, Chains, spread_arc};
+use super::chains::Chains;
+use super::curve::{Around, spread_arc};
 use crate::engine::bytes::behind;
 use crate::engine::state::{CHUNK, State};
 use glam::DVec3;

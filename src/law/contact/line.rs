@@ -21,8 +21,8 @@
 //! f = k δ for δ ≤ δ_y, f = (2k/π) [δ asin √(δ_y/δ) + √(δ_y(δ − δ_y))] beyond, δ_y = π² p_y² R*/(8 k²)
 //!
 //! (Abel's inversion; the limit is p_y times the width √(2R*δ), whatever the angle). Each place keeps the dent
-//! δ_p = δ_m − f_m/k that its greatest overlap δ_m has left, and unloads along f = k (δ − δ_p). The greatest overlap is
-//! kept for a stretch as a whole, as that of its deepest place.
+//! δ_p = δ_m − f_m/k that its greatest overlap δ_m has left, and unloads along f = k (δ − δ_p). Wires side by side keep it
+//! cell by cell ([`respond_cells`]), wires that cross for the deepest place of their patch ([`respond`]).
 
 use crate::base::lanes::{Mask, Real};
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
@@ -472,6 +472,56 @@ mod tests {
                 near(left.force + right.force, force, if pressure.is_finite() { 1e-2 } else { 1e-12 });
             }
         }
+    }
+
+    /// Cells of wires side by side, crossing at a small angle.
+    fn cells(overlap: f64, greatest: &mut [f64; CELLS]) -> CellResponse<f64> {
+        let bend = 0.05f64.sin().powi(2) / (4.0 * RADIUS) * 0.4e-3 * 0.4e-3;
+        let gap = CellGap {
+            reduced_radius: RADIUS,
+            stiffness: MODULUS * LINE,
+            overlap,
+            rise: 0.0,
+            bend,
+            first: -0.5,
+            width: 1.0 / CELLS as f64,
+            length: 0.4e-3 / CELLS as f64,
+        };
+        respond_cells(&gap, 4e8, &[1.0; CELLS], greatest)
+    }
+
+    #[test]
+    fn cells_add_up_to_a_patch() {
+        let stretch = |overlap: f64| Stretch {
+            reduced_radius: RADIUS,
+            stiffness: MODULUS * LINE,
+            overlap,
+            slope: 0.0,
+            curvature: 0.05f64.sin().powi(2) / (4.0 * RADIUS),
+            ends: [-0.2e-3, 0.2e-3],
+        };
+        for overlap in [0.3e-6, 1e-6, 4e-6] {
+            let whole = respond(&stretch(overlap), 4e8, &mut 0.0).force;
+            near(cells(overlap, &mut [0.0; CELLS]).moments[0], whole, 2e-2);
+        }
+    }
+
+    #[test]
+    fn what_cells_lose_is_the_work_done_on_them() {
+        let turns = [0.0, 2e-6, 1.5e-6, 3e-6, 0.0, 3e-6, 4e-6, 0.0];
+        let (mut dents, mut work, mut plastic, mut before) = ([0.0; CELLS], 0.0, 0.0, 0.0);
+        for pair in turns.windows(2) {
+            let steps = 2000;
+            let step = (pair[1] - pair[0]) / f64::from(steps);
+            for i in 1..=steps {
+                let answer = cells(pair[0] + f64::from(i) * step, &mut dents);
+                work += 0.5 * (before + answer.moments[0]) * step;
+                plastic += answer.plastic_work;
+                before = answer.moments[0];
+                assert!((work - plastic - answer.energy).abs() < 1e-5 * work.max(1e-6), "{work} {plastic} {answer:?}");
+            }
+        }
+        assert_eq!(before, 0.0);
     }
 
     #[test]

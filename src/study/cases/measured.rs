@@ -1,6 +1,7 @@
 //! What a study keeps of a run: its cost, its answer and its histories over strain.
 
 use crate::base::error::Result;
+use crate::engine::measure::MEAN_LAG;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
 use crate::observe::summary::{Break, RunSummary};
@@ -129,10 +130,6 @@ impl Measured {
     }
 }
 
-/// Strain and stress of a row are means over the last eighth of a wave's passage; the middle of it lies this share of a
-/// passage before the row [-].
-const STRAIN_LAG: f64 = 1.0 / 16.0;
-
 /// Keeps the histories of a run.
 #[derive(Debug, Default)]
 pub struct Watcher {
@@ -151,7 +148,7 @@ impl Observer for Watcher {
         let mut layer_wires = vec![0; info.layers.len()];
         info.wires.iter().for_each(|wire| layer_wires[wire.layer] += 1);
         let gauge_mm = info.gauge.map(|ends| ends.map(f64::from));
-        let lag = STRAIN_LAG * info.wave_passage;
+        let lag = MEAN_LAG * info.wave_passage;
         *self = Self { layers: info.layers.clone(), layer_wires, gauge_mm, lag, ..Self::default() };
         Ok(())
     }

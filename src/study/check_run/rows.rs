@@ -3,6 +3,7 @@
 use super::Invariant;
 use super::finding::{Outcome, Search};
 use super::folder::Folder;
+use crate::engine::measure::MEAN_LAG;
 use crate::scene::spec::DriveSpec;
 
 pub const FINITE: Invariant =
@@ -105,7 +106,8 @@ fn strain(run: &Folder) -> Outcome {
     search.end(0.0, "%", "there is one row")
 }
 
-/// Length that is free between the grips, by the rows of a pull at constant speed [m]: way over strain.
+/// Length that is free between the grips, by the rows of a pull at constant speed [m]: way over strain, both of the instant
+/// that the row's mean stands for.
 pub fn free_length(run: &Folder) -> Option<f64> {
     let grip = run.spec.grip.as_ref()?;
     let speed = speed(run).filter(|speed| *speed != 0.0)?;
@@ -114,7 +116,8 @@ pub fn free_length(run: &Folder) -> Option<f64> {
         .map(|row| (run.curve.number(row, "time_s"), run.curve.number(row, "strain_percent") * 1e-2));
     // The row that has come furthest is the most exact one.
     let (time, strain) = rows.take_while(|(_, strain)| strain.abs() < until).last()?;
-    (strain != 0.0).then(|| speed * time / strain)
+    let lag = MEAN_LAG * run.trajectory.info.wave_passage;
+    (strain != 0.0).then(|| speed * (time - lag) / strain)
 }
 
 fn pull(run: &Folder) -> Outcome {
