@@ -111,8 +111,6 @@ struct Contact<N: NormalLaw, T: TangentialLaw> {
     edge: bool,
     /// Two pieces of one wire, one of which has not yet passed the end of the other.
     end_to_end: bool,
-    /// Beyond an end of the other wire: what overlaps when it comes back did so without work.
-    beyond: bool,
     /// Taken over by the next list.
     taken: bool,
     history: History<N, T>,
@@ -225,7 +223,6 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             i,
             kind,
             taken: false,
-            beyond: false,
             end_to_end,
             mode: Mode::Point,
             edge: false,

@@ -273,10 +273,6 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         if c.end_to_end {
             return self.passing(c, overlap, look.foot.at_end || self.near_end(c, look.u));
         }
-        if std::mem::take(&mut c.beyond) && !c.history.touching() {
-            c.history.offset = (overlap + c.history.offset).max(0.0);
-            return Partial::default();
-        }
         if overlap <= 0.0 && !c.history.touching() {
             return self.finish(c, &Touch::Apart { t: at.t, gap: -overlap }, look.u, act, deepest);
         }
@@ -378,7 +374,6 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
 
     /// Beyond the end of the other wire: what was touching there has let go.
     fn let_go(&self, c: &mut Contact<N, T>) -> Partial {
-        c.beyond = true;
         if c.end_to_end || !c.history.touching() {
             return Partial::default();
         }
@@ -436,10 +431,6 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         let Some(mut lie) = self.lie(c) else { return self.let_go(c) };
         if c.end_to_end {
             return self.passing(c, lie.stretch.overlap, lie.at_end);
-        }
-        if std::mem::take(&mut c.beyond) && !c.history.touching() {
-            c.history.offset = (lie.stretch.overlap + c.history.offset).max(0.0);
-            return Partial::default();
         }
         if self.apart(c, -lie.stretch.overlap) {
             return Partial::default();
