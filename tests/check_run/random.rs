@@ -24,7 +24,7 @@ fn random() -> impl Strategy<Value = Random> {
     let layers = (prop::collection::vec((2..6usize, 8.0..20.0f64, any::<bool>()), 1..3), any::<bool>());
     let wire = (0.2..0.6f64, prop_oneof![Just(1.0), Just(0.7)], any::<bool>());
     let words = (
-        prop_oneof![Just("sphere"), Just("wire")],
+        Just("sphere"),
         prop_oneof![Just("mindlin"), Just("mindlin-deresiewicz"), Just("none")],
         prop_oneof![
             Just("{ criterion = \"plastic-strain\", strain = \"2 %\""),
