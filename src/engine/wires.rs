@@ -40,10 +40,9 @@ use crate::law::contact::line::{CELLS, LineStiffness, patch_length};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 use crate::strand::assembly::Assembly;
-use batch::Answers;
 use beside::Answer;
 use chains::Chains;
-use chunk::Chunk;
+use chunk::{Chunk, Work};
 use curve::{Around, Place};
 use meeting::Meets;
 use pulp::Arch;
@@ -153,7 +152,7 @@ pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
     /// That of each contact.
     quiet_until: Vec<f64>,
     spread: Spread,
-    acting: Vec<Vec<FarSum>>,
+    work: Vec<Work>,
     partial: Vec<Partial>,
     /// The deepest contact so far.
     deepest: Deepest,
@@ -177,7 +176,7 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             starts: Vec::new(),
             quiet_until: Vec::new(),
             spread: Spread::default(),
-            acting: Vec::new(),
+            work: Vec::new(),
             partial: Vec::new(),
             deepest: Deepest::default(),
             directed: Vec::new(),
@@ -353,7 +352,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         self.quiet_until.clear();
         self.quiet_until.resize(contacts.len(), 0.0);
         self.spread.resize(state.len());
-        self.acting.resize(chunks, Vec::new());
+        self.work.resize_with(chunks, Work::default);
         self.partial.clear();
         self.partial.resize(chunks, Partial::default());
         lost
@@ -371,7 +370,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             starts,
             quiet_until,
             spread,
-            acting,
+            work,
             partial,
             ..
         } = self;
@@ -379,17 +378,16 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         let meets = Meets { laws, line, state: &*state, chains, closing: *closing };
         let mut tasks = Vec::with_capacity(partial.len());
         let (mut contacts, mut quiet) = (&mut contacts[..], &mut quiet_until[..]);
-        for (chunk, (near, acting)) in spread.near.chunks_mut(CHUNK).zip(&mut *acting).enumerate() {
+        for (chunk, (near, work)) in spread.near.chunks_mut(CHUNK).zip(&mut *work).enumerate() {
             let count = starts[chunk + 1] - starts[chunk];
             let (own, others) = contacts.split_at_mut(count);
             let (quiet_until, other_quiet) = quiet.split_at_mut(count);
             (contacts, quiet) = (others, other_quiet);
             let (first, sum) = (chunk * CHUNK, Partial::beyond(before));
-            let answers = Answers::default();
-            tasks.push(Chunk { meets, arch, first, contacts: own, quiet_until, near, sum, acting, answers });
+            tasks.push(Chunk { meets, arch, first, contacts: own, quiet_until, near, sum, work });
         }
         (tasks, &mut *partial).into_par_iter().for_each(|(task, partial)| *partial = task.compute());
-        spread.finish(acting, chains, state, T::ACTIVE);
+        spread.finish(work, chains, state, T::ACTIVE);
         let mut sum = Partial::beyond(before);
         partial.iter().for_each(|p| sum.add(p));
         *deepest = sum.deepest;
@@ -450,12 +448,12 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             kept: behind(&self.contacts)
                 + behind(&self.old)
                 + behind(&self.quiet_until)
-                + self.acting.iter().map(behind).sum::<usize>()
+                + self.work.iter().map(|work| size_of::<Work>() + behind(&work.acting)).sum::<usize>()
                 + lists,
             // Records in and out; what they do to the other side out and in.
             moved: 2
                 * (size_of_val(&self.contacts[..])
-                    + self.acting.iter().map(|list| size_of_val(&list[..])).sum::<usize>())
+                    + self.work.iter().map(|work| size_of_val(&work.acting[..])).sum::<usize>())
                 + particles * per_particle,
         }
     }

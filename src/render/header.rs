@@ -8,7 +8,7 @@ use crate::engine::view::RunInfo;
 use crate::scene::spec::ColourBy;
 
 /// Caption of the block on the first rupture.
-const FIRST_BREAK: &str = "first break";
+const FIRST_BREAK: &str = "first break in this strand";
 
 /// Draws the header into `area`.
 pub fn draw(canvas: &mut Canvas, area: Rect, data: &Data) {

@@ -8,7 +8,7 @@ use crate::base::triple::Triple;
 use crate::engine::pair::{Given, History};
 use crate::engine::state::State;
 use crate::law::contact::NormalLaw;
-use crate::law::contact::line::{CELLS, CellResponse};
+use crate::law::contact::line::CELLS;
 use crate::law::tangential::TangentialLaw;
 use pulp::{Simd, WithSimd};
 
@@ -31,58 +31,22 @@ const HISTORY: usize = DENTS + CELLS;
 const NUMBERS: usize = 24;
 const ROWS: usize = HISTORY + NUMBERS;
 
-/// Contacts to be taken at once, field by field.
-pub struct Batch {
-    /// The contacts, by their place in the chunk.
+/// Contacts to be taken at once, field by field in `ROWS` rows.
+pub struct Queue<const ROWS: usize> {
+    /// By their place in the chunk.
     contacts: [usize; BLOCK],
     count: usize,
     rows: [[f64; BLOCK]; ROWS],
 }
 
-impl Default for Batch {
+impl<const ROWS: usize> Default for Queue<ROWS> {
     fn default() -> Self {
         // Where there is no contact, lanes are computed all the same.
         Self { contacts: [0; BLOCK], count: 0, rows: [[1.0; BLOCK]; ROWS] }
     }
 }
 
-/// Rows of [`Gaps`].
-const GAP_RADIUS: usize = 27;
-const GAP_PLACE: usize = GAP_RADIUS + 3;
-const GAP_OFFSET: usize = GAP_PLACE + 1;
-const GAP_ROWS: usize = GAP_OFFSET + 1;
-
-/// Contacts that were apart, to be looked at at once.
-pub struct Gaps {
-    contacts: [usize; BLOCK],
-    count: usize,
-    rows: [[f64; BLOCK]; GAP_ROWS],
-}
-
-impl Default for Gaps {
-    fn default() -> Self {
-        Self { contacts: [0; BLOCK], count: 0, rows: [[1.0; BLOCK]; GAP_ROWS] }
-    }
-}
-
-impl Gaps {
-    /// Takes a contact in; its surroundings must hold on both wires.
-    #[inline(always)]
-    pub fn take<N: NormalLaw, T: TangentialLaw>(&mut self, k: usize, c: &Contact<N, T>, state: &State) {
-        // The count is below BLOCK always; said so that no bound is checked again and again.
-        let (lane, rows) = (self.count % BLOCK, &mut self.rows);
-        let (i, j) = (c.i as usize, c.place.j as usize);
-        put::<5, GAP_ROWS>(rows, lane, 0, state.x.rows(), i - 2);
-        put::<4, GAP_ROWS>(rows, lane, 15, state.x.rows(), j - 1);
-        rows[GAP_RADIUS][lane] = state.radius[i];
-        rows[GAP_RADIUS + 1][lane] = state.radius[j];
-        rows[GAP_RADIUS + 2][lane] = state.radius[j + 1];
-        rows[GAP_PLACE][lane] = c.place.t;
-        rows[GAP_OFFSET][lane] = c.history.offset;
-        self.contacts[lane] = k;
-        self.count += 1;
-    }
-
+impl<const ROWS: usize> Queue<ROWS> {
     /// Whether no more can be taken in.
     pub fn full(&self) -> bool {
         self.count == BLOCK
@@ -96,6 +60,66 @@ impl Gaps {
     /// The contacts, by their place in the chunk.
     pub fn contacts(&self) -> &[usize] {
         &self.contacts[..self.count]
+    }
+
+    /// Lane of the next contact, which is the chunk's `k`-th.
+    #[inline(always)]
+    fn next(&mut self, k: usize) -> usize {
+        // The count is below BLOCK always; said so that no bound is checked again and again.
+        let lane = self.count % BLOCK;
+        self.contacts[lane] = k;
+        self.count += 1;
+        lane
+    }
+
+    /// `COUNT` vectors from `at` on, axis by axis, to the rows from `first` on.
+    #[inline(always)]
+    fn put<const COUNT: usize>(&mut self, lane: usize, first: usize, from: [&[f64]; 3], at: usize) {
+        for (axis, stream) in from.into_iter().enumerate() {
+            for (k, value) in stream[at..at + COUNT].iter().enumerate() {
+                self.rows[first + axis * COUNT + k][lane] = *value;
+            }
+        }
+    }
+
+    /// Points of the stretch and the other bond, from `streams` of positions or velocities.
+    #[inline(always)]
+    fn put_points(&mut self, lane: usize, [near, far]: [usize; 2], streams: [&[f64]; 3], [i, j]: [usize; 2]) {
+        self.put::<5>(lane, near, streams, i - 2);
+        self.put::<4>(lane, far, streams, j - 1);
+    }
+
+    /// The three radii, from row `first` on.
+    #[inline(always)]
+    fn put_radii(&mut self, lane: usize, first: usize, radius: &[f64], [i, j]: [usize; 2]) {
+        self.rows[first][lane] = radius[i];
+        self.rows[first + 1][lane] = radius[j];
+        self.rows[first + 2][lane] = radius[j + 1];
+    }
+}
+
+/// Contacts that touch.
+pub type Batch = Queue<ROWS>;
+/// Contacts that were apart, to be looked at.
+pub type Gaps = Queue<GAP_ROWS>;
+
+/// Rows of [`Gaps`].
+const GAP_NEAR: usize = 0;
+const GAP_FAR: usize = GAP_NEAR + 15;
+const GAP_RADIUS: usize = GAP_FAR + 12;
+const GAP_PLACE: usize = GAP_RADIUS + 3;
+const GAP_OFFSET: usize = GAP_PLACE + 1;
+const GAP_ROWS: usize = GAP_OFFSET + 1;
+
+impl Gaps {
+    /// Takes a contact in; its surroundings must hold on both wires.
+    #[inline(always)]
+    pub fn take<N: NormalLaw, T: TangentialLaw>(&mut self, k: usize, c: &Contact<N, T>, state: &State) {
+        let (lane, pair) = (self.next(k), [c.i as usize, c.place.j as usize]);
+        self.put_points(lane, [GAP_NEAR, GAP_FAR], state.x.rows(), pair);
+        self.put_radii(lane, GAP_RADIUS, &state.radius, pair);
+        self.rows[GAP_PLACE][lane] = c.place.t;
+        self.rows[GAP_OFFSET][lane] = c.history.offset;
     }
 
     /// Finds foot [-] and gap [m] of each, with the instructions of the machine.
@@ -119,9 +143,9 @@ impl WithSimd for Find<'_> {
             let zero = rows.row(GAP_PLACE).like(0.0);
             let nowhere = Triple::zero(zero);
             let beside = Beside {
-                near: rows.quartic(0),
+                near: rows.quartic(GAP_NEAR),
                 near_velocity: [nowhere; 3],
-                far: rows.arc(15),
+                far: rows.arc(GAP_FAR),
                 far_velocity: [nowhere; 4],
                 spin: [nowhere; 3],
                 radius: [rows.row(GAP_RADIUS), rows.row(GAP_RADIUS + 1), rows.row(GAP_RADIUS + 2)],
@@ -143,42 +167,22 @@ impl WithSimd for Find<'_> {
     }
 }
 
-#[inline(always)]
-fn put<const COUNT: usize, const ALL: usize>(
-    rows: &mut [[f64; BLOCK]; ALL],
-    lane: usize,
-    first: usize,
-    from: [&[f64]; 3],
-    at: usize,
-) {
-    for axis in 0..3 {
-        let values = &from[axis][at..at + COUNT];
-        for k in 0..COUNT {
-            rows[first + axis * COUNT + k][lane] = values[k];
-        }
-    }
-}
-
 impl Batch {
     /// Takes a contact in; its surroundings must hold on both wires.
     #[inline(always)]
     pub fn take<N: NormalLaw, T: TangentialLaw>(&mut self, k: usize, c: &Contact<N, T>, meets: &Meets<'_, N, T>) {
         const { assert!(History::<N, T>::NUMBERS <= NUMBERS) };
-        // The count is below BLOCK always; said so that no bound is checked again and again.
-        let (lane, rows, state) = (self.count % BLOCK, &mut self.rows, meets.state);
-        let (i, j) = (c.i as usize, c.place.j as usize);
-        put::<5, ROWS>(rows, lane, NEAR, state.x.rows(), i - 2);
-        put::<5, ROWS>(rows, lane, NEAR_VELOCITY, state.v.rows(), i - 2);
-        put::<4, ROWS>(rows, lane, FAR, state.x.rows(), j - 1);
-        put::<4, ROWS>(rows, lane, FAR_VELOCITY, state.v.rows(), j - 1);
+        let (lane, state) = (self.next(k), meets.state);
+        let [i, j] = [c.i, c.place.j].map(|p| p as usize);
+        self.put_points(lane, [NEAR, FAR], state.x.rows(), [i, j]);
+        self.put_points(lane, [NEAR_VELOCITY, FAR_VELOCITY], state.v.rows(), [i, j]);
+        self.put_radii(lane, RADIUS, &state.radius, [i, j]);
         if T::ACTIVE {
-            put::<1, ROWS>(rows, lane, SPIN, state.w.rows(), i);
-            put::<2, ROWS>(rows, lane, SPIN + 3, state.w.rows(), j);
+            self.put::<1>(lane, SPIN, state.w.rows(), i);
+            self.put::<2>(lane, SPIN + 3, state.w.rows(), j);
         }
+        let rows = &mut self.rows;
         let mut set = |row: usize, value: f64| rows[row][lane] = value;
-        set(RADIUS, state.radius[i]);
-        set(RADIUS + 1, state.radius[j]);
-        set(RADIUS + 2, state.radius[j + 1]);
         set(PLACE, c.place.t);
         set(LENGTH, c.cell_length);
         set(PER_LENGTH, c.per_length);
@@ -189,23 +193,6 @@ impl Batch {
             set(DENTS + q, dent);
         }
         c.history.each_number(|n, number| set(HISTORY + n, number));
-        self.contacts[lane] = k;
-        self.count += 1;
-    }
-
-    /// Whether no more can be taken in.
-    pub fn full(&self) -> bool {
-        self.count == BLOCK
-    }
-
-    /// Forgets them.
-    pub fn clear(&mut self) {
-        self.count = 0;
-    }
-
-    /// The contacts, by their place in the chunk.
-    pub fn contacts(&self) -> &[usize] {
-        &self.contacts[..self.count]
     }
 
     /// Takes them through the laws, with the instructions of the machine.
@@ -230,7 +217,7 @@ const OUT_ARMS: usize = 7;
 const OUT_ENERGY: usize = 9;
 const OUT_STIFFNESS: usize = 10;
 const OUT_FORCE: usize = 11;
-const OUT_FIRST: usize = 12;
+const OUT_MEAN: usize = 12;
 const OUT_GIVEN: usize = 13;
 const OUT_NEAR: usize = 17;
 const OUT_FAR: usize = 26;
@@ -308,10 +295,10 @@ impl<N: NormalLaw, T: TangentialLaw> Run<'_, N, T> {
         put(OUT_REACH, answer.reach);
         put(OUT_ARMS, answer.arms[0]);
         put(OUT_ARMS + 1, answer.arms[1]);
-        put(OUT_ENERGY, answer.cells.energy);
-        put(OUT_STIFFNESS, answer.cells.stiffness);
-        put(OUT_FORCE, answer.cells.moments[0]);
-        put(OUT_FIRST, answer.cells.moments[1]);
+        put(OUT_ENERGY, answer.energy);
+        put(OUT_STIFFNESS, answer.stiffness);
+        put(OUT_FORCE, answer.force);
+        put(OUT_MEAN, answer.mean);
         put(OUT_GIVEN, answer.given.plastic);
         put(OUT_GIVEN + 1, answer.given.thinning);
         put(OUT_GIVEN + 2, answer.given.friction);
@@ -362,12 +349,10 @@ impl Answers {
                 friction: get(OUT_GIVEN + 2),
                 damping: get(OUT_GIVEN + 3),
             },
-            cells: CellResponse {
-                moments: [get(OUT_FORCE), get(OUT_FIRST), 0.0],
-                stiffness: get(OUT_STIFFNESS),
-                energy: get(OUT_ENERGY),
-                plastic_work: 0.0,
-            },
+            force: get(OUT_FORCE),
+            mean: get(OUT_MEAN),
+            stiffness: get(OUT_STIFFNESS),
+            energy: get(OUT_ENERGY),
             deepest: get(OUT_DEEPEST),
             reach: get(OUT_REACH),
             arms: [get(OUT_ARMS), get(OUT_ARMS + 1)],

@@ -13,7 +13,7 @@ use super::curve::blend;
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
 use crate::engine::pair::{Given, History, Laws, Meeting, press};
-use crate::law::contact::line::{CELLS, CellGap, CellResponse, respond_cells};
+use crate::law::contact::line::{CELLS, CellGap, respond_cells};
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::TangentialLaw;
 
@@ -93,8 +93,14 @@ pub struct Answer<R> {
     pub act: Act<R>,
     /// Energies that it gives off.
     pub given: Given<R>,
-    /// What its cells said.
-    pub cells: CellResponse<R>,
+    /// Normal force of its cells [N], and where it acts, in bonds from the expansion [-].
+    pub force: R,
+    /// See `force`.
+    pub mean: R,
+    /// Elastic stiffness [N/m].
+    pub stiffness: R,
+    /// Elastic energy [J].
+    pub energy: R,
     /// Overlap of the deepest cell, positive or not [m].
     pub deepest: R,
     /// Sum of the radii less what does not count [m].
@@ -145,8 +151,7 @@ impl<R: Real> Beside<R> {
         let half = e1.length_squared() + e.dot(e2);
         let r2 = (half - r1 * r1) * inverse;
         let n2 = (e2 - n1 * (r1 * 2.0) - n * r2) * inverse;
-        let between = t.greater(t.like(0.0)).lesser(t.like(1.0));
-        let touching = self.radius[0] + (self.radius[2] - self.radius[1]).mul_add(between, self.radius[1]);
+        let touching = self.radius[0] + (self.radius[2] - self.radius[1]).mul_add(self.between(t), self.radius[1]);
         Expansion { t, rate, bend, away: [e, e1, e2], normal: [n, n1, n2], distance: [distance, r1, r2], touching }
     }
 
@@ -200,18 +205,17 @@ impl<R: Real> Beside<R> {
         // The mean line from the stretch to the other wire: friction along it would turn the two.
         let [e, e1, e2] = at.away;
         let toward = (e + e1 * mean + e2 * (square * 0.5)) * zero.like(-1.0);
-        let inverse = toward.length_squared().inverse_sqrt();
-        let (normal, mean_distance) = (toward * inverse, toward.length_squared() * inverse);
+        let apart = toward.length_squared();
+        let inverse = apart.inverse_sqrt();
+        let (normal, mean_distance) = (toward * inverse, apart * inverse);
         let arm = self.radius[0] - (at.touching - mean_distance) * 0.5;
         let arms = [arm, mean_distance - arm];
         // The normal force spread over the particles' polynomials, per force.
         let push_a = n + n1 * mean + n2 * (square * 0.5);
         let push = [push_a, n * mean + n1 * square, n * (square * 0.5)];
-        let spread = [normal, normal * mean, normal * (square * 0.5)];
         let slide = self.velocity(at, mean, square, normal, arms, T::ACTIVE);
         // The dashpot takes what the spread force does.
-        let approach = zero - self.power(at, &push);
-        let velocity = slide + normal * (approach - self.power(at, &spread));
+        let velocity = slide - normal * (self.power(at, &push) + slide.dot(normal));
         let stiffness = cells.stiffness;
         let radius = stiffness * (0.5 / laws.normal.effective_modulus());
         let answer = NormalResponse {
@@ -233,7 +237,7 @@ impl<R: Real> Beside<R> {
         let b = push[1] * whole + friction * mean;
         let c = push[2] * whole + friction * (square * 0.5);
         let act = self.act(at, [a, b, c], normal.cross(friction), arms);
-        Answer { act, given, cells, deepest, reach, arms }
+        Answer { act, given, force, mean, stiffness, energy: cells.energy, deepest, reach, arms }
     }
 
     /// Velocity of the other wire's surface relative to the stretch's, as the force sees it.

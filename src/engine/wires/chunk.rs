@@ -10,6 +10,16 @@ use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
 use pulp::{Arch, Simd, WithSimd};
 
+/// What a chunk works with, kept for its memory.
+#[derive(Default)]
+pub struct Work {
+    gaps: Gaps,
+    batch: Batch,
+    answers: Answers,
+    /// What contacts do to the other wires' bonds.
+    pub acting: Vec<FarSum>,
+}
+
 /// The contacts of one chunk of particles.
 pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     pub meets: Meets<'a, N, T>,
@@ -21,9 +31,7 @@ pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     pub quiet_until: &'a mut [f64],
     pub near: &'a mut [NearSum],
     pub sum: Partial,
-    /// What contacts do to the other wires' bonds.
-    pub acting: &'a mut Vec<FarSum>,
-    pub answers: Answers,
+    pub work: &'a mut Work,
 }
 
 /// One contact by itself, with the instructions of the machine: the laws round as these do, and without them a library
@@ -47,9 +55,8 @@ impl<N: NormalLaw, T: TangentialLaw> WithSimd for Alone<'_, '_, N, T> {
 impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
     /// The energies of the step.
     pub fn compute(mut self) -> Partial {
-        self.acting.clear();
+        self.work.acting.clear();
         self.near.fill(NearSum::default());
-        let (mut gaps, mut batch) = (Gaps::default(), Batch::default());
         for k in 0..self.contacts.len() {
             if self.quiet_until[k] > self.meets.state.travel {
                 continue;
@@ -58,17 +65,16 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
             if c.mode == Mode::Point || c.edge {
                 self.alone(k);
             } else if c.history.touching() {
-                self.take(k, &mut batch);
+                self.take(k);
             } else {
-                gaps.take(k, c, self.meets.state);
-                if gaps.full() {
-                    self.part(&gaps, &mut batch);
-                    gaps.clear();
+                self.work.gaps.take(k, c, self.meets.state);
+                if self.work.gaps.full() {
+                    self.part();
                 }
             }
         }
-        self.part(&gaps, &mut batch);
-        self.run(&batch);
+        self.part();
+        self.run();
         self.sum
     }
 
@@ -82,7 +88,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
             sum.acts = true;
             sum.force.iter_mut().zip(act.near.force).for_each(|(sum, f)| *sum += f);
             sum.moment += act.near.moment;
-            self.acting.push(act.far);
+            self.work.acting.push(act.far);
         }
     }
 
@@ -97,49 +103,52 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
     }
 
     /// Puts a contact into the batch, which is run when it is full.
-    fn take(&mut self, k: usize, batch: &mut Batch) {
-        batch.take(k, &self.contacts[k], &self.meets);
-        if batch.full() {
-            self.run(batch);
-            batch.clear();
+    fn take(&mut self, k: usize) {
+        self.work.batch.take(k, &self.contacts[k], &self.meets);
+        if self.work.batch.full() {
+            self.run();
         }
     }
 
     /// Looks whether contacts that were apart still are.
     #[inline(never)]
-    fn part(&mut self, gaps: &Gaps, batch: &mut Batch) {
-        let found = self.arch.dispatch(gaps.find());
-        for (lane, k) in gaps.contacts().iter().enumerate() {
-            let [t, gap] = [found[0][lane], found[1][lane]];
+    fn part(&mut self) {
+        let found = self.arch.dispatch(self.work.gaps.find());
+        for lane in 0..self.work.gaps.contacts().len() {
+            let (k, [t, gap]) = (self.work.gaps.contacts()[lane], found.map(|row| row[lane]));
             if !(0.0..=1.0).contains(&t) {
                 // On to the next bond.
-                self.alone(*k);
+                self.alone(k);
             } else if gap < 0.0 {
-                self.take(*k, batch);
+                self.take(k);
             } else {
-                let c = &mut self.contacts[*k];
+                let c = &mut self.contacts[k];
                 c.place.t = t;
                 self.meets.apart(c, gap);
-                self.quiet_until[*k] = c.quiet_until;
+                self.quiet_until[k] = c.quiet_until;
             }
         }
+        self.work.gaps.clear();
     }
 
+    /// Takes contacts that touch through the laws.
     #[inline(never)]
-    fn run(&mut self, batch: &Batch) {
-        self.arch.dispatch(batch.answer(&self.meets, &mut self.answers));
-        for (lane, k) in batch.contacts().iter().enumerate() {
-            let t = self.answers.place(lane);
-            if !(0.0..=1.0).contains(&t) {
+    fn run(&mut self) {
+        let Work { batch, answers, .. } = &mut *self.work;
+        self.arch.dispatch(batch.answer(&self.meets, answers));
+        for lane in 0..self.work.batch.contacts().len() {
+            let k = self.work.batch.contacts()[lane];
+            if !(0.0..=1.0).contains(&self.work.answers.place(lane)) {
                 // On to the next bond.
-                self.alone(*k);
+                self.alone(k);
                 continue;
             }
             let (mut act, mut deepest) = (Sides::default(), self.sum.deepest);
-            let c = &mut self.contacts[*k];
-            let touch = self.answers.at(lane, c);
+            let c = &mut self.contacts[k];
+            let touch = self.work.answers.at(lane, c);
             let partial = self.meets.finish(c, &touch, 0.0, &mut act, &mut deepest);
-            self.book(*k, &act, Partial { deepest, ..partial });
+            self.book(k, &act, Partial { deepest, ..partial });
         }
+        self.work.batch.clear();
     }
 }

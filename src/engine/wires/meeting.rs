@@ -280,14 +280,15 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             beside.per_length = self.per_length(c.history.reduced_radius, at.distance[2] / (bond * bond));
         }
         let (mut dents, mut history) = (c.dents, c.history);
-        // What slides beyond an end takes with it what it had stored.
+        // What slides beyond an end takes with it what it had stored. What slides in is left to the ledger: no work was done
+        // for it.
         let mut released = 0.0;
         if c.history.touching() && shares != c.shares {
             let gap = beside.gap(&at, c.history.offset, c.history.reduced_radius);
             let stored = |share: &[f64; CELLS]| {
                 respond_cells(&gap, self.laws.normal.limiting_pressure(), share, &mut dents.clone()).energy
             };
-            released = stored(&c.shares) - stored(&shares);
+            released = (stored(&c.shares) - stored(&shares)).max(0.0);
         }
         c.shares = shares;
         let answer = beside.respond(self.laws, &at, &shares, &mut dents, &mut history, self.state.dt);
@@ -326,11 +327,10 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             }
             Touch::Here { ref answer, t, touching, per_length, curvature } => {
                 (c.place.t, c.per_length) = (t, per_length);
-                (c.overlap, c.reach, c.energy) = (answer.deepest.max(0.0), answer.reach, answer.cells.energy);
+                (c.overlap, c.reach, c.energy) = (answer.deepest.max(0.0), answer.reach, answer.energy);
                 (c.curvature, c.length) = (curvature, CELLS as f64 * c.cell_length);
-                let [force, first, _] = answer.cells.moments;
-                if force > 0.0 {
-                    c.u = u + first / force;
+                if answer.force > 0.0 {
+                    c.u = u + answer.mean;
                     c.arm = answer.arms;
                     let [a, b, c2] = answer.act.near.map(DVec3::from);
                     let moments = [a, b, c2, DVec3::ZERO, DVec3::ZERO];
@@ -348,9 +348,9 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
                     let least = self.state.radius[c.i as usize].min(touching - self.state.radius[c.i as usize]);
                     let area = || {
                         let width = (2.0 * c.history.reduced_radius * c.overlap).sqrt();
-                        width * answer.cells.stiffness / c.per_length
+                        width * answer.stiffness / c.per_length
                     };
-                    deepest.meet([c.i, c.place.j], c.overlap, least, area, force);
+                    deepest.meet([c.i, c.place.j], c.overlap, least, area, answer.force);
                 }
                 answer.given.partial()
             }
