@@ -16,12 +16,14 @@ mod stop;
 #[cfg(feature = "record")]
 pub mod view;
 
+pub use crate::base::finding::StopReason;
 pub use crate::observe::summary::RunSummary;
 pub use drive::{Outcome, simulate};
 pub use schedule::{Due, Schedule};
-pub use stop::{StopReason, StopRule};
+pub use stop::StopRule;
 
 use crate::base::error::{Error, Result};
+use crate::base::finding::Kept;
 use crate::engine::Engine;
 use crate::observe::Observer;
 use crate::observe::files::write_whole;
@@ -66,7 +68,7 @@ pub struct RunOptions {
 /// are kept.
 ///
 /// # Errors
-/// Bad input (scene, geometry, output folder), something missing on the machine (adapter, viewer), trouble in the
+/// Bad input (scene, geometry, output folder), something missing on the machine (adapter, viewer), failure of the
 /// simulation, or a file that cannot be written.
 pub fn run(scene: &Scene, options: &RunOptions, stop: &AtomicBool) -> Result<RunSummary> {
     in_pool(options.threads, || run_watched(scene, options, Vec::new(), stop))?
@@ -106,7 +108,7 @@ pub fn assemble(scene: &Scene) -> Result<Assembly> {
 /// the threads. `stop` ends it early, with a summary that says so.
 ///
 /// # Errors
-/// Geometry that cannot be, what [`Engine::new`] refuses, trouble in the simulation, and what a watcher answers.
+/// Geometry that cannot be, what [`Engine::new`] refuses, failure of the simulation, and what a watcher answers.
 pub fn summarise(scene: &Scene, watchers: Vec<&mut dyn Observer>, stop: &AtomicBool) -> Result<RunSummary> {
     let clock = Clock::start();
     let assembly = assemble(scene)?;
@@ -214,24 +216,24 @@ fn drive_and_summarise(
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(progress.as_mut().map(|o| o as &mut dyn Observer));
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
-    let (outcome, trouble) = drive::drive(engine, spec, &mut observers, stop)?;
+    let (outcome, error) = drive::drive(engine, spec, &mut observers, stop)?;
     let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
-    let closing = closing(&job.clock, &outcome, trouble.as_ref(), frames);
+    let closing = closing(&job.clock, &outcome, error.as_ref(), frames);
     let summary = summariser.summary(spec, job.bonds, closing);
     let kept = write_summary(&job.folder.file(folder::SUMMARY), &summary);
-    match trouble {
+    match error {
         Some(error) => Err(with_place(error, &job.options.out, summary.warnings.len() - 1)),
         None => kept.map(|()| summary),
     }
 }
 
 /// How a run ended, for its summary.
-fn closing(clock: &Clock, outcome: &Outcome, trouble: Option<&Error>, frames: Option<Timings>) -> Closing {
+fn closing(clock: &Clock, outcome: &Outcome, error: Option<&Error>, frames: Option<Timings>) -> Closing {
     Closing {
-        because: outcome.reason.to_string(),
-        trouble: trouble.map(Error::to_string),
+        stopped: outcome.reason,
+        error: error.filter(|error| !matches!(error, Error::Simulation(_))).map(Error::to_string),
         quasi_static: outcome.quasi_static,
-        findings: outcome.findings.clone(),
+        limits: outcome.limits.clone(),
         cost: clock.cost(outcome, frames),
     }
 }
@@ -242,16 +244,12 @@ fn write_summary(path: &Path, summary: &RunSummary) -> Result<()> {
     write_whole(path, &(text + "\n"))
 }
 
-/// Says where the results so far are, and that `earlier` warnings in them may tell why.
+/// Adds where the results so far are, and how many `earlier` findings in them may tell why.
 fn with_place(error: Error, out: &Path, earlier: usize) -> Error {
     match error {
-        Error::Trouble { step, what, help } => {
-            let mut kept = format!("the results up to there are in {}", out.display());
-            if earlier > 0 {
-                kept += &format!("; its summary.json has {earlier} earlier warnings");
-            }
-            let help = Some(help.map_or(kept.clone(), |help| format!("{help}; {kept}")));
-            Error::Trouble { step, what, help }
+        Error::Simulation(mut stopped) => {
+            stopped.kept = Some(Kept { folder: out.into(), earlier });
+            Error::Simulation(stopped)
         }
         other => other,
     }

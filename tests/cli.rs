@@ -299,7 +299,10 @@ fn a_run_away_stops_with_its_results_kept() {
     let out = folder.path().join("out/single-wire");
     assert!(!rows(&out.join("curve.csv")).is_empty());
     let summary = summary(&out);
-    assert_eq!(summary["stopped_because"], "trouble");
+    assert_eq!(
+        (&summary["stopped"]["kind"], &summary["findings"][1]["failure"]["kind"]),
+        (&"failed".into(), &"runaway".into())
+    );
     assert!(summary["warnings"][0].as_str().unwrap().contains("stopped at step"), "{}", summary["warnings"]);
 }
 

@@ -167,6 +167,38 @@ fn no_file_is_too_long() {
     assert!(wrong.is_empty(), "at most {LONGEST} lines:\n{}", wrong.join("\n"));
 }
 
+/// Comparisons of text with a sentence (words with a space between) in code that is no test: what the program decides by
+/// must be a value, not its own English.
+fn prose_read_back(text: &str) -> Vec<String> {
+    let code = code(text.split("#[cfg(test)]").next().unwrap_or_default());
+    let mut found = Vec::new();
+    let ways = ["contains(\"", "starts_with(\"", "ends_with(\"", "strip_prefix(\"", "find(\"", "== \"", "!= \""];
+    for way in ways {
+        for (at, _) in code.match_indices(way) {
+            let literal = code[at + way.len()..].split('"').next().unwrap_or_default();
+            let words =
+                literal.split(' ').filter(|word| word.chars().filter(|c| c.is_alphabetic()).count() > 1).count();
+            if words > 1 {
+                found.push(format!("{way}{literal}\""));
+            }
+        }
+    }
+    found.extend(code.matches(".to_string() ==").map(str::to_owned));
+    found
+}
+
+#[test]
+fn nothing_decides_by_its_own_words() {
+    // What serde says about a scene has no other form than its sentence.
+    let foreign = ["scene/mod.rs"];
+    let wrong: Vec<String> = sources()
+        .iter()
+        .filter(|(path, _)| !foreign.contains(&path.as_str()) && !path.ends_with("tests.rs"))
+        .flat_map(|(path, text)| prose_read_back(text).into_iter().map(move |what| format!("{path}: {what}")))
+        .collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn the_scan_itself_sees_what_it_should() {
     assert_eq!(upward_imports("law/a.rs", "use crate::base::error::Result;"), Vec::<String>::new());
@@ -182,4 +214,8 @@ fn the_scan_itself_sees_what_it_should() {
     assert!(names_library("use rerun;", "rerun"));
     assert!(!names_library("\"open it with rerun file.rrd\"", "rerun"));
     assert!(!names_library("[\"rerun+http://x\"]", "rerun"));
+    assert_eq!(prose_read_back("if text.contains(\"of the radius deep\") {}").len(), 1);
+    assert_eq!(prose_read_back("if reason == \"stress fell\" {}").len(), 1);
+    assert_eq!(prose_read_back("if head.ends_with(\"_mm\") || a.to_string() == b {}").len(), 1);
+    assert_eq!(prose_read_back("#[cfg(test)]\nif text.contains(\"of the radius\") {}"), Vec::<String>::new());
 }

@@ -8,7 +8,7 @@ use strandsnap::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
 use strandsnap::observe::Observer;
 use strandsnap::observe::summary::RunSummary;
 use strandsnap::reference::plasticity::tension_at;
-use strandsnap::run::{self, RunOptions};
+use strandsnap::run::{self, RunOptions, StopReason};
 use strandsnap::scene::spec::BondLawSpec;
 use strandsnap::scene::{self, Scene};
 
@@ -204,7 +204,7 @@ fn the_result_does_not_hang_on_how_many_rows_are_written() {
 fn a_body_at_rest_has_no_ratios() {
     let (all, summary) = watch(&load("at-rest.toml", &[]));
     assert_eq!(summary.energy_residual_percent, None);
-    assert_eq!(summary.findings.energy_residual_greatest_percent, None);
+    assert_eq!(summary.limits.energy_residual_greatest_percent, None);
     assert!(all.rows.iter().all(|row| row.energy.kinetic >= 0.0));
     assert_eq!(summary.warnings, Vec::<String>::new());
 }
@@ -226,7 +226,7 @@ fn an_interrupted_run_has_a_greatest_stress_so_far_and_no_strength() {
     let stop = Arc::new(AtomicBool::new(false));
     let mut all = All { interrupt: Some((40, stop.clone())), ..All::default() };
     let summary = run::summarise(&scene, vec![&mut all], &stop).unwrap();
-    assert_eq!(summary.stopped_because, "interrupted");
+    assert_eq!(summary.stopped, StopReason::Interrupted);
     assert_eq!((summary.tensile_strength_mpa, summary.fracture_elongation_percent), (None, None));
     assert!(summary.greatest_stress_mpa.unwrap() > 1.0);
     assert_eq!(summary.warnings, Vec::<String>::new(), "nothing is judged by its first rows");

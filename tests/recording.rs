@@ -6,7 +6,8 @@ mod synthetic;
 use std::path::Path;
 use std::time::Instant;
 use strandsnap::base::error::Error;
-use strandsnap::engine::view::{Notice, Snapshot};
+use strandsnap::base::finding::{Finding, Instant, Notice};
+use strandsnap::engine::view::Snapshot;
 use strandsnap::observe::Observer;
 use strandsnap::observe::recording::read::{RecordingContents, contents};
 use strandsnap::observe::recording::{
@@ -107,8 +108,10 @@ fn notices_are_warnings_in_the_log_and_in_the_headline() {
     let file = folder.path().join("recording.rrd");
     let mut recording = Recording::new(&file, options()).unwrap();
     run.show_unfinished(&mut recording).unwrap();
-    let text = "two wires pass through each other at z = 12 mm".to_owned();
-    recording.notice(&Notice { step: 7, time: 1e-3, strain: 0.1, text: text.clone() }).unwrap();
+    let at = Instant { step: 7, time: 1e-3, strain: Some(0.1) };
+    let notice = Notice { at, finding: Finding::KineticEnergy { over_internal: 0.1, limit: 0.05 } };
+    recording.notice(&notice).unwrap();
+    let text = notice.to_string();
     recording.finish().unwrap();
     let read = contents(&file).unwrap();
     let at = read.log.iter().position(|line| *line == (100_000, text.clone())).unwrap();

@@ -108,7 +108,7 @@ fn an_observer_that_fails_ends_the_run_but_the_others_are_finished() {
 }
 
 #[test]
-fn trouble_is_an_error_after_everything_was_finished() {
+fn a_failure_is_an_error_after_everything_was_finished() {
     let mut diary = Diary::default();
     let error = pull(&["time.step=4 us"], &mut [&mut diary], false).unwrap_err();
     assert_eq!(error.exit_code(), 4, "{error:?}");

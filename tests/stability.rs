@@ -18,6 +18,30 @@ fn no_case_fails() {
     assert!(failed.is_empty(), "{} of {} cases:\n{}", failed.len(), cases.len(), failed.join("\n"));
 }
 
+/// What is refused names its cause, or the key, in words that lead on.
+#[test]
+fn refusals_say_what_is_wrong() {
+    for (case, words) in [
+        ("spacing-2d-sphere", ["gaps", "wire"]),
+        ("spacing-4d-sphere", ["gaps", "wire"]),
+        ("pitch-3r", ["outer", "pitch"]),
+        ("overlap-11%", ["overlap", "apart"]),
+        ("overlap-inside", ["overlap", "apart"]),
+        ("overlap-same-place", ["overlap", "apart"]),
+        ("overlap-strand-20%", ["overlap", "lay"]),
+        ("softening", ["softening", "localise"]),
+        ("softening-linear", ["linear", "bond.hardening"]),
+    ] {
+        let cases = select(&[case.to_string()]).unwrap();
+        let reports = run_all(&cases, true, 1, &AtomicBool::new(false), &|_| {});
+        let [report] = &reports[..] else { panic!("{case}") };
+        assert_eq!(report.outcome, Outcome::Refused, "{case}: {}", report.message);
+        for word in words {
+            assert!(report.message.contains(word), "{case}: no \"{word}\" in \"{}\"", report.message);
+        }
+    }
+}
+
 /// No item of the matrix is dropped unseen.
 #[test]
 fn every_kind_of_case_is_there() {

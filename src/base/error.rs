@@ -1,6 +1,7 @@
 //! The error type of the library. Each variant is one kind of trouble a user can act on; the CLI maps them to
 //! exit codes in one place (`main.rs`).
 
+use super::finding::Stopped;
 use std::path::PathBuf;
 
 /// Everything that can go wrong below the command line.
@@ -38,17 +39,10 @@ pub enum Error {
         #[help]
         help: Option<String>,
     },
-    /// The simulation had to stop: NaN, runaway, a bound that does not hold.
-    #[error("stopped at step {step}: {what}")]
-    Trouble {
-        /// Step at which it was noticed.
-        step: u64,
-        /// Cause, naming the bond or particle.
-        what: String,
-        /// Remedy.
-        #[help]
-        help: Option<String>,
-    },
+    /// The simulation had to stop: a value that is not finite, a particle that runs away, a ledger that does not close.
+    #[error("{0}")]
+    #[diagnostic(help("{}", .0.remedy()))]
+    Simulation(Box<Stopped>),
 }
 
 /// A scene error with its place in the source.
@@ -88,7 +82,7 @@ impl Error {
         match self {
             Error::Scene(_) | Error::Input { .. } => 2,
             Error::Missing { .. } => 3,
-            Error::Trouble { .. } => 4,
+            Error::Simulation(_) => 4,
             Error::Io { .. } => 1,
         }
     }

@@ -1,6 +1,7 @@
-//! Floor 0: units, vectors, seeded randomness, errors, ticks of axes. Imports nothing of this crate.
+//! Floor 0: units, vectors, seeded randomness, errors, findings and their words, ticks of axes. Imports nothing of this crate.
 
 pub mod error;
+pub mod finding;
 pub mod lanes;
 pub mod lay;
 pub mod random;
@@ -8,3 +9,4 @@ pub mod ticks;
 pub mod triple;
 pub mod units;
 pub mod vectors;
+pub mod wording;

@@ -25,6 +25,7 @@ pub mod watch;
 pub mod wires;
 
 use crate::base::error::{Error, Result};
+use crate::base::finding::{Failure, StepLimit};
 use crate::law::bond::Moduli;
 use crate::law::bond::elastic::Elastic;
 use crate::law::bond::elasto_plastic::ElastoPlastic;
@@ -190,7 +191,7 @@ impl Engine {
     /// Advances by one step.
     ///
     /// # Errors
-    /// [`Error::Trouble`] when a value stops being finite or runs away, when wires pass through each other, and when a
+    /// [`Error::Simulation`] when a value stops being finite or runs away, when wires pass through each other, and when a
     /// stage that was left out turns out to be needed.
     pub fn step(&mut self) -> Result<()> {
         if self.state.step.is_multiple_of(BOUND_INTERVAL) && self.state.step > 0 {
@@ -403,30 +404,15 @@ impl Engine {
                 key(*a).total_cmp(&key(*b))
             })
             .unwrap_or(0);
-        let place = match self.assembly.wire_of[worst] {
-            u32::MAX => self.body(worst),
-            wire => {
-                let first = self.assembly.wires[wire as usize].first;
-                format!("particle {} of {}", worst - first + 1, self.body(worst))
-            }
-        };
         let moved = far(worst);
-        let what = if moved.is_nan() {
-            format!("the position at {place} is not a number")
-        } else {
-            format!(
-                "{place} moved {:.3e} m in one step, more than {RUNAWAY} of the least radius ({limit:.3e} m)",
-                moved
-            )
-        };
-        Error::Trouble {
-            step: self.state.step,
-            what,
-            help: Some(format!(
-                "the step was {:.3e} s, the bound {:.3e} s; lower time.safety or time.step, the speed, or raise damping",
-                self.state.dt, self.bound.step
-            )),
-        }
+        self.failed(Failure::Runaway {
+            particle: self.member(worst),
+            moved_m: (!moved.is_nan()).then_some(moved),
+            limit_m: limit,
+            limit_over_radius: RUNAWAY,
+            step_s: self.state.dt,
+            bound_s: Some(self.bound.step).filter(|bound| bound.is_finite()),
+        })
     }
 
     /// Strain of the body: grip displacement over gauge length, smoothed as stress is, so that the two belong together
@@ -460,26 +446,27 @@ impl Engine {
         self.bound.step
     }
 
-    /// What limits the time step, in words.
-    pub fn time_step_limit(&self) -> String {
+    /// What limits the time step.
+    pub fn time_step_limit(&self) -> StepLimit {
+        let bound = &self.bound;
+        let stiff = self.spec.time.safety * bound.step;
         if self.spec.time.step.is_some() {
-            return format!("fixed by the scene; the bound is {:.3e} s", self.bound.step);
+            StepLimit::Scene { bound_s: Some(bound.step).filter(|bound| bound.is_finite()) }
+        } else if self.travel_step() < stiff.min(self.impact_step()) {
+            StepLimit::Travel { share_of_radius: TRAVEL }
+        } else if self.impact_step() < stiff {
+            StepLimit::Impact { steps: IMPACT_STEPS }
+        } else if !bound.step.is_finite() {
+            StepLimit::None
+        } else {
+            StepLimit::Stiffness {
+                mode: bound.mode,
+                element: bound.element(),
+                body: self.body(bound.particle),
+                bound_s: bound.step,
+                safety: self.spec.time.safety,
+            }
         }
-        let stiff = self.spec.time.safety * self.bound.step;
-        if self.travel_step() < stiff.min(self.impact_step()) {
-            return format!("speed: the fastest particle moves by {TRAVEL} of the least radius in a step");
-        }
-        if self.impact_step() < stiff {
-            return format!("the shortest impact of a free sphere, in at least {IMPACT_STEPS} steps");
-        }
-        if !self.bound.step.is_finite() {
-            return "nothing is stiff".into();
-        }
-        let (kind, place) = (self.bound.kind(), self.body(self.bound.particle));
-        format!(
-            "{} of {kind} in {place}; bound {:.3e} s × safety {}",
-            self.bound.mode, self.bound.step, self.spec.time.safety
-        )
     }
 
     /// Ruptures since the last call, in order.

@@ -8,6 +8,7 @@
 
 use super::bytes::behind;
 use super::state::{CHUNK, State};
+use crate::base::finding::{self, StiffnessMode};
 use crate::law::bond::BondStiffness;
 use rayon::prelude::*;
 
@@ -69,13 +70,13 @@ pub struct Bound {
     /// Whether a bond limits (else a contact).
     pub bond: bool,
     /// Which mode limits.
-    pub mode: &'static str,
+    pub mode: StiffnessMode,
 }
 
 impl Bound {
-    /// "a bond" or "a contact".
-    pub fn kind(&self) -> &'static str {
-        if self.bond { "a bond" } else { "a contact" }
+    /// What limits.
+    pub fn element(&self) -> finding::Element {
+        if self.bond { finding::Element::Bond } else { finding::Element::Contact }
     }
 }
 
@@ -95,7 +96,7 @@ pub struct Stiffness {
 #[derive(Default, Clone, Copy)]
 struct Worst<'a> {
     /// Greatest eigenvalue of stiffness over mass [1/s²], with its mode and element.
-    stiffest: Option<(f64, &'static str, &'a Element)>,
+    stiffest: Option<(f64, StiffnessMode, &'a Element)>,
     /// Greatest eigenvalue of damping over mass [1/s], bounded element by element like the stiffness.
     damping: f64,
     /// Least step that resolves a contact [s].
@@ -188,7 +189,7 @@ impl Stiffness {
         }
         let found = self.elements.par_chunks(CHUNK).map(|some| self.worst(some, state, resolution, &held));
         let found = found.reduce(Worst::default, Worst::with);
-        let mut bound = Bound { step: f64::INFINITY, mode: "nothing", ..Default::default() };
+        let mut bound = Bound { step: f64::INFINITY, ..Default::default() };
         if let Some((eigenvalue, mode, e)) = found.stiffest {
             let omega = eigenvalue.sqrt();
             let xi = 0.5 * found.damping / omega;
@@ -197,7 +198,7 @@ impl Stiffness {
         }
         match found.shortest {
             Some((meeting, e)) if meeting < bound.step => {
-                Bound { step: meeting, particle: e.nodes[0] as usize, bond: false, mode: "duration" }
+                Bound { step: meeting, particle: e.nodes[0] as usize, bond: false, mode: StiffnessMode::Duration }
             }
             _ => bound,
         }
@@ -239,7 +240,7 @@ impl Stiffness {
     }
 
     /// Largest eigenvalue of one element with its shares [1/s²], and its mode.
-    fn element(&self, e: &Element, state: &State, held: &impl Fn(usize) -> bool) -> (f64, &'static str) {
+    fn element(&self, e: &Element, state: &State, held: &impl Fn(usize) -> bool) -> (f64, StiffnessMode) {
         let (ke, qe) = (e.translation(), e.rotation());
         let (mut mass, mut levers, mut turn) = (0.0, 0.0, [0.0; 3]);
         for (k, turn) in turn.iter_mut().enumerate() {
@@ -261,15 +262,15 @@ impl Stiffness {
         let couple = (e.bend * e.across).sqrt() * e.arm[0] * (turn[0] - turn[1]).abs();
         let sideways = shear.max(bend) + couple;
         let twist = e.twist * spin;
-        let axis = if e.bond { "axial stiffness" } else { "normal stiffness" };
+        let axis = if e.bond { StiffnessMode::Axial } else { StiffnessMode::Normal };
         let across = match (e.bond, bend > shear) {
-            (true, true) => "bending stiffness",
-            (true, false) => "shear stiffness",
-            (false, _) => "tangential stiffness",
+            (true, true) => StiffnessMode::Bending,
+            (true, false) => StiffnessMode::Shear,
+            (false, _) => StiffnessMode::Tangential,
         };
-        [(normal, axis), (sideways, across), (twist, "torsional stiffness")]
+        [(normal, axis), (sideways, across), (twist, StiffnessMode::Torsion)]
             .into_iter()
             .max_by(|a, b| a.0.total_cmp(&b.0))
-            .unwrap_or((0.0, "nothing"))
+            .unwrap_or((0.0, StiffnessMode::None))
     }
 }

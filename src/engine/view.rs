@@ -1,6 +1,7 @@
 //! What leaves the engine: samples (one row of the curve), snapshots (every particle, f32, in the units of pictures)
 //! and ruptures.
 
+use crate::base::finding::{Body, StepLimit};
 use serde::{Deserialize, Serialize};
 
 /// Whether a bond holds.
@@ -181,19 +182,6 @@ pub struct Snapshot {
     pub contact_pressure: Vec<f32>,
 }
 
-/// Something that the user must know about a run, found while it goes on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Notice {
-    /// Step.
-    pub step: u64,
-    /// Simulated time [s].
-    pub time: f64,
-    /// Strain of the body [-].
-    pub strain: f64,
-    /// What was found, with numbers and place, and what to do about it: one or two sentences.
-    pub text: String,
-}
-
 /// What an engine has seen of its own limits over a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Findings {
@@ -210,8 +198,8 @@ pub struct Findings {
 pub struct DeepestContact {
     /// Overlap over the smaller of the two radii [-].
     pub ratio: f64,
-    /// The two bodies, such as "wire 3 (outer layer)".
-    pub bodies: [String; 2],
+    /// The two bodies.
+    pub bodies: [Body; 2],
     /// Where [m].
     pub position: [f64; 3],
     /// Normal force [N].
@@ -237,8 +225,8 @@ pub struct StepAt {
     pub time: f64,
     /// Strain of the body [-].
     pub strain: f64,
-    /// What limited it, in words.
-    pub limit: String,
+    /// What limited it.
+    pub limit: StepLimit,
 }
 
 /// Why a bond broke.

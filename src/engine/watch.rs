@@ -1,4 +1,4 @@
-//! What the engine watches while it runs, and says once when it finds it: contacts too deep for their law, a step that
+//! What the engine watches while it runs, and makes a finding of once: contacts too deep for their law, a step that
 //! shrinks or is not stable, strain that localises in one bond, bonds stretched beyond what a search covers. What makes
 //! results worthless stops the run: wires that pass through each other, bodies that bend though nothing turns.
 //!
@@ -8,8 +8,9 @@ use super::Engine;
 use super::crossing::crossing;
 use super::neighbours::MOST_STRETCH;
 use super::state::Deepest;
-use super::view::{DeepestContact, Findings, Notice, StepAt};
+use super::view::{DeepestContact, Findings, StepAt};
 use crate::base::error::{Error, Result};
+use crate::base::finding::{Body, Failure, Finding, FindingKind, Instant, Member, Notice, Once, Relief, Stopped};
 use crate::scene::caution;
 use crate::scene::plan::ContactPlan;
 use crate::scene::spec::{BondLawSpec, GripKind};
@@ -30,22 +31,11 @@ const STANDS_OUT: f64 = 0.005;
 /// A wire of fewer free bonds has no surroundings that a neck could stand out from.
 const FEWEST: usize = 8;
 
-/// What has been said; each is said once in a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Said {
-    Deep,
-    Shrunk,
-    Unstable,
-    Necking,
-    Stretched,
-    Contacts,
-}
-
 /// What the engine has seen so far.
 #[derive(Default)]
 pub struct Watch {
     notices: Vec<Notice>,
-    said: Vec<Said>,
+    made: Once,
     deepest: Option<(Deepest, DeepestContact)>,
     first_step: f64,
     least: StepAt,
@@ -95,38 +85,41 @@ impl Engine {
         }
     }
 
-    /// "wire 3 (outer layer)" or "free sphere 2", of a particle.
-    pub(super) fn body(&self, particle: usize) -> String {
+    /// The body of a particle.
+    pub(super) fn body(&self, particle: usize) -> Body {
         match self.assembly.wire_of[particle] {
-            u32::MAX => format!("free sphere {}", particle - self.assembly.wire_particles + 1),
+            u32::MAX => Body::Sphere { sphere: particle - self.assembly.wire_particles + 1 },
             wire => {
                 let layer = self.assembly.wires[wire as usize].layer;
-                format!("wire {} ({} layer)", wire + 1, self.assembly.layers[layer].name)
+                Body::Wire { wire: wire as usize + 1, layer: self.assembly.layers[layer].name.clone() }
             }
         }
     }
 
-    /// ", strain 3.10 %" between grips, ", t = 1.2e-4 s" without.
-    fn when(&self) -> String {
+    /// A particle, or the bond that begins at it, in its body.
+    pub(super) fn member(&self, particle: usize) -> Member {
+        let wire = self.assembly.wires.get(self.assembly.wire_of[particle] as usize);
+        Member { number: wire.map(|wire| particle - wire.first + 1), body: self.body(particle) }
+    }
+
+    /// The present moment.
+    fn instant(&self) -> Instant {
         let [low, high] = self.holds.stretch.gauge;
-        if high > low {
-            format!("strain {:.2} %", 100.0 * self.strain())
-        } else {
-            format!("t = {:.3e} s", self.state.time)
+        Instant { step: self.state.step, time: self.state.time, strain: (high > low).then(|| self.strain()) }
+    }
+
+    /// Takes note of a finding, the first time that one of its kind is made.
+    fn found(&mut self, kind: FindingKind, finding: impl FnOnce(&Self) -> Finding) {
+        if self.watch.made.first(kind) {
+            let finding = finding(self);
+            debug_assert_eq!(finding.kind(), kind);
+            self.watch.notices.push(Notice { at: self.instant(), finding });
         }
     }
 
-    fn say(&mut self, what: Said, text: impl FnOnce(&Self) -> String) {
-        if self.watch.said.contains(&what) {
-            return;
-        }
-        self.watch.said.push(what);
-        let text = text(self);
-        self.watch.notices.push(Notice { step: self.state.step, time: self.state.time, strain: self.strain(), text });
-    }
-
-    fn trouble(&self, what: String, help: &str) -> Error {
-        Error::Trouble { step: self.state.step, what, help: Some(help.into()) }
+    /// The error that ends a run now.
+    pub(super) fn failed(&self, failure: Failure) -> Error {
+        Error::Simulation(Box::new(Stopped { at: self.instant(), failure, kept: None }))
     }
 
     /// Takes in the deepest contact of a step.
@@ -149,20 +142,13 @@ impl Engine {
         };
         self.watch.deepest = Some((now, at));
         if now.ratio > DEEP {
-            self.say(Said::Deep, |engine| {
-                format!(
-                    "a contact is {:.1} % of the radius deep, between {} and {} at z = {:.1} mm, {}: {:.3} N, mean \
-                     pressure {:.0} MPa; contact laws are made for overlaps below 10 %, so pressures and friction there \
-                     are rough: {}, or raise contact.hardness_factor or contact.limiting_pressure",
-                    100.0 * now.ratio,
-                    engine.body(now.pair[0] as usize),
-                    engine.body(now.pair[1] as usize),
-                    position[2] * 1e3,
-                    engine.when(),
-                    now.force,
-                    pressure * 1e-6,
-                    engine.press_less(),
-                )
+            self.found(FindingKind::DeepContact, |engine| Finding::DeepContact {
+                overlap_over_radius: now.ratio,
+                between: now.pair.map(|p| engine.body(p as usize)),
+                z_m: position[2],
+                force_n: now.force,
+                pressure_pa: pressure,
+                relief: engine.relief(),
             });
         }
     }
@@ -189,27 +175,18 @@ impl Engine {
             }
         }
         if self.spec.time.step.is_some_and(|step| step > self.bound.step) {
-            self.say(Said::Unstable, |engine| {
-                format!(
-                    "time.step = {seconds:.3e} s is not stable: the bound is {:.3e} s ({} of {} in {}, {}); lower \
-                     time.step, or leave it out so that the step follows the bound",
-                    engine.bound.step,
-                    engine.bound.mode,
-                    engine.bound.kind(),
-                    engine.body(engine.bound.particle),
-                    engine.when(),
-                )
+            self.found(FindingKind::UnstableStep, |engine| Finding::UnstableStep {
+                step_s: seconds,
+                bound_s: engine.bound.step,
+                mode: engine.bound.mode,
+                element: engine.bound.element(),
+                body: engine.body(engine.bound.particle),
             });
         } else if stiff && seconds < SHRUNK * self.watch.first_step {
-            self.say(Said::Shrunk, |engine| {
-                format!(
-                    "the time step has shrunk from {:.3e} s to {seconds:.3e} s, {}, because of {}; the run takes that \
-                     much longer: contacts this stiff are crushed, or particles this light are few, so press less, \
-                     lower contact.hardness_factor, or scale the mass (time.mass_scale)",
-                    engine.watch.first_step,
-                    engine.when(),
-                    engine.time_step_limit(),
-                )
+            self.found(FindingKind::StepShrunk, |engine| Finding::StepShrunk {
+                from_s: engine.watch.first_step,
+                to_s: seconds,
+                limit: engine.time_step_limit(),
             });
         }
     }
@@ -236,26 +213,11 @@ impl Engine {
             return Ok(());
         };
         if !self.plan.rotations && (back || sine2 > BENT * BENT) {
-            return Err(self.trouble(
-                format!(
-                    "{} bends at z = {:.1} mm, {}, but rotations were left out for a straight body under axial load",
-                    self.body(slot),
-                    self.state.x.z[slot] * 1e3,
-                    self.when(),
-                ),
-                "set plan = \"general\", so that every stage runs",
-            ));
+            return Err(self.failed(Failure::Bends { body: self.body(slot), z_m: self.state.x.z[slot] }));
         }
         if touches && back {
             self.add_contacts();
-            self.say(Said::Contacts, |engine| {
-                format!(
-                    "{} has turned back on itself, {}: contacts, left out for a straight body, run from here on; set \
-                     plan = \"general\" to have them from the start",
-                    engine.body(slot),
-                    engine.when(),
-                )
-            });
+            self.found(FindingKind::ContactsAdded, |engine| Finding::ContactsAdded { body: engine.body(slot) });
         }
         Ok(())
     }
@@ -269,25 +231,13 @@ impl Engine {
             return;
         };
         // It is said once, so nothing is left to look for.
-        self.say(Said::Necking, |engine| {
-            format!(
-                "strain localises: bond {} of {} at z = {:.1} mm flows on at a plastic strain of {:.1} % while the rest \
-                 of its wire has stopped at {:.1} %, {}; past the maximum load of the hardening law (dσ/dε ≤ σ from a \
-                 plastic strain of {:.1} %, Considère) elongation depends on the spacing of the particles: use a law \
-                 that still rises at rupture, or compare runs with other values of spacing",
-                neck.slot - engine.first_of(neck.slot) + 1,
-                engine.body(neck.slot),
-                engine.state.x.z[neck.slot] * 1e3,
-                100.0 * neck.strain,
-                100.0 * neck.others,
-                engine.when(),
-                100.0 * necking.from,
-            )
+        self.found(FindingKind::Necking, |engine| Finding::Necking {
+            bond: engine.member(neck.slot),
+            z_m: engine.state.x.z[neck.slot],
+            plastic_strain: neck.strain,
+            others: neck.others,
+            maximum_load: necking.from,
         });
-    }
-
-    fn first_of(&self, slot: usize) -> usize {
-        self.assembly.wires[self.assembly.wire_of[slot] as usize].first
     }
 
     fn find_neck(&self, necking: &mut Necking) -> Option<Neck> {
@@ -329,26 +279,22 @@ impl Engine {
     /// Wires that passed through each other since the last neighbour search.
     ///
     /// # Errors
-    /// [`Error::Trouble`] when two did: what a run finds after that has nothing to do with the strand.
+    /// [`Error::Simulation`] when two did: what a run finds after that has nothing to do with the strand.
     pub fn inspect(&self) -> Result<()> {
         let Some(contacts) = &self.contacts else { return Ok(()) };
         let Some(found) = crossing(&contacts.neighbours, &self.state, &self.assembly.wire_of) else { return Ok(()) };
-        let [a, b] = found.bonds.map(|slot| format!("bond {} of {}", slot - self.first_of(slot) + 1, self.body(slot)));
-        Err(self.trouble(
-            format!("{a} has passed through {b} at z = {:.1} mm, {}", found.position.z * 1e3, self.when()),
-            &format!(
-                "contacts were too soft or too sparse for what pressed on them: {}, raise contact.hardness_factor, lower \
-                 spacing to 1 or less, or use contact.shape = \"wire\"",
-                self.press_less()
-            ),
-        ))
+        Err(self.failed(Failure::PassedThrough {
+            bonds: found.bonds.map(|slot| self.member(slot)),
+            z_m: found.position.z,
+            relief: self.relief(),
+        }))
     }
 
     /// What takes load off contacts in this scene.
-    fn press_less(&self) -> &'static str {
+    fn relief(&self) -> Relief {
         match self.spec.grip.as_ref().map(|grip| grip.kind) {
-            Some(GripKind::Jaw { .. }) => "lower grip.clamp_pressure or the speed",
-            _ => "lower the speed",
+            Some(GripKind::Jaw { .. }) => Relief::Clamp,
+            _ => Relief::Speed,
         }
     }
 
@@ -357,13 +303,9 @@ impl Engine {
         let Some(contacts) = &self.contacts else { return };
         let stretched = contacts.neighbours.stretched();
         if stretched > MOST_STRETCH {
-            self.say(Said::Stretched, |engine| {
-                format!(
-                    "the longest bond is {stretched:.1} times as long as at rest, {}: contacts along bonds beyond \
-                     {MOST_STRETCH} times are not all found; a wire does not stretch like that before it breaks, so give \
-                     bond.rupture, or a hardening law that rises",
-                    engine.when(),
-                )
+            self.found(FindingKind::BondsStretched, |_| Finding::BondsStretched {
+                stretch: stretched,
+                covered: MOST_STRETCH,
             });
         }
     }

@@ -2,7 +2,8 @@
 
 use super::units::percent;
 use crate::base::error::{Error, Result};
-use crate::engine::view::{Notice, RunInfo, Rupture, Sample};
+use crate::base::finding::{Failure, Finding, Instant, Notice, Once, Quantity, Stopped};
+use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::scene::spec::TimeSpec;
 use serde::{Deserialize, Serialize};
 
@@ -54,14 +55,6 @@ struct Row {
     settled: bool,
 }
 
-/// Where a run stands, for a notice.
-#[derive(Default, Clone, Copy)]
-struct Now {
-    step: u64,
-    time: f64,
-    strain: f64,
-}
-
 /// Judges the rows of a run. What must stop the run is an error, what the user must know is a [`Notice`].
 pub struct Guard {
     limits: TimeSpec,
@@ -77,18 +70,9 @@ pub struct Guard {
     work: f64,
     /// Greatest unbalanced share of the ledger [-].
     residual: Option<f64>,
-    now: Now,
+    now: Instant,
     notices: Vec<Notice>,
-    said: Vec<Said>,
-}
-
-/// What is said once in a run.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Said {
-    Kinetic,
-    Mismatch,
-    Short,
-    Ledger,
+    made: Once,
 }
 
 impl Guard {
@@ -104,9 +88,9 @@ impl Guard {
             ruptured: false,
             work: 0.0,
             residual: None,
-            now: Now::default(),
+            now: Instant::default(),
             notices: Vec::new(),
-            said: Vec::new(),
+            made: Once::default(),
         }
     }
 
@@ -121,23 +105,19 @@ impl Guard {
     /// Refuses a row that nobody should see.
     ///
     /// # Errors
-    /// [`Error::Trouble`] that names the first value that is not finite.
+    /// [`Error::Simulation`] that names the first value that is not finite.
     pub fn check(&self, sample: &Sample) -> Result<()> {
-        first_not_finite(sample).map_or(Ok(()), |what| {
-            Err(Error::Trouble {
-                step: sample.step,
-                what,
-                help: Some("try a smaller time.safety, or stronger damping".into()),
-            })
+        first_not_finite(sample).map_or(Ok(()), |quantity| {
+            Err(failed(self.at(sample.step, sample.time, sample.strain), Failure::NotFinite { quantity }))
         })
     }
 
     /// Takes in a row.
     ///
     /// # Errors
-    /// [`Error::Trouble`] when energy worth a fifth of the work is unaccounted for, or motion turns round at every step.
+    /// [`Error::Simulation`] when energy worth a fifth of the work is unaccounted for, or motion turns round at every step.
     pub fn row(&mut self, sample: &Sample) -> Result<()> {
-        self.now = Now { step: sample.step, time: sample.time, strain: sample.strain };
+        self.now = self.at(sample.step, sample.time, sample.strain);
         let row = Row {
             kinetic: sample.energy.kinetic,
             internal: sample.energy.internal(),
@@ -160,7 +140,7 @@ impl Guard {
     /// A bond broke: the quasi-static stage is over.
     pub fn rupture(&mut self, rupture: &Rupture) {
         if !std::mem::replace(&mut self.ruptured, true) {
-            self.now = Now { step: rupture.step, time: rupture.time, strain: rupture.strain };
+            self.now = self.at(rupture.step, rupture.time, rupture.strain);
             self.judge_loading();
         }
     }
@@ -201,11 +181,13 @@ impl Guard {
         self.now.time >= FIRST_PASSAGES * self.passage
     }
 
-    fn say(&mut self, what: Said, text: String) {
-        if !self.said.contains(&what) {
-            self.said.push(what);
-            let Now { step, time, strain } = self.now;
-            self.notices.push(Notice { step, time, strain, text });
+    fn at(&self, step: u64, time: f64, strain: f64) -> Instant {
+        Instant { step, time, strain: self.gripped.then_some(strain) }
+    }
+
+    fn found(&mut self, finding: Finding) {
+        if self.made.first(finding.kind()) {
+            self.notices.push(Notice { at: self.now, finding });
         }
     }
 
@@ -215,14 +197,7 @@ impl Guard {
             return;
         }
         if !self.is_settled() {
-            let passages = self.now.time / self.passage;
-            self.say(
-                Said::Short,
-                format!(
-                    "too short to tell whether loading was quasi-static: it went on for {passages:.1} passages of an elastic \
-                     wave along the body, and the first {FIRST_PASSAGES} belong to its start; load more slowly, or go on"
-                ),
-            );
+            self.found(Finding::TooShort { passages: self.now.time / self.passage, start: FIRST_PASSAGES });
         }
         let seen = self.quasi_static();
         if let Some(ratio) = seen.kinetic_over_internal_max {
@@ -231,28 +206,13 @@ impl Guard {
         if let Some(mismatch) = seen.grip_force_mismatch_percent
             && mismatch > percent(self.limits.mismatch_limit)
         {
-            let limit = percent(self.limits.mismatch_limit);
-            let until = percent(self.now.strain);
-            self.say(
-                Said::Mismatch,
-                format!(
-                    "loading was not quasi-static: up to strain {until:.2} % the two grip forces differed by \
-                     {mismatch:.2} % of the peak force (limit time.mismatch_limit = {limit} %); load more slowly"
-                ),
-            );
+            self.found(Finding::GripForcesDiffer { mismatch: 0.01 * mismatch, limit: self.limits.mismatch_limit });
         }
     }
 
-    fn judge_kinetic(&mut self, ratio: f64) {
-        if ratio > self.limits.kinetic_limit {
-            let (limit, until) = (self.limits.kinetic_limit, percent(self.now.strain));
-            self.say(
-                Said::Kinetic,
-                format!(
-                    "loading was not quasi-static: up to strain {until:.2} % kinetic energy reached {ratio:.3} of the \
-                     internal energy (limit time.kinetic_limit = {limit}); load more slowly"
-                ),
-            );
+    fn judge_kinetic(&mut self, over_internal: f64) {
+        if over_internal > self.limits.kinetic_limit {
+            self.found(Finding::KineticEnergy { over_internal, limit: self.limits.kinetic_limit });
         }
     }
 
@@ -268,28 +228,17 @@ impl Guard {
         // Leapfrog's kinetic energy is the product of two velocities half a step apart: it is negative as a whole only when
         // most of what moves turns round at every step.
         if sample.energy.kinetic < -ENERGY_STOP * scale {
-            return Err(Error::Trouble {
-                step: sample.step,
-                what: "the motion turns round at every step: the time step is not stable".into(),
-                help: Some("lower time.safety, or time.step below the bound".into()),
-            });
+            return Err(failed(self.now, Failure::UnstableMotion));
         }
         let share = gap.abs() / scale;
         self.residual = Some(self.residual.map_or(share, |greatest| greatest.max(share)));
         if share <= ENERGY_LIMIT {
             return Ok(());
         }
-        let what = format!(
-            "the energy ledger does not close: {:.3e} J, {:.2} % of the work done, {}",
-            gap.abs(),
-            percent(share),
-            if gap > 0.0 { "have vanished" } else { "came from nowhere" }
-        );
-        let help = "lower time.safety (or time.step, below the bound), the speed, or give contacts and bonds damping";
         if share > ENERGY_STOP {
-            return Err(Error::Trouble { step: sample.step, what, help: Some(help.into()) });
+            return Err(failed(self.now, Failure::LedgerOpen { missing_j: gap, over_work: share }));
         }
-        self.say(Said::Ledger, format!("{what}, at t = {:.3e} s; {help}", sample.time));
+        self.found(Finding::LedgerOpen { missing_j: gap, over_work: share });
         Ok(())
     }
 
@@ -309,30 +258,26 @@ impl Guard {
     }
 }
 
-/// The first value of a row that is not finite, by name.
-fn first_not_finite(sample: &Sample) -> Option<String> {
+fn failed(at: Instant, failure: Failure) -> Error {
+    Error::Simulation(Box::new(Stopped { at, failure, kept: None }))
+}
+
+/// The first value of a row that is not finite.
+fn first_not_finite(sample: &Sample) -> Option<Quantity> {
     let named = [
-        ("time", sample.time),
-        ("strain", sample.strain),
-        ("nominal stress", sample.stress),
-        ("lower grip force", sample.grip_force[0]),
-        ("upper grip force", sample.grip_force[1]),
-        ("torque", sample.torque),
-        ("work", sample.energy.work),
-        ("kinetic energy", sample.energy.kinetic),
-        ("internal energy", sample.energy.internal()),
+        (Quantity::Time, sample.time),
+        (Quantity::Strain, sample.strain),
+        (Quantity::NominalStress, sample.stress),
+        (Quantity::LowerGripForce, sample.grip_force[0]),
+        (Quantity::UpperGripForce, sample.grip_force[1]),
+        (Quantity::Torque, sample.torque),
+        (Quantity::Work, sample.energy.work),
+        (Quantity::KineticEnergy, sample.energy.kinetic),
+        (Quantity::InternalEnergy, sample.energy.internal()),
     ];
     let wires = sample.wire_stress.iter().enumerate();
-    named
-        .into_iter()
-        .find(|(_, value)| !value.is_finite())
-        .map(|(name, value)| format!("the {name} is {value}"))
-        .or_else(|| {
-            wires
-                .filter(|(_, stress)| !stress.is_finite())
-                .map(|(w, stress)| format!("the stress of wire {} is {stress}", w + 1))
-                .next()
-        })
+    let wires = wires.map(|(w, stress)| (Quantity::WireStress { wire: w + 1 }, *stress));
+    named.into_iter().chain(wires).find(|(_, value)| !value.is_finite()).map(|(quantity, _)| quantity)
 }
 
 #[cfg(test)]
@@ -370,7 +315,7 @@ mod tests {
     /// Texts of all notices at the end of the run.
     fn said(guard: &mut Guard) -> Vec<String> {
         guard.finish(true);
-        guard.take_notices().into_iter().map(|notice| notice.text).collect()
+        guard.take_notices().iter().map(Notice::to_string).collect()
     }
 
     #[test]
@@ -438,8 +383,8 @@ mod tests {
         assert_eq!(guard.take_notices(), [], "an early row may still turn out to say nothing");
         guard.row(&Sample { step: 9, strain: 0.06, ..row(10.0, 100.0, [100.0, 100.0]) }).unwrap();
         let notices = guard.take_notices();
-        assert_eq!((notices.len(), notices[0].step), (1, 9));
-        assert!(notices[0].text.contains("0.100 of the internal energy"), "{notices:?}");
+        assert_eq!((notices.len(), notices[0].at.step), (1, 9));
+        assert_eq!(notices[0].finding, Finding::KineticEnergy { over_internal: 0.1, limit: 0.05 });
     }
 
     #[test]
@@ -474,6 +419,6 @@ mod tests {
         let wild = Sample { step: 7, wire_stress: vec![1.0, f64::NAN], ..Sample::default() };
         let error = new().check(&wild).unwrap_err();
         assert_eq!(error.exit_code(), 4);
-        assert_eq!(error.to_string(), "stopped at step 7: the stress of wire 2 is NaN");
+        assert_eq!(error.to_string(), "stopped at step 7: the stress of wire 2 is not a finite number");
     }
 }

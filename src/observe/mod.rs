@@ -1,8 +1,8 @@
 //! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
 
 pub mod files;
-pub mod findings;
 pub mod guard;
+pub mod limits;
 pub mod partial;
 pub mod peaks;
 pub mod planned;
@@ -19,7 +19,8 @@ pub mod units;
 pub mod wording;
 
 use crate::base::error::Result;
-use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
+use crate::base::finding::Notice;
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use peaks::Peaks;
 use std::sync::Arc;
 

@@ -4,7 +4,8 @@ use super::Observer;
 use super::planned::PlannedEnd;
 use super::units::{mpa, percent};
 use crate::base::error::Result;
-use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
+use crate::base::finding::Notice;
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::scene::spec::StopSpec;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Arc;
@@ -128,7 +129,7 @@ impl Observer for Progress {
 
     fn notice(&mut self, notice: &Notice) -> Result<()> {
         // At once for whoever watches; the report repeats it at its head.
-        self.bar.println(format!("WARNING: {}", notice.text));
+        self.bar.println(format!("WARNING: {notice}"));
         Ok(())
     }
 

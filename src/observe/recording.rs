@@ -46,7 +46,8 @@ pub use sink::{DEFAULT_VIEWER, RERUN_VERSION};
 pub use stream::{STEP, STRAIN, TIME};
 
 use crate::base::error::{Error, Result};
-use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
+use crate::base::finding::Notice;
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::{Observer, Peaks};
 use crate::scene::spec::Spec;
 use crate::scene::write::to_toml;

@@ -45,7 +45,7 @@ pub fn report(summary: &RunSummary) -> String {
         let overall = summary.quasi_static.grip_force_mismatch_overall_percent.unwrap_or(mismatch);
         line("grip force mismatch", format!("{mismatch:.3} % before the first rupture, {overall:.3} % overall"));
     }
-    if let Some(deep) = &summary.findings.deepest_contact {
+    if let Some(deep) = &summary.limits.deepest_contact {
         let [a, b] = &deep.between;
         let when = match summary.final_strain_percent {
             Some(_) => format!("strain {:.2} %", deep.strain_percent),
@@ -99,7 +99,7 @@ fn first_rupture(first: Option<&Break>, one_draw: bool) -> String {
 }
 
 fn time_step(summary: &RunSummary) -> String {
-    let (least, greatest) = (&summary.findings.least_time_step, &summary.findings.greatest_time_step);
+    let (least, greatest) = (&summary.limits.least_time_step, &summary.limits.greatest_time_step);
     format!("{:.3e} to {:.3e} s; least by {}", least.seconds, greatest.seconds, least.limited_by)
 }
 

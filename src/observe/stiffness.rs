@@ -1,6 +1,7 @@
 //! The initial stiffness of a pull: a straight line through the elastic rows of its curve, beside what strand theory expects.
 
 use super::units::percent;
+use crate::base::finding::{Finding, StiffnessCause};
 use crate::engine::view::Sample;
 use crate::scene::spec::{BondLawSpec, RuptureCriterion, Shape, Spec};
 use crate::strand::theory::Theory;
@@ -170,26 +171,24 @@ impl Stiffness {
         }
     }
 
-    /// What must be said when the curve is too far from theory; `spec` tells what may be behind it.
-    pub fn warning(&self, spec: &Spec) -> Option<String> {
+    /// What is found when the curve is too far from theory; `spec` tells what may be behind it.
+    pub fn finding(&self, spec: &Spec) -> Option<Finding> {
         let (Some(measured), Some(deviation), true) = (self.measured_gpa, self.deviation_percent, self.is_off()) else {
             return None;
         };
-        let [from, to] = self.window_percent;
         let spheres = spec.contact.as_ref().is_some_and(|c| c.shape == Shape::Sphere);
-        let why = if spheres && deviation < 0.0 {
-            "with contact.shape = \"sphere\" touching spheres of one layer fall into the saddles of the next; another \
-             shape, or a smaller spacing, shows how much of it that is"
-        } else if deviation < 0.0 {
-            "layers that close in, soft contacts or a pull too fast make a strand softer"
-        } else {
-            "wires that overlap from the start, or a pull too fast, make a strand stiffer"
+        let cause = match (deviation < 0.0, spheres) {
+            (true, true) => StiffnessCause::Spheres,
+            (true, false) => StiffnessCause::Soft,
+            (false, _) => StiffnessCause::Stiff,
         };
-        Some(format!(
-            "the strand is not as stiff as strand theory expects: {:.1} GPa expected, {measured:.1} GPa measured \
-             ({deviation:+.1} %) between {from:.3} and {to:.3} % of strain; {why}",
-            self.expected_gpa
-        ))
+        Some(Finding::Stiffness {
+            expected_pa: 1e9 * self.expected_gpa,
+            measured_pa: 1e9 * measured,
+            deviation: 1e-2 * deviation,
+            window: self.window_percent.map(|percent| 1e-2 * percent),
+            cause,
+        })
     }
 }
 
@@ -259,7 +258,7 @@ mod tests {
         let found = measure(&rows(|e| expected * (e - 5e-4).max(0.0)), &spec).unwrap();
         assert!(found.deviation_percent.unwrap().abs() < 1e-6, "{found:?}");
         assert!((found.measured_torque_n_m.unwrap() + 2.0).abs() < 1e-9);
-        assert_eq!((found.not_measured, found.warning(&spec)), (None, None));
+        assert_eq!((found.not_measured, found.finding(&spec)), (None, None));
         // Two passages of a wave: 2 × 60 mm / 3583 m/s, 0.167 % at 2.5 m/s.
         assert!((found.window_percent[0] - 0.17).abs() < 0.006, "{found:?}");
         assert!(found.words().contains("+0.0 %") || found.words().contains("-0.0 %"), "{}", found.words());
@@ -270,11 +269,11 @@ mod tests {
         let spec = spec(&[]);
         let expected = Theory::of_pull(&spec).unwrap().modulus();
         let at = |share: f64| measure(&rows(|e| share * expected * e), &spec).unwrap();
-        assert_eq!(at(0.951).warning(&spec), None);
-        let warning = at(0.60).warning(&spec).unwrap();
-        assert!(warning.contains("(-40.0 %)") && warning.contains("contact.shape"), "{warning}");
-        let warning = at(1.10).warning(&spec).unwrap();
-        assert!(warning.contains("(+10.0 %)") && warning.contains("overlap"), "{warning}");
+        assert_eq!(at(0.951).finding(&spec), None);
+        for (share, expected) in [(0.60, StiffnessCause::Spheres), (1.10, StiffnessCause::Stiff)] {
+            let Some(Finding::Stiffness { deviation, cause, .. }) = at(share).finding(&spec) else { panic!("{share}") };
+            assert!((deviation - (share - 1.0)).abs() < 1e-6 && cause == expected, "{deviation} {cause:?}");
+        }
     }
 
     #[test]
@@ -282,7 +281,7 @@ mod tests {
         let ka4 = crate::scene::load("ka4", &[]).unwrap().spec;
         let found = measure(&slow_rows(50.0, |e| 26e9 * e), &ka4).unwrap();
         assert_eq!((found.not_measured, found.measured_gpa), (Some(NotMeasured::LayersClose), None));
-        assert_eq!(found.warning(&ka4), None);
+        assert_eq!(found.finding(&ka4), None);
         assert!(found.words().contains("loose layers close in at 0.072 %"), "{}", found.words());
         let plastic = crate::scene::load("strand-1x7", &[]).unwrap().spec;
         assert_eq!(measure(&rows(|e| e), &plastic).unwrap().not_measured, Some(NotMeasured::WavesPass));

@@ -1,8 +1,8 @@
 //! `RunSummary`: what a run found, as written to `summary.json`.
 
 use super::Observer;
-use super::findings::Findings;
 use super::guard::QuasiStatic;
+use super::limits::Limits;
 use super::peaks::{Monitor, Peaks};
 use super::stiffness::{Rows, Stiffness};
 use super::tables::{cause, layer_name};
@@ -10,7 +10,8 @@ use super::timings::Timings;
 use super::units::{mm, mpa, percent};
 use super::wording::OneDraw;
 use crate::base::error::Result;
-use crate::engine::view::{Energy, Notice, RunInfo, Rupture, Sample};
+use crate::base::finding::{Finding, FindingKind, Instant, Notice, StopReason};
+use crate::engine::view::{Energy, RunInfo, Rupture, Sample};
 use crate::scene::spec::{DriveSpec, Spec};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -21,7 +22,9 @@ use std::sync::Arc;
 pub struct RunSummary {
     /// Scene name.
     pub scene: String,
-    /// Why the run ended, in words.
+    /// Why the run ended.
+    pub stopped: StopReason,
+    /// The same in words.
     pub stopped_because: String,
     /// Greatest nominal stress of all steps [MPa], of a body that failed: a bond broke, and stress fell 20 % below its peak.
     /// `None` for any other, whose strength the run does not know, however it ended.
@@ -62,9 +65,9 @@ pub struct RunSummary {
     /// How far loading was from quasi-static.
     #[serde(flatten)]
     pub quasi_static: QuasiStatic,
-    /// What the run has seen of the limits of its model.
+    /// How near the run came to the limits of its model.
     #[serde(flatten)]
-    pub findings: Findings,
+    pub limits: Limits,
     /// Factor on particle mass [-].
     pub mass_scale: f64,
     /// Factor on rotational inertia [-].
@@ -82,11 +85,11 @@ pub struct RunSummary {
     /// What the run cost and with what it was made.
     #[serde(flatten)]
     pub cost: Cost,
-    /// What must be known before believing the run, in the order in which it was found, trouble that ended the run
-    /// first; empty when there is nothing.
+    /// What must be known before believing the run, in words: the error that ended it first, then the findings in the
+    /// order in which they were made; empty when there is nothing.
     pub warnings: Vec<String>,
-    /// When each of the warnings was found.
-    pub notices: Vec<Found>,
+    /// The findings as facts.
+    pub findings: Vec<Found>,
 }
 
 /// What a greatest or least stress of a run is.
@@ -142,30 +145,31 @@ impl RunSummary {
     }
 }
 
-/// A warning with its place in the run.
+/// A finding with its place in the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     /// Step.
     pub step: u64,
     /// Simulated time [s].
     pub time_s: f64,
-    /// Strain of the body [%].
-    pub strain_percent: f64,
-    /// What was found.
-    pub text: String,
+    /// Strain of the body [%]; `None` without grips.
+    pub strain_percent: Option<f64>,
+    /// What was found: its `kind` and values in SI units.
+    #[serde(flatten)]
+    pub finding: Finding,
 }
 
 /// How a run ended, and what was judged about it as a whole.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Closing {
-    /// Why it ended, in words.
-    pub because: String,
-    /// The error that ended it, if one did.
-    pub trouble: Option<String>,
+    /// Why it ended.
+    pub stopped: StopReason,
+    /// The error that ended it, unless it is a failure of the simulation, which is a finding.
+    pub error: Option<String>,
     /// How far loading was from quasi-static.
     pub quasi_static: QuasiStatic,
-    /// What was seen of the limits of the model.
-    pub findings: Findings,
+    /// How near it came to the limits of the model.
+    pub limits: Limits,
     /// What it cost.
     pub cost: Cost,
 }
@@ -255,14 +259,18 @@ impl Summariser {
         let energy = self.last.energy;
         let negligible = self.info.as_ref().map_or(0.0, |info| info.negligible_energy);
         let firsts = self.first_breaks();
-        // Trouble comes as a notice too, at the place where the run ended.
-        let earlier = self.notices.iter().map(|n| &n.text).filter(|text| Some(*text) != closing.trouble.as_ref());
         let stiffness = self.elastic.stiffness(spec);
-        let off = stiffness.as_ref().and_then(|s| s.warning(spec));
-        let warnings = closing.trouble.iter().chain(earlier).chain(&off).cloned().collect();
+        let off = stiffness.as_ref().and_then(|s| s.finding(spec));
+        let at = Instant { step: self.last.step, time: self.last.time, strain: gripped.then_some(self.last.strain) };
+        let mut notices = self.notices.clone();
+        notices.extend(off.map(|finding| Notice { at, finding }));
+        let (failures, others): (Vec<_>, Vec<_>) =
+            notices.iter().partition(|notice| notice.finding.kind() == FindingKind::Failed);
+        let said = failures.into_iter().chain(others).map(Notice::to_string);
         RunSummary {
             scene: spec.name.clone(),
-            stopped_because: closing.because,
+            stopped: closing.stopped,
+            stopped_because: closing.stopped.to_string(),
             tensile_strength_mpa: strength.map(|peak| mpa(peak.stress)),
             fracture_elongation_percent: strength.map(|peak| percent(peak.strain)),
             elongation_at_20_percent_drop_percent: drop.map(percent),
@@ -281,7 +289,7 @@ impl Summariser {
             energy,
             energy_residual_percent: (energy.work.abs() > negligible).then(|| percent(energy.residual() / energy.work)),
             quasi_static: closing.quasi_static,
-            findings: closing.findings,
+            limits: closing.limits,
             mass_scale: spec.time.mass_scale,
             inertia_scale: spec.time.inertia_scale,
             seed: spec.seed,
@@ -289,8 +297,8 @@ impl Summariser {
             particles: self.info.as_ref().map_or(0, |info| info.particles),
             bonds,
             cost: closing.cost,
-            warnings,
-            notices: self.notices.iter().map(found).collect(),
+            warnings: closing.error.into_iter().chain(said).collect(),
+            findings: notices.into_iter().map(found).collect(),
         }
     }
 
@@ -329,8 +337,8 @@ impl Summariser {
     }
 }
 
-fn found(notice: &Notice) -> Found {
-    Found { step: notice.step, time_s: notice.time, strain_percent: percent(notice.strain), text: notice.text.clone() }
+fn found(Notice { at, finding }: Notice) -> Found {
+    Found { step: at.step, time_s: at.time, strain_percent: at.strain.map(percent), finding }
 }
 
 fn by_layer(breaks: Vec<Break>) -> BTreeMap<String, Vec<Break>> {
@@ -397,6 +405,7 @@ impl Observer for Summariser {
 mod tests {
     use super::super::peaks::Peak;
     use super::*;
+    use crate::base::finding::{Failure, Quantity};
     use crate::engine::view::{RuptureCause, WireInfo};
 
     fn info() -> Arc<RunInfo> {
@@ -556,15 +565,20 @@ mod tests {
     }
 
     #[test]
-    fn trouble_stands_first_among_the_warnings_and_once() {
-        let trouble = "stopped at step 5: bond 3 is NaN".to_string();
+    fn a_failure_stands_first_among_the_warnings() {
+        let at = Instant { step: 5, time: 0.0, strain: Some(0.1) };
+        let failure = Failure::NotFinite { quantity: Quantity::Torque };
         let mut summariser = seen();
-        for text in ["a contact is deep", &trouble] {
-            summariser.notice(&Notice { step: 5, time: 0.0, strain: 0.1, text: text.into() }).unwrap();
+        for finding in [Finding::TooShort { passages: 1.0, start: 10.0 }, Finding::Failed { failure }] {
+            summariser.notice(&Notice { at, finding }).unwrap();
         }
-        let closing = Closing { trouble: Some(trouble.clone()), ..Closing::default() };
+        let closing = Closing { stopped: StopReason::Failed, ..Closing::default() };
         let summary = summariser.summary(&spec(), 3, closing);
-        assert_eq!(summary.warnings, [trouble, "a contact is deep".into()]);
-        assert_eq!((summary.notices.len(), summary.notices[0].strain_percent), (2, 10.0));
+        assert_eq!(summary.warnings[0], "stopped at step 5: the torque is not a finite number");
+        assert_eq!((summary.warnings.len(), summary.findings.len()), (2, 2));
+        assert_eq!(summary.findings[0].strain_percent, Some(10.0));
+        let json = serde_json::to_value(&summary).unwrap();
+        assert_eq!(json["findings"][1]["failure"]["quantity"]["name"], "torque");
+        assert_eq!(serde_json::from_value::<RunSummary>(json).unwrap(), summary);
     }
 }

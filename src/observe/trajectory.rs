@@ -7,7 +7,8 @@
 use super::peaks::Peaks;
 use super::{Observer, partial};
 use crate::base::error::{Error, Result};
-use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
+use crate::base::finding::Notice;
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use lz4_flex::frame::{FrameDecoder, FrameEncoder, FrameInfo};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::fs::File;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 
 const MAGIC: [u8; 12] = *b"strandsnap\0T";
 /// Raised whenever what is written changes its meaning or order.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// No record is this long [bytes]; a length above it is damage.
 const LONGEST_RECORD: u32 = 1 << 30;
 

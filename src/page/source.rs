@@ -10,7 +10,6 @@ use crate::observe::guard::{Guard, QuasiStatic};
 use crate::observe::partial;
 use crate::observe::summary::{Closing, Cost, RunSummary, Summariser};
 use crate::observe::trajectory::{Record, Trajectory};
-use crate::run::StopReason;
 use crate::run::folder::{SCENE, SUMMARY, TRAJECTORY};
 use crate::scene::spec::Spec;
 use std::path::{Path, PathBuf};
@@ -163,8 +162,7 @@ impl Source {
 
     /// Whether somebody or something ended the run before its own conditions did.
     pub fn cut_short(&self) -> bool {
-        let reason = &self.summary.stopped_because;
-        !self.finished || [StopReason::Interrupted, StopReason::Trouble].iter().any(|r| r.to_string() == *reason)
+        !self.finished || self.summary.stopped.cut_short()
     }
 }
 
@@ -333,7 +331,6 @@ fn summary(
     }
     let last = &pass.samples[pass.samples.len() - 1];
     let cost = Cost { steps: last.step, simulated_s: last.time, ..Cost::default() };
-    let because = "not known, the run did not end properly".to_string();
-    let closing = Closing { because, quasi_static: quasi_static(pass, info, spec), cost, ..Closing::default() };
+    let closing = Closing { quasi_static: quasi_static(pass, info, spec), cost, ..Closing::default() };
     Ok((pass.summariser.summary(spec, pass.bonds, closing), false))
 }

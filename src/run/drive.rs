@@ -1,13 +1,14 @@
 //! The step loop: engine, schedule, stop rule and observers.
 
 use super::schedule::Schedule;
-use super::stop::{StopReason, StopRule};
+use super::stop::StopRule;
 use crate::base::error::{Error, Result};
+use crate::base::finding::{Finding, Notice, StopReason};
 use crate::engine::Engine;
-use crate::engine::view::{Notice, RunInfo, Rupture, Sample, Snapshot};
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
-use crate::observe::findings::Findings;
 use crate::observe::guard::{Guard, QuasiStatic};
+use crate::observe::limits::Limits;
 use crate::observe::peaks::{Monitor, Peaks};
 use crate::observe::planned::PlannedEnd;
 use crate::scene::spec::Spec;
@@ -32,8 +33,8 @@ pub struct Outcome {
     pub strain: f64,
     /// How far loading was from quasi-static.
     pub quasi_static: QuasiStatic,
-    /// What was seen of the limits of the model.
-    pub findings: Findings,
+    /// How near it came to the limits of the model.
+    pub limits: Limits,
     /// Wall time spent in the engine, observers not included.
     pub stepping: Duration,
     /// Wall time spent in observers.
@@ -49,7 +50,7 @@ pub struct Outcome {
 /// that was started is finished, also after an error. Call it inside a rayon pool to choose the threads.
 ///
 /// # Errors
-/// What [`Engine::new`] refuses; [`Error::Trouble`] when the simulation had to stop; the first error of an
+/// What [`Engine::new`] refuses; [`Error::Simulation`] when the simulation had to stop; the first error of an
 /// observer.
 pub fn simulate(
     spec: &Spec,
@@ -57,8 +58,8 @@ pub fn simulate(
     observers: &mut [&mut dyn Observer],
     stop: &AtomicBool,
 ) -> Result<Outcome> {
-    let (outcome, trouble) = drive(Engine::new(spec, assembly)?, spec, observers, stop)?;
-    match trouble {
+    let (outcome, error) = drive(Engine::new(spec, assembly)?, spec, observers, stop)?;
+    match error {
         Some(error) => Err(error),
         None => Ok(outcome),
     }
@@ -97,9 +98,9 @@ pub(super) fn drive(
     let ended = driver.go(&info, stop);
     let stepping = begin.elapsed().saturating_sub(driver.audience.time);
     let finished = driver.audience.finish();
-    let (reason, trouble) = match (ended, finished) {
+    let (reason, error) = match (ended, finished) {
         (Ok(reason), Ok(())) => (reason, None),
-        (Err(error), _) | (Ok(_), Err(error)) => (StopReason::Trouble, Some(error)),
+        (Err(error), _) | (Ok(_), Err(error)) => (StopReason::Failed, Some(error)),
     };
     let outcome = Outcome {
         reason,
@@ -107,11 +108,11 @@ pub(super) fn drive(
         time: driver.engine.time(),
         strain: driver.engine.strain(),
         quasi_static: driver.guard.quasi_static(),
-        findings: Findings::new(driver.engine.findings(), driver.guard.greatest_residual()),
+        limits: Limits::new(driver.engine.findings(), driver.guard.greatest_residual()),
         stepping,
         observing: driver.audience.time,
     };
-    Ok((outcome, trouble))
+    Ok((outcome, error))
 }
 
 struct Driver<'a, 'b> {
@@ -134,16 +135,16 @@ struct Driver<'a, 'b> {
 }
 
 impl Driver<'_, '_> {
-    /// Runs to the end; trouble is told as a notice before it is returned.
+    /// Runs to the end; a failure is told as a notice before it is returned.
     fn go(&mut self, info: &Arc<RunInfo>, stop: &AtomicBool) -> Result<StopReason> {
         self.guard.start(info);
         self.audience.start(info)?;
         let ended = self.run(stop);
         self.guard.finish(matches!(ended, Ok(reason) if reason != StopReason::Interrupted));
         self.notices()?;
-        if let Err(error @ Error::Trouble { .. }) = &ended {
-            let (step, time, strain) = (self.engine.steps(), self.engine.time(), self.engine.strain());
-            self.audience.notice(&Notice { step, time, strain, text: error.to_string() })?;
+        if let Err(Error::Simulation(stopped)) = &ended {
+            let finding = Finding::Failed { failure: stopped.failure.clone() };
+            self.audience.notice(&Notice { at: stopped.at, finding })?;
         }
         self.audience.peaks(self.monitor.peaks())?;
         ended
@@ -179,7 +180,7 @@ impl Driver<'_, '_> {
         self.monitor.see(strain, stress, (0..engine.assembly().wires.len()).map(|w| engine.wire_stress(w)));
     }
 
-    /// The guard's look at the present state; trouble is told before it is returned.
+    /// The guard's look at the present state; a failure is told before it is returned.
     fn judge(&mut self) -> Result<()> {
         let sample = self.engine.sample();
         self.guard.check(&sample)?;

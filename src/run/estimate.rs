@@ -1,6 +1,7 @@
 //! What a run would cost: the numbers behind `strandsnap plan`.
 
 use crate::base::error::Result;
+use crate::base::finding::StepLimit;
 use crate::engine::Engine;
 use crate::engine::bytes::StageBytes;
 use crate::scene::spec::{DriveSpec, Spec};
@@ -27,7 +28,7 @@ pub struct Estimate {
     /// contacts will close.
     pub time_step: f64,
     /// What limits it.
-    pub time_step_limit: String,
+    pub time_step_limit: StepLimit,
     /// Simulated time to the expected end [s]; `None` when the scene does not tell.
     pub duration: Option<f64>,
     /// Steps to the expected end at the time step after the trial.

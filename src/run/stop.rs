@@ -1,53 +1,14 @@
 //! When a run ends.
 
+use crate::base::finding::StopReason;
 use crate::observe::peaks::DROP;
 use crate::scene::spec::StopSpec;
 use std::collections::VecDeque;
-use std::fmt;
 
 /// Time over which the nominal stress is averaged before it is compared with its peak, in passages of an elastic wave
 /// along the body [-]: the wave that a rupture sends out comes back after two, and is averaged out over them. A fall that
 /// lasts is not.
 const PASSAGES: f64 = 2.0;
-
-/// Why a run ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum StopReason {
-    /// `stop.strain` was reached [-].
-    Strain(f64),
-    /// Nominal stress fell below `stop.stress_fraction` of its peak [-].
-    StressFraction(f64),
-    /// `stop.strain_after_drop` was passed [-].
-    AfterDrop(f64),
-    /// `stop.time` was reached [s].
-    Time(f64),
-    /// `stop.steps` was reached.
-    Steps(u64),
-    /// Someone asked for it (Ctrl-C).
-    Interrupted,
-    /// An error; everything seen before it was kept.
-    Trouble,
-}
-
-impl fmt::Display for StopReason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Strain(strain) => {
-                write!(f, "strain reached {:.4} % (stop.strain)", strain * 100.0)
-            }
-            Self::StressFraction(fraction) => {
-                write!(f, "stress fell to {} % of its peak after a rupture (stop.stress_fraction)", fraction * 100.0)
-            }
-            Self::AfterDrop(strain) => {
-                write!(f, "strain went {} % beyond the drop (stop.strain_after_drop)", strain * 100.0)
-            }
-            Self::Time(time) => write!(f, "time reached {time:.4e} s (stop.time)"),
-            Self::Steps(steps) => write!(f, "{steps} steps were done (stop.steps)"),
-            Self::Interrupted => write!(f, "interrupted"),
-            Self::Trouble => write!(f, "trouble"),
-        }
-    }
-}
 
 /// Watches the stop conditions of a scene; the first that holds ends the run.
 #[derive(Debug, Clone)]

@@ -3,7 +3,8 @@
 use super::stream::Stream;
 use super::{RERUN_VERSION, names};
 use crate::base::error::Result;
-use crate::engine::view::{Notice, RunInfo, Rupture};
+use crate::base::finding::Notice;
+use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::summary::RunSummary;
 use crate::observe::units::{mm, mpa, percent};
 use crate::observe::wording::{OneDraw, wire_number};
@@ -92,10 +93,10 @@ impl Headline {
 
     /// Notices in the order in which they came, then what the summary adds to them.
     fn warnings(&self, summary: Option<&RunSummary>) -> Vec<String> {
-        let mut all: Vec<String> = self.notices.iter().map(|notice| notice.text.clone()).collect();
-        let more = summary.map_or(&[][..], |summary| &summary.warnings);
-        all.extend(more.iter().filter(|w| !self.notices.iter().any(|n| w.contains(&n.text))).cloned());
-        all
+        match summary {
+            Some(summary) => summary.warnings.clone(),
+            None => self.notices.iter().map(Notice::to_string).collect(),
+        }
     }
 }
 

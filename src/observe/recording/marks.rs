@@ -4,7 +4,8 @@ use super::map::Map;
 use super::stream::{Instant, Stream, texts, vectors};
 use super::{names, paint};
 use crate::base::error::Result;
-use crate::engine::view::{Notice, RunInfo, Rupture};
+use crate::base::finding::Notice;
+use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::units::mpa;
 use crate::observe::wording::{rupture_line, wire_number};
 use rerun::{Color, LineStrips2D, Points2D, Points3D, Radius, TextLog, TextLogLevel};
@@ -44,8 +45,9 @@ impl Marks {
 
     /// Takes note of a notice.
     pub fn add_notice(&mut self, notice: &Notice) {
-        let instant = Instant { step: notice.step, time: notice.time, strain: notice.strain };
-        self.lines.push(Line { instant, level: TextLogLevel::WARN, text: notice.text.clone() });
+        let at = &notice.at;
+        let instant = Instant { step: at.step, time: at.time, strain: at.strain.unwrap_or(0.0) };
+        self.lines.push(Line { instant, level: TextLogLevel::WARN, text: notice.to_string() });
     }
 
     /// Sends what is new, and gives the ruptures in it.

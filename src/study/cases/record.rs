@@ -163,7 +163,7 @@ pub fn run(
         _ if stop.load(Ordering::Relaxed) => return Ok(None),
         Ok(Some(measured)) => Found::Ran(Box::new(measured)),
         Ok(None) => Found::Failed("the run has no strength: nothing pulled, or it ended before stress had fallen 20 % below its peak after a rupture".into()),
-        Err(error @ (Error::Scene(_) | Error::Input { .. } | Error::Trouble { .. })) => {
+        Err(error @ (Error::Scene(_) | Error::Input { .. } | Error::Simulation(_))) => {
             Found::Failed(error.to_string())
         }
         Err(error) => return Err(error),

@@ -4,6 +4,7 @@ use super::Invariant;
 use super::finding::{Outcome, Search};
 use super::folder::Folder;
 use super::rows::free_length;
+use crate::base::finding::FindingKind;
 use crate::observe::guard::ENERGY_LIMIT;
 use crate::observe::stiffness::{self, Row, Stiffness};
 use crate::scene::spec::{DriveSpec, GripKind, Shape};
@@ -237,7 +238,7 @@ fn strand_theory(run: &Folder) -> Outcome {
         let why = found.not_measured.map_or("", |why| why.word());
         return Outcome::NotApplicable(format!("{why} (window {from:.3} to {to:.3} %)"));
     };
-    let said = found.warning(&run.spec).is_some_and(|text| run.summary.warnings.contains(&text));
+    let said = run.summary.findings.iter().any(|found| found.finding.kind() == FindingKind::Stiffness);
     let spheres = run.spec.contact.as_ref().is_some_and(|c| c.shape == Shape::Sphere);
     if spheres && said && deviation < 0.0 {
         return Outcome::NotApplicable(format!(

@@ -69,7 +69,7 @@ fn time(run: &Folder) -> Outcome {
 }
 
 fn time_step(run: &Folder) -> Outcome {
-    let limits = &run.summary.findings;
+    let limits = &run.summary.limits;
     let (least, greatest) = (limits.least_time_step.seconds, limits.greatest_time_step.seconds);
     let mut search = Search::new();
     for row in 1..run.curve.rows.len() {

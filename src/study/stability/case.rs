@@ -3,6 +3,7 @@
 use super::critical::Critical;
 use super::measure::Check;
 use crate::base::error::Result;
+use crate::base::finding::FindingKind;
 use crate::scene::{self, Scene};
 use std::path::Path;
 
@@ -20,8 +21,10 @@ pub enum Base {
 pub enum Expect {
     /// It runs to its end with its ledger closed.
     Stable,
-    /// Refused before it runs, or stopped while it runs, by a message that has these words in its cause or remedy.
-    Told(&'static [&'static str]),
+    /// Refused before it runs, with cause and remedy.
+    Refused,
+    /// Stopped while it runs, because wires pass through each other.
+    PassesThrough,
 }
 
 /// How a case is run.
@@ -52,8 +55,8 @@ pub struct Case {
     pub kind: Kind,
     /// The number it must give, when one is known.
     pub check: Option<Check>,
-    /// Words that a warning of the run must have, for what is stable and yet not what the user asked for.
-    pub warned: &'static [&'static str],
+    /// Findings that the run must make, for what is stable and yet not what the user asked for.
+    pub found: &'static [FindingKind],
     /// Greatest energy residual over the work done [-], and why where it is not 1 %.
     pub residual: (f64, &'static str),
     /// Whether it is started before the others, so that no core waits for it at the end.
@@ -79,7 +82,7 @@ impl Case {
             expect: Expect::Stable,
             kind: Kind::Run,
             check: None,
-            warned: &[],
+            found: &[],
             residual: (RESIDUAL, ""),
             long: false,
             patience: PATIENCE,
@@ -98,9 +101,15 @@ impl Case {
         self
     }
 
-    /// It must end with a message that has these words.
-    pub fn told(mut self, words: &'static [&'static str]) -> Self {
-        self.expect = Expect::Told(words);
+    /// It must be refused.
+    pub fn refused(mut self) -> Self {
+        self.expect = Expect::Refused;
+        self
+    }
+
+    /// It must be stopped, because wires pass through each other.
+    pub fn passes_through(mut self) -> Self {
+        self.expect = Expect::PassesThrough;
         self
     }
 
@@ -110,9 +119,9 @@ impl Case {
         self
     }
 
-    /// It must warn in these words.
-    pub fn warns(mut self, words: &'static [&'static str]) -> Self {
-        self.warned = words;
+    /// It must make these findings.
+    pub fn finds(mut self, kinds: &'static [FindingKind]) -> Self {
+        self.found = kinds;
         self
     }
 

@@ -46,7 +46,7 @@ pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> R
     let holds = |step: f64| -> Result<bool> {
         match run(step) {
             Ok(energy) => Ok(energy <= critical.growth * reference),
-            Err(Error::Trouble { .. }) => Ok(false),
+            Err(Error::Simulation(_)) => Ok(false),
             Err(other) => Err(other),
         }
     };
@@ -76,7 +76,7 @@ pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> R
         exact: low * 1e9,
         accept: Accept::Below(critical.within),
     };
-    Ok(Ended::Ran { answer: Some(answer), residual: None, wrong, warnings: Vec::new() })
+    Ok(Ended::Ran { answer: Some(answer), residual: None, wrong, notices: Vec::new() })
 }
 
 /// The least bound on the step during a run that follows it [s].

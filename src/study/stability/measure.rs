@@ -1,5 +1,6 @@
 //! What a run is asked for, and the number it must give.
 
+use crate::base::finding::{FindingKind, Notice};
 use crate::engine::Engine;
 use crate::engine::view::{Rupture, Sample};
 use crate::reference::column::Column;
@@ -83,8 +84,8 @@ pub struct Seen {
     pub rows: Vec<Sample>,
     /// Its ruptures.
     pub ruptures: Vec<Rupture>,
-    /// What it told its user.
-    pub notices: Vec<String>,
+    /// What it found.
+    pub notices: Vec<Notice>,
     /// Energy below which nothing happened [J].
     pub negligible: f64,
     /// Positions at each row [m], of small bodies only.
@@ -146,7 +147,7 @@ impl Seen {
             Shape::Sphere => 1.0 - (1.0 - 0.25 * self.widest().min(2.0).powi(2)).sqrt(),
             Shape::Wire => 0.0,
         };
-        let told = self.notices.iter().any(|notice| notice.contains("of the radius deep"));
+        let told = self.notices.iter().any(|notice| notice.finding.kind() == FindingKind::DeepContact);
         let crushed = if told { 0.5 } else { GREATEST_OVERLAP + interlock };
         let worst = overlap::deepest(&bodies, crushed)?;
         let [a, b] = worst.bodies.map(|body| body + 1);

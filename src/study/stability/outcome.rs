@@ -2,6 +2,7 @@
 
 use super::case::{Case, Expect};
 use super::measure::Answer;
+use crate::base::finding::{Failure, FindingKind, Notice, Stopped};
 use serde::Serialize;
 use std::fmt;
 
@@ -45,14 +46,14 @@ pub struct Report {
     pub steps: u64,
     /// Wall time [s].
     pub wall_s: f64,
-    /// What the program said: cause and remedy, or its warnings; what is wrong where it failed.
+    /// What the program said: cause and remedy, or what it found; what is wrong where it failed.
     pub message: String,
 }
 
 /// What happened, before it is judged.
 #[derive(Debug, Clone)]
 pub enum Ended {
-    /// It ran to its end with these warnings.
+    /// It ran to its end.
     Ran {
         /// See [`Report::answer`].
         answer: Option<Answer>,
@@ -60,8 +61,8 @@ pub enum Ended {
         residual: Option<f64>,
         /// What else is not as it must be.
         wrong: Vec<String>,
-        /// Warnings as the user reads them.
-        warnings: Vec<String>,
+        /// What it found.
+        notices: Vec<Notice>,
     },
     /// It was refused before the first step.
     Refused {
@@ -71,12 +72,7 @@ pub enum Ended {
         help: Option<String>,
     },
     /// It was stopped.
-    Stopped {
-        /// Cause.
-        what: String,
-        /// Remedy.
-        help: Option<String>,
-    },
+    Stopped(Box<Stopped>),
     /// It panicked, hung, or met an error of another kind.
     Broke(String),
 }
@@ -87,18 +83,37 @@ pub fn judge(case: &Case, ended: Ended, steps: u64, wall_s: f64) -> Report {
         |outcome, message| Report { case: case.clone(), outcome, answer: None, residual: None, steps, wall_s, message };
     match ended {
         Ended::Broke(what) => report(Outcome::Failed, what),
-        Ended::Refused { what, help } => told(case, Outcome::Refused, what, help, report),
-        Ended::Stopped { what, help } => told(case, Outcome::Stopped, what, help, report),
-        Ended::Ran { answer, residual, mut wrong, warnings } => {
-            if let Expect::Told(words) = case.expect {
-                wrong.push(format!("it ran, and should have been refused or stopped ({})", words.join(", ")));
+        Ended::Refused { what, help } => {
+            let wrong = match (case.expect, &help) {
+                (Expect::Refused, Some(_)) => None,
+                (Expect::Refused, None) => Some("the message names no remedy"),
+                _ => Some("it should have run"),
+            };
+            let said = help.map_or(what.clone(), |help| format!("{what}; {help}"));
+            closed(wrong, Outcome::Refused, said, report)
+        }
+        Ended::Stopped(stopped) => {
+            let wrong = match (case.expect, &stopped.failure) {
+                (Expect::PassesThrough, Failure::PassedThrough { .. }) => None,
+                (Expect::PassesThrough, _) => Some("it should have been stopped for another reason"),
+                _ => Some("it should have run"),
+            };
+            closed(wrong, Outcome::Stopped, format!("{stopped}; {}", stopped.remedy()), report)
+        }
+        Ended::Ran { answer, residual, mut wrong, notices } => {
+            match case.expect {
+                Expect::Stable => {}
+                Expect::Refused => wrong.push("it ran, and should have been refused".into()),
+                Expect::PassesThrough => wrong.push("it ran, and wires should have passed through each other".into()),
             }
             if let Some(residual) = residual.filter(|r| r.is_nan() || *r > case.residual.0) {
                 wrong.push(format!("the energy ledger is open by {:.2} %", 100.0 * residual));
             }
             wrong.extend(answer.as_ref().and_then(Answer::miss));
-            let said = warnings.join("\n");
-            wrong.extend(missing(case.warned, &said).map(|word| format!("no warning speaks of \"{word}\"")));
+            let said: Vec<String> = notices.iter().map(Notice::to_string).collect();
+            let said = said.join("\n");
+            let made = |kind: &FindingKind| notices.iter().any(|notice| notice.finding.kind() == *kind);
+            wrong.extend(case.found.iter().filter(|kind| !made(kind)).map(|kind| format!("it did not find {kind:?}")));
             let outcome = if wrong.is_empty() { Outcome::Stable } else { Outcome::Failed };
             let mut parts = wrong;
             if outcome == Outcome::Stable && !case.residual.1.is_empty() {
@@ -110,37 +125,18 @@ pub fn judge(case: &Case, ended: Ended, steps: u64, wall_s: f64) -> Report {
     }
 }
 
-/// A message must be expected, name its cause in the expected words, and have a remedy.
-fn told(
-    case: &Case,
-    outcome: Outcome,
-    what: String,
-    help: Option<String>,
-    report: impl Fn(Outcome, String) -> Report,
-) -> Report {
-    let remedy = help.filter(|help| !help.is_empty());
-    let said = match &remedy {
-        Some(help) => format!("{what}; {help}"),
-        None => what,
-    };
-    let wrong = match case.expect {
-        Expect::Stable => Some("it should have run".to_string()),
-        Expect::Told(_) if remedy.is_none() => Some("the message names no remedy".to_string()),
-        Expect::Told(words) => missing(words, &said).map(|word| format!("the message does not say \"{word}\"")).next(),
-    };
+/// A run that was not let go on: as expected, or why not.
+fn closed(wrong: Option<&str>, outcome: Outcome, said: String, report: impl Fn(Outcome, String) -> Report) -> Report {
     match wrong {
         Some(wrong) => report(Outcome::Failed, format!("{wrong}: {said}")),
         None => report(outcome, said),
     }
 }
 
-fn missing<'a>(words: &'a [&'a str], said: &'a str) -> impl Iterator<Item = &'a str> {
-    words.iter().copied().filter(move |word| !said.contains(word))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::finding::{Body, Finding, Instant, Member, Relief};
     use crate::study::stability::case::Base;
 
     fn case() -> Case {
@@ -148,7 +144,7 @@ mod tests {
     }
 
     fn ran(residual: f64, wrong: Vec<String>) -> Ended {
-        Ended::Ran { answer: None, residual: Some(residual), wrong, warnings: Vec::new() }
+        Ended::Ran { answer: None, residual: Some(residual), wrong, notices: Vec::new() }
     }
 
     #[test]
@@ -160,15 +156,41 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_counts_when_it_is_expected_and_says_cause_and_remedy() {
+    fn a_refusal_counts_when_it_is_expected_and_names_a_remedy() {
         let refused =
             |help: Option<&str>| Ended::Refused { what: "spheres 1 and 2 overlap".into(), help: help.map(Into::into) };
         let outcome = |case: &Case, ended| judge(case, ended, 0, 0.0).outcome;
-        let told = case().told(&["overlap", "apart"]);
-        assert_eq!(outcome(&told, refused(Some("move them apart"))), Outcome::Refused);
-        assert_eq!(outcome(&told, refused(Some("pray"))), Outcome::Failed);
-        assert_eq!(outcome(&told, refused(None)), Outcome::Failed);
+        let expected = case().refused();
+        assert_eq!(outcome(&expected, refused(Some("move them apart"))), Outcome::Refused);
+        assert_eq!(outcome(&expected, refused(None)), Outcome::Failed);
         assert_eq!(outcome(&case(), refused(Some("move them apart"))), Outcome::Failed);
-        assert_eq!(outcome(&told, ran(0.0, vec![])), Outcome::Failed);
+        assert_eq!(outcome(&case().passes_through(), refused(Some("move them apart"))), Outcome::Failed);
+        assert_eq!(outcome(&expected, ran(0.0, vec![])), Outcome::Failed);
+    }
+
+    #[test]
+    fn a_stop_counts_for_the_expected_reason_only() {
+        let at = Instant { step: 5, time: 1e-6, strain: None };
+        let stopped = |failure| Ended::Stopped(Box::new(Stopped { at, failure, kept: None }));
+        let bond = Member { number: Some(2), body: Body::Wire { wire: 1, layer: "core".into() } };
+        let through = Failure::PassedThrough { bonds: [bond.clone(), bond], z_m: 0.0, relief: Relief::Speed };
+        let outcome = |case: &Case, ended| judge(case, ended, 0, 0.0).outcome;
+        let expected = case().passes_through();
+        assert_eq!(outcome(&expected, stopped(through.clone())), Outcome::Stopped);
+        assert_eq!(outcome(&expected, stopped(Failure::UnstableMotion)), Outcome::Failed);
+        assert_eq!(outcome(&case().refused(), stopped(through.clone())), Outcome::Failed);
+        assert_eq!(outcome(&case(), stopped(through)), Outcome::Failed);
+        assert_eq!(outcome(&expected, ran(0.0, vec![])), Outcome::Failed);
+    }
+
+    #[test]
+    fn a_finding_that_is_missing_fails_the_case() {
+        let outcome = |notices: Vec<Notice>| {
+            let ended = Ended::Ran { answer: None, residual: Some(0.0), wrong: Vec::new(), notices };
+            judge(&case().finds(&[FindingKind::TooShort]), ended, 1, 0.0).outcome
+        };
+        let finding = Finding::TooShort { passages: 1.0, start: 10.0 };
+        assert_eq!(outcome(vec![Notice { at: Instant::default(), finding }]), Outcome::Stable);
+        assert_eq!(outcome(Vec::new()), Outcome::Failed);
     }
 }

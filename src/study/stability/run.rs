@@ -84,7 +84,7 @@ fn from_error(error: Error) -> Ended {
     match error {
         Error::Scene(scene) => Ended::Refused { what: scene.what, help: scene.help },
         Error::Input { what, help } => Ended::Refused { what, help },
-        Error::Trouble { step, what, help } => Ended::Stopped { what: format!("step {step}: {what}"), help },
+        Error::Simulation(stopped) => Ended::Stopped(stopped),
         other => Ended::Broke(other.to_string()),
     }
 }
@@ -97,7 +97,7 @@ fn once(case: &Case, scene: &Scene, leash: &Leash) -> Result<Ended> {
     wrong.extend(ledger_faults(&seen));
     wrong.extend(seen.passed_through());
     let residual = Some(residual(&seen));
-    Ok(Ended::Ran { answer, residual, wrong, warnings: seen.notices })
+    Ok(Ended::Ran { answer, residual, wrong, notices: seen.notices })
 }
 
 /// Runs a scene to its end; rows come as the scene's `output` asks.
@@ -175,7 +175,7 @@ impl Watched {
 
     fn notices(&mut self) {
         let said = self.engine.take_notices().into_iter().chain(self.guard.take_notices());
-        self.seen.notices.extend(said.map(|notice| notice.text));
+        self.seen.notices.extend(said);
     }
 }
 

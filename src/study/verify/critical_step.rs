@@ -65,7 +65,7 @@ fn edge(lab: &Lab, scene: &str, options: &[String]) -> Result<Edge> {
         spent = spent + trial.spent();
         match result {
             Ok(()) => Ok(false),
-            Err(Error::Trouble { .. }) => Ok(true),
+            Err(Error::Simulation(_)) => Ok(true),
             Err(other) => Err(other),
         }
     };

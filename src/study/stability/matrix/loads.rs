@@ -5,9 +5,10 @@ use super::super::measure::{
     buckled, cycled_alike, cycled_plastic, no_drift, peak_is_yield, pulled_strand, stopped_wave, turned,
 };
 use super::{COLUMN, REST, SEVEN, WIRE};
+use crate::base::finding::FindingKind;
 
 /// What must be said of crushed contacts.
-const DEEP: &[&str] = &["of the radius deep"];
+const DEEP: &[FindingKind] = &[FindingKind::DeepContact];
 
 /// All of them.
 pub fn cases() -> Vec<Case> {
@@ -70,13 +71,13 @@ fn speeds() -> Vec<Case> {
         "stop.strain=",
         "stop.time=60 us",
     ];
-    let fast = &["quasi-static"];
+    let fast = &[FindingKind::KineticEnergy];
     vec![
         pulled(0.1, "").quick(["stop.strain=1 %"]).gives(pulled_strand),
         pulled(1.0, "").gives(pulled_strand),
         pulled(10.0, "").gives(pulled_strand),
-        pulled(100.0, ", near the speed of plastic waves").warns(fast),
-        pulled(300.0, ", above the speed of plastic waves").warns(fast),
+        pulled(100.0, ", near the speed of plastic waves").finds(fast),
+        pulled(300.0, ", above the speed of plastic waves").finds(fast),
         Case::new("sudden-stop", "an elastic wire flying at 5 m/s whose front end is stopped dead", WIRE)
             .set(thrown)
             .gives(stopped_wave),
@@ -123,11 +124,11 @@ fn torsion() -> Vec<Case> {
             SEVEN,
         )
         .set(ten)
-        .told(&["passed through", "wire"]),
+        .passes_through(),
         Case::new("torsion-unlay", "ten turns of seven wires against their lay, chains of spheres", SEVEN)
             .set(ten)
             .set(["grip.rotation_rate=-5000 rad/s"])
-            .told(&["passed through", "wire"]),
+            .passes_through(),
         Case::new("torsion-smooth", "two turns of seven smooth wires", SEVEN)
             .set(ten)
             .set(["contact.shape=wire", "stop.time=2.513 ms"]),
@@ -196,8 +197,8 @@ fn grips() -> Vec<Case> {
         ])
     };
     vec![
-        jaw("jaw-100MPa", "KA4 in a jaw of 100 MPa", "100 MPa").warns(DEEP),
-        jaw("jaw-3GPa", "KA4 in a jaw of 3 GPa, which crushes it", "3 GPa").told(&["passed through", "clamp_pressure"]),
+        jaw("jaw-100MPa", "KA4 in a jaw of 100 MPa", "100 MPa").finds(DEEP),
+        jaw("jaw-3GPa", "KA4 in a jaw of 3 GPa, which crushes it", "3 GPa").passes_through(),
         Case::new("jaw-slips", "seven wires whose core is held by friction alone, without friction", SEVEN).set([
             "grip.kind=jaw",
             "grip.clamp_pressure=100 MPa",

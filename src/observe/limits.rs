@@ -1,12 +1,13 @@
-//! What a run has seen of the limits of its model, as written to `summary.json`.
+//! How near a run came to the limits of its model, as written to `summary.json`.
 
 use super::units::{mm, mpa, percent};
+use crate::base::finding::{Body, StepLimit};
 use crate::engine::view::{self, StepAt};
 use serde::{Deserialize, Serialize};
 
 /// The deepest contact, the range of the time step, the ledger's greatest gap.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Findings {
+pub struct Limits {
     /// The deepest contact; `None` when nothing touched.
     pub deepest_contact: Option<Deepest>,
     /// The least time step and what limited it.
@@ -23,7 +24,7 @@ pub struct Deepest {
     /// Overlap over the smaller of the two radii [%].
     pub overlap_percent_of_radius: f64,
     /// The two bodies.
-    pub between: [String; 2],
+    pub between: [Body; 2],
     /// Where [mm].
     pub z_mm: f64,
     /// Strain of the body [%].
@@ -48,10 +49,10 @@ pub struct Step {
     /// Simulated time [s].
     pub time_s: f64,
     /// What limited it.
-    pub limited_by: String,
+    pub limited_by: StepLimit,
 }
 
-impl Findings {
+impl Limits {
     /// What the engine saw, and the ledger's greatest gap [-].
     pub fn new(seen: view::Findings, residual: Option<f64>) -> Self {
         Self {
