@@ -35,7 +35,7 @@ fn stills(folder: &Path, count: u32) -> Vec<Still> {
     (0..count).map(still).collect()
 }
 
-/// What a viewer shows, picture by picture, each with its time [ms].
+/// What a viewer shows, picture by picture, each with its time (ms).
 fn decoded(file: &Path) -> Vec<(RgbImage, u128)> {
     match file.extension().unwrap().to_str().unwrap() {
         "gif" => decoded_gif(file),

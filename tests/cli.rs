@@ -53,6 +53,66 @@ fn help_and_version_are_well() {
 }
 
 #[test]
+fn help_lists_the_exit_codes() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = stdout(&strandsnap(folder.path(), &["--help"]));
+    let codes = help.split_once("Exit codes:").expect("a list").1;
+    let first = |line: &str| line.split_whitespace().next().and_then(|word| word.parse::<i32>().ok());
+    assert_eq!(codes.lines().filter_map(first).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 130]);
+}
+
+#[test]
+fn the_keys_of_a_scene_are_listed() {
+    let folder = tempfile::tempdir().unwrap();
+    let all = strandsnap(folder.path(), &["scene", "keys"]);
+    assert_code(&all, 0);
+    for word in ["strand.layer[].pitch: number or text with a unit; such as mm", "hertz: Elastic.", "default 2.8"] {
+        assert!(stdout(&all).contains(word), "{word}\n{}", stdout(&all));
+    }
+    let some: serde_json::Value =
+        serde_json::from_str(&stdout(&strandsnap(folder.path(), &["scene", "keys", "grip.ad", "--json"]))).unwrap();
+    let keys: Vec<&str> = some.as_array().unwrap().iter().map(|key| key["key"].as_str().unwrap()).collect();
+    let passages = "grip.adaptive.passages";
+    assert_eq!(
+        keys,
+        ["grip.adaptive", "grip.adaptive.fastest", "grip.adaptive.from", "grip.adaptive.kinetic", passages]
+    );
+    let none = strandsnap(folder.path(), &["scene", "keys", "frction"]);
+    assert_code(&none, 2);
+    assert!(plain(&stderr(&none)).contains("did you mean `friction`?"), "{}", stderr(&none));
+}
+
+#[test]
+fn a_scene_of_ones_own_begins_as_a_copy() {
+    let folder = tempfile::tempdir().unwrap();
+    let new = ["scene", "new", "mine", "--from", "strand-1x7"];
+    assert_code(&strandsnap(folder.path(), &new), 0);
+    let original = stdout(&strandsnap(folder.path(), &["scene", "show", "strand-1x7"]));
+    assert_eq!(fs::read_to_string(folder.path().join("mine.toml")).unwrap(), original);
+    assert_code(&strandsnap(folder.path(), &["scene", "check", "mine.toml"]), 0);
+    fs::write(folder.path().join("mine.toml"), "mine").unwrap();
+    assert_code(&strandsnap(folder.path(), &new), 2);
+    assert_eq!(fs::read_to_string(folder.path().join("mine.toml")).unwrap(), "mine", "nothing is replaced");
+    assert_code(&strandsnap(folder.path(), &["scene", "new", "no/such/folder/mine"]), 1);
+    assert_code(&strandsnap(folder.path(), &["scene", "new", "other", "--from", "ka5"]), 2);
+    assert!(!folder.path().join("other.toml").exists());
+}
+
+#[test]
+fn completions_and_manual_pages_are_made() {
+    let folder = tempfile::tempdir().unwrap();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = strandsnap(folder.path(), &["completions", shell]);
+        assert_code(&script, 0);
+        assert!(stdout(&script).contains("check-run"), "{shell}");
+    }
+    assert_code(&strandsnap(folder.path(), &["man", "pages/man1"]), 0);
+    let page = fs::read_to_string(folder.path().join("pages/man1/strandsnap-scene-keys.1")).unwrap();
+    assert!(page.starts_with(".ie") || page.contains(".TH"), "{page}");
+    assert!(folder.path().join("pages/man1/strandsnap.1").is_file());
+}
+
+#[test]
 fn an_unknown_option_is_bad_input() {
     let folder = tempfile::tempdir().unwrap();
     assert_code(&strandsnap(folder.path(), &["run", "ka4", "--colur"]), 2);

@@ -16,7 +16,7 @@ use strandsnap::engine::view::{BondState, RunInfo, Rupture, Snapshot};
 use strandsnap::render::{FrameOptions, Renderer, View};
 use strandsnap::scene::spec::ColourBy;
 
-/// Least similarity of any tile to its reference, 1 for equal ones [-]. The last two tests show
+/// Least similarity of any tile to its reference, 1 for equal ones (-). The last two tests show
 /// what it lets through and what not.
 const ALIKE: f64 = 0.985;
 /// Tiles across and down: a change of one wire must not drown in the rest of the picture.

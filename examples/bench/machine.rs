@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 use strandsnap::base::lanes::{BLOCK, Lanes, Real};
 
-/// Memory of the far triad [bytes]: more than caches hold.
+/// Memory of the far triad (bytes): more than caches hold.
 const FAR: usize = 768 << 20;
 /// A rate is the best of as many goes as this time has room for.
 const TIME: Duration = Duration::from_millis(200);
@@ -21,15 +21,15 @@ const ROUNDS: usize = 200_000;
 /// Rates of all threads together.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Machine {
-    /// Bandwidth of a triad over memory far beyond the caches [bytes/s].
+    /// Bandwidth of a triad over memory far beyond the caches (bytes/s).
     pub far: f64,
-    /// The same over as much memory as the engine works on [bytes/s].
+    /// The same over as much memory as the engine works on (bytes/s).
     pub near: f64,
-    /// Additions, multiplications, or both in one, in the widest registers [1/s].
+    /// Additions, multiplications, or both in one, in the widest registers (1/s).
     pub simple: f64,
-    /// Divisions [1/s].
+    /// Divisions (1/s).
     pub divisions: f64,
-    /// Square roots [1/s].
+    /// Square roots (1/s).
     pub roots: f64,
 }
 
@@ -45,12 +45,12 @@ impl Machine {
         }
     }
 
-    /// Least time for moving `bytes` that stay in reach of the working set [s].
+    /// Least time for moving `bytes` that stay in reach of the working set (s).
     pub fn moving(&self, bytes: usize) -> f64 {
         bytes as f64 / self.near
     }
 
-    /// Least time for arithmetic [s]: divisions and roots share a unit, which works beside the others.
+    /// Least time for arithmetic (s): divisions and roots share a unit, which works beside the others.
     pub fn computing(&self, work: Operations) -> f64 {
         (work.simple / self.simple).max(work.divisions / self.divisions + work.roots / self.roots)
     }
@@ -113,7 +113,7 @@ fn arithmetic(threads: usize, kind: Kind) -> f64 {
     (threads * CHAINS * ROUNDS * lanes) as f64 / best
 }
 
-/// Best time of some goes [s]. By the wall: the clock of the processor comes in steps on some machines. Goes are so short
+/// Best time of some goes (s). By the wall: the clock of the processor comes in steps on some machines. Goes are so short
 /// that programs beside this one leave some of them alone.
 fn best(mut go: impl FnMut()) -> f64 {
     go();

@@ -39,10 +39,10 @@ pub struct Args {
     /// Factors on the length of the strand
     #[arg(long, value_delimiter = ',', default_value = "1,10")]
     lengths: Vec<f64>,
-    /// Strain at which is measured [%]; 0 for the scene as it starts
+    /// Strain at which is measured (%); 0 for the scene as it starts
     #[arg(long, default_value_t = 6.0)]
     strain: f64,
-    /// Strain rate of the way there [1/s]
+    /// Strain rate of the way there (1/s)
     #[arg(long, default_value_t = 180.0)]
     rate: f64,
     /// Steps that are timed

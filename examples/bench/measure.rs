@@ -42,9 +42,9 @@ pub struct Row {
     pub searches_per_1000_steps: f64,
     /// The way to the strain at which is measured, if there was one.
     pub pull: Option<Pull>,
-    /// Memory kept per particle, by stage [bytes].
+    /// Memory kept per particle, by stage (bytes).
     pub bytes_per_particle: Vec<(String, usize)>,
-    /// Greatest resident memory over the number of particles [bytes]; the program itself included.
+    /// Greatest resident memory over the number of particles (bytes); the program itself included.
     pub peak_bytes_per_particle: Option<f64>,
 }
 
@@ -59,7 +59,7 @@ pub struct Stages<T> {
 }
 
 impl Row {
-    /// Share of its cores that the run really got [-]: others may use the machine. Waiting threads spin, so that an
+    /// Share of its cores that the run really got (-): others may use the machine. Waiting threads spin, so that an
     /// undisturbed run is busy on all of them.
     pub fn got(&self) -> f64 {
         self.cpu_ms_per_step.map_or(1.0, |cpu| (cpu / (self.ms_per_step * self.threads as f64)).min(1.0))
@@ -84,11 +84,11 @@ impl<T: Copy> Stages<T> {
 pub struct Pull {
     pub steps: u64,
     pub searches: u64,
-    /// Strain at its end [-].
+    /// Strain at its end (-).
     pub strain: f64,
-    /// Share of the time that went into the search [-].
+    /// Share of the time that went into the search (-).
     pub search_share: f64,
-    /// Candidates over closed contacts, mean over the steps [-].
+    /// Candidates over closed contacts, mean over the steps (-).
     pub candidates_per_contact: f64,
 }
 

@@ -1,6 +1,6 @@
 //! Memory of a process.
 
-/// Greatest resident memory of this process so far [bytes]; `None` where the system does not tell (it does on Linux).
+/// Greatest resident memory of this process so far (bytes); `None` where the system does not tell (it does on Linux).
 pub fn peak() -> Option<u64> {
     high_water(&std::fs::read_to_string("/proc/self/status").ok()?)
 }

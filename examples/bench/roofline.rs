@@ -8,7 +8,7 @@ use crate::work::Work;
 use serde::{Deserialize, Serialize};
 use strandsnap::engine::bytes::{Bytes, StageBytes};
 
-/// The least times of a stage per step [ms]; none where its work depends on the state too much to be counted.
+/// The least times of a stage per step (ms); none where its work depends on the state too much to be counted.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Limits {
     /// For moving its bytes.
@@ -34,7 +34,7 @@ impl Limits {
         }
     }
 
-    /// The limit as a share of a time [-].
+    /// The limit as a share of a time (-).
     pub fn reached(&self, ms: f64) -> f64 {
         self.bandwidth.max(self.arithmetic) / ms
     }

@@ -36,7 +36,7 @@ fn times(rows: &[Row]) {
     }
 }
 
-/// A time per particle-step over that of the first length on as many threads [-].
+/// A time per particle-step over that of the first length on as many threads (-).
 fn relative(rows: &[Row], row: &Row, ms: impl Fn(&Row) -> f64) -> f64 {
     let first = rows.iter().find(|r| r.threads == row.threads).unwrap_or(row);
     let each = |r: &Row| ms(r) / r.particles as f64;

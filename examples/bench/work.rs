@@ -115,7 +115,7 @@ fn meeting<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>) -> Operations {
     }))
 }
 
-/// Operations of one bond at `strain` [-].
+/// Operations of one bond at `strain` (-).
 pub fn bond(spec: &Spec, turn: bool, strain: f64) -> Operations {
     let moduli = Moduli::new(spec.material.young, spec.material.poisson);
     let damped = spec.bond.damping.iter().any(|d| *d > 0.0);

@@ -63,13 +63,13 @@ struct Outcome {
     /// Closed contacts before the first step, and after the last.
     contacts: [usize; 2],
     ms_per_step: f64,
-    /// Processor time of all threads, which a busy machine stretches less [ms].
+    /// Processor time of all threads, which a busy machine stretches less (ms).
     cpu_ms_per_step: f64,
-    /// Time at the end [s].
+    /// Time at the end (s).
     time: f64,
-    /// Translational kinetic energy then [J].
+    /// Translational kinetic energy then (J).
     kinetic: f64,
-    /// Greatest resident memory [MB].
+    /// Greatest resident memory (MB).
     memory: f64,
 }
 
@@ -118,7 +118,7 @@ fn at_rest(scene: &Scene) -> Result<Assembly> {
     Ok(assembly)
 }
 
-/// Σ ½ m v² [J].
+/// Σ ½ m v² (J).
 fn kinetic(state: &State) -> f64 {
     (0..state.len()).map(|p| 0.5 * state.mass[p] * state.v.get(p).length_squared()).sum()
 }

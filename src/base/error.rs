@@ -1,5 +1,5 @@
 //! The error type of the library. Each variant is one kind of trouble a user can act on; the CLI maps them to
-//! exit codes in one place (`main.rs`).
+//! exit codes in one place (`cli/mod.rs`).
 
 use super::finding::Stopped;
 use std::path::PathBuf;

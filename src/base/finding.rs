@@ -85,10 +85,10 @@ pub enum StepLimit {
     None,
     /// The scene fixes it.
     Scene {
-        /// The bound on the stable step [s]; `None` when nothing is stiff.
+        /// The bound on the stable step (s); `None` when nothing is stiff.
         bound_s: Option<f64>,
     },
-    /// The fastest particle may move by this share of the least radius in a step [-].
+    /// The fastest particle may move by this share of the least radius in a step (-).
     Travel {
         /// The share.
         share_of_radius: f64,
@@ -106,9 +106,9 @@ pub enum StepLimit {
         element: Element,
         /// Where it is.
         body: Body,
-        /// The bound on the stable step [s].
+        /// The bound on the stable step (s).
         bound_s: f64,
-        /// Factor on the bound, `time.safety` [-].
+        /// Factor on the bound, `time.safety` (-).
         safety: f64,
     },
 }
@@ -141,24 +141,24 @@ pub enum StiffnessCause {
 pub enum Finding {
     /// A contact deeper than its law is made for.
     DeepContact {
-        /// Overlap over the smaller radius [-].
+        /// Overlap over the smaller radius (-).
         overlap_over_radius: f64,
         /// The two bodies.
         between: [Body; 2],
-        /// Where [m].
+        /// Where (m).
         z_m: f64,
-        /// Normal force [N].
+        /// Normal force (N).
         force_n: f64,
-        /// Force over the area πR*δ [Pa].
+        /// Force over the area πR*δ (Pa).
         pressure_pa: f64,
         /// What would help.
         relief: Relief,
     },
     /// The step that the scene fixes is above the bound.
     UnstableStep {
-        /// The step [s].
+        /// The step (s).
         step_s: f64,
-        /// The bound [s].
+        /// The bound (s).
         bound_s: f64,
         /// The limiting mode.
         mode: StiffnessMode,
@@ -169,9 +169,9 @@ pub enum Finding {
     },
     /// The step has become much smaller than the first.
     StepShrunk {
-        /// The first step [s].
+        /// The first step (s).
         from_s: f64,
-        /// The step now [s].
+        /// The step now (s).
         to_s: f64,
         /// What limits it.
         limit: StepLimit,
@@ -180,13 +180,13 @@ pub enum Finding {
     Necking {
         /// The bond.
         bond: Member,
-        /// Where [m].
+        /// Where (m).
         z_m: f64,
-        /// Its plastic strain [-].
+        /// Its plastic strain (-).
         plastic_strain: f64,
-        /// That of the rest of its wire, which has stopped [-].
+        /// That of the rest of its wire, which has stopped (-).
         others: f64,
-        /// Plastic strain at the maximum load, dσ/dε = σ [-].
+        /// Plastic strain at the maximum load, dσ/dε = σ (-).
         maximum_load: f64,
     },
     /// A straight body has turned back on itself and got contacts.
@@ -196,9 +196,9 @@ pub enum Finding {
     },
     /// Bonds are longer than a neighbour search covers.
     BondsStretched {
-        /// Length of the longest over that at rest [-].
+        /// Length of the longest over that at rest (-).
         stretch: f64,
-        /// What is covered [-].
+        /// What is covered (-).
         covered: f64,
     },
     /// Loading was over before it could be judged.
@@ -210,34 +210,34 @@ pub enum Finding {
     },
     /// The two grip forces differed.
     GripForcesDiffer {
-        /// Greatest difference over the peak force [-].
+        /// Greatest difference over the peak force (-).
         mismatch: f64,
-        /// `time.mismatch_limit` [-].
+        /// `time.mismatch_limit` (-).
         limit: f64,
     },
     /// Kinetic energy was not small.
     KineticEnergy {
-        /// Kinetic over internal energy [-].
+        /// Kinetic over internal energy (-).
         over_internal: f64,
-        /// `time.kinetic_limit` [-].
+        /// `time.kinetic_limit` (-).
         limit: f64,
     },
     /// Energy has vanished or come from nowhere.
     LedgerOpen {
-        /// What is missing, negative for what came from nowhere [J].
+        /// What is missing, negative for what came from nowhere (J).
         missing_j: f64,
-        /// That over the work done [-].
+        /// That over the work done (-).
         over_work: f64,
     },
     /// The initial stiffness is not what strand theory expects.
     Stiffness {
-        /// By strand theory [Pa].
+        /// By strand theory (Pa).
         expected_pa: f64,
-        /// Measured on the curve [Pa].
+        /// Measured on the curve (Pa).
         measured_pa: f64,
-        /// Measured over expected − 1 [-].
+        /// Measured over expected − 1 (-).
         deviation: f64,
-        /// Strains between which it was measured [-].
+        /// Strains between which it was measured (-).
         window: [f64; 2],
         /// What may be behind it.
         cause: StiffnessCause,
@@ -340,31 +340,31 @@ pub enum Failure {
     Runaway {
         /// The particle.
         particle: Member,
-        /// How far it moved [m]; `None` when its position is not a number.
+        /// How far it moved (m); `None` when its position is not a number.
         moved_m: Option<f64>,
-        /// How far it may move [m].
+        /// How far it may move (m).
         limit_m: f64,
-        /// The same over the least radius [-].
+        /// The same over the least radius (-).
         limit_over_radius: f64,
-        /// The step taken [s].
+        /// The step taken (s).
         step_s: f64,
-        /// The bound on it [s]; `None` when nothing was stiff.
+        /// The bound on it (s); `None` when nothing was stiff.
         bound_s: Option<f64>,
     },
     /// Motion turns round at every step.
     UnstableMotion,
     /// Energy worth a large share of the work is unaccounted for.
     LedgerOpen {
-        /// What is missing, negative for what came from nowhere [J].
+        /// What is missing, negative for what came from nowhere (J).
         missing_j: f64,
-        /// That over the work done [-].
+        /// That over the work done (-).
         over_work: f64,
     },
     /// Two wires have passed through each other.
     PassedThrough {
         /// The two bonds.
         bonds: [Member; 2],
-        /// Where [m].
+        /// Where (m).
         z_m: f64,
         /// What would help.
         relief: Relief,
@@ -373,7 +373,7 @@ pub enum Failure {
     Bends {
         /// The body.
         body: Body,
-        /// Where [m].
+        /// Where (m).
         z_m: f64,
     },
 }
@@ -382,13 +382,13 @@ pub enum Failure {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(tag = "kind", content = "value", rename_all = "kebab-case")]
 pub enum StopReason {
-    /// `stop.strain` was reached [-].
+    /// `stop.strain` was reached (-).
     Strain(f64),
-    /// Nominal stress fell below `stop.stress_fraction` of its peak [-].
+    /// Nominal stress fell below `stop.stress_fraction` of its peak (-).
     StressFraction(f64),
-    /// `stop.strain_after_drop` was passed [-].
+    /// `stop.strain_after_drop` was passed (-).
     AfterDrop(f64),
-    /// `stop.time` was reached [s].
+    /// `stop.time` was reached (s).
     Time(f64),
     /// `stop.steps` was reached.
     Steps(u64),
@@ -413,9 +413,9 @@ impl StopReason {
 pub struct Instant {
     /// Step.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Strain of the body [-]; `None` without grips.
+    /// Strain of the body (-); `None` without grips.
     pub strain: Option<f64>,
 }
 

@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-/// Least lay radius [m] at which `wires` equal helical wires of `diameter` [m] and `pitch` [m] do not overlap each other;
+/// Least lay radius (m) at which `wires` equal helical wires of `diameter` (m) and `pitch` (m) do not overlap each other;
 /// 0 for a single wire, `None` when they do at every radius (`pitch` ≤ `wires` × `diameter`).
 pub fn least_radius_of_layer(wires: usize, diameter: f64, pitch: f64) -> Option<f64> {
     if wires < 2 {
@@ -44,8 +44,8 @@ pub fn least_radius_of_layer(wires: usize, diameter: f64, pitch: f64) -> Option<
     Some(high)
 }
 
-/// Least distance [m] between two helices of one pitch and lay around one axis: radii `r1` and `r2` [m], difference in
-/// phase `phase` [rad], angle per length `rate` k = 2π/h [rad/m] (0 when straight).
+/// Least distance (m) between two helices of one pitch and lay around one axis: radii `r1` and `r2` (m), difference in
+/// phase `phase` (rad), angle per length `rate` k = 2π/h (rad/m) (0 when straight).
 pub fn distance(r1: f64, r2: f64, phase: f64, rate: f64) -> f64 {
     let turns = phase.rem_euclid(TAU);
     let phase = turns.min(TAU - turns);

@@ -1,6 +1,6 @@
 //! Randomness indexed by what it belongs to, so that it does not depend on threads or on order.
 
-/// Uniform number in the open interval (0, 1) [-] that belongs to (seed, wire, bond).
+/// Uniform number in the open interval (0, 1) (-) that belongs to (seed, wire, bond).
 ///
 /// Counter-based: the three indices are hashed with the SplitMix64 finaliser (Steele, Lea & Flood 2014), one round
 /// per index, so neighbouring indices give independent values.

@@ -5,7 +5,7 @@
 pub struct Ticks {
     /// Tick values, ascending, in the axis' unit.
     pub values: Vec<f64>,
-    /// Decimals of the labels [-].
+    /// Decimals of the labels (-).
     pub decimals: usize,
     /// Distance between ticks, in the axis' unit.
     pub step: f64,

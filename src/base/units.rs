@@ -9,29 +9,29 @@ use uom::si::f64 as quantity;
 /// What kind of quantity a value is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
-    /// Plain number or per cent [-].
+    /// Plain number or per cent (-).
     Ratio,
-    /// \[m\].
+    /// (m).
     Length,
-    /// \[m²\].
+    /// (m²).
     Area,
-    /// \[s\].
+    /// (s).
     Time,
-    /// \[Hz\].
+    /// (Hz).
     Frequency,
-    /// \[m/s\].
+    /// (m/s).
     Velocity,
-    /// \[rad\].
+    /// (rad).
     Angle,
-    /// \[rad/s\].
+    /// (rad/s).
     AngularVelocity,
-    /// Stress, pressure, elastic modulus [Pa].
+    /// Stress, pressure, elastic modulus (Pa).
     Pressure,
-    /// \[kg/m³\].
+    /// (kg/m³).
     Density,
-    /// \[N\].
+    /// (N).
     Force,
-    /// \[N m\].
+    /// (N m).
     Moment,
 }
 

@@ -30,7 +30,7 @@ pub struct Args {
     /// Fracture elongation to reach [%; default: the reference experiment]
     #[arg(long, value_name = "PERCENT")]
     elongation: Option<f64>,
-    /// Allowed error of either mean [%]
+    /// Allowed error of either mean (%)
     #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
     tolerance: f64,
     /// Runs side by side, each on one thread [default: one per core]

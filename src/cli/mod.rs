@@ -7,7 +7,9 @@ mod cases;
 mod check_run;
 mod export;
 mod interrupt;
+mod keys;
 mod look;
+mod manual;
 mod plan;
 mod record;
 mod render;
@@ -23,12 +25,12 @@ mod verify;
 mod view;
 
 use crate::base::error::Result;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Pull stranded wire until it snaps: a discrete-element engine, and the pictures that show how it fails.
 #[derive(Debug, Parser)]
-#[command(name = "strandsnap", version, about, propagate_version = true)]
+#[command(name = "strandsnap", version, about, propagate_version = true, after_help = EXIT_CODES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -40,7 +42,7 @@ enum Command {
     Run(run::Args),
     /// Say what a scene would run, what is left out and why, and what it would cost
     Plan(plan::Args),
-    /// List, show or check scenes
+    /// List, show, check or start scenes, and list their keys
     #[command(subcommand)]
     Scene(scene::Command),
     /// Open the recording of a run in an installed Rerun viewer, or serve it to a browser
@@ -66,6 +68,16 @@ enum Command {
     /// Run stiff and extreme cases ("friction-*" takes all that begin so): each must be stable, or be refused or
     /// stopped with its reason
     Stability(cases::CaseArgs),
+    /// Print the completions of a shell for this program, to be put where that shell looks for them
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write the manual pages of this program and of its commands into a folder
+    Man {
+        /// The folder; it is made if it does not exist
+        folder: std::path::PathBuf,
+    },
 }
 
 /// How a command ended when nothing went wrong.
@@ -77,9 +89,17 @@ enum Ended {
     Missed,
 }
 
-/// Runs the program on its arguments. Exit codes: 0 well; 1 the file system refused; 2 bad input;
-/// 3 the machine lacks something; 4 the simulation had to stop, or a case of a study misses what it must give;
-/// 130 interrupted.
+/// What the program answers to whoever called it ([`crate::base::error::Error::exit_code`], [`Ended`]).
+const EXIT_CODES: &str = "\
+Exit codes:
+    0  well
+    1  the file system refused something
+    2  bad input
+    3  the machine lacks something (graphics adapter, Rerun viewer)
+    4  the simulation had to stop, or a case or a check misses what it must give
+  130  interrupted; what was found so far is kept";
+
+/// Runs the program on its arguments and answers with one of the exit codes that `--help` lists.
 pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(Ended::Well) => ExitCode::SUCCESS,
@@ -109,13 +129,17 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Report(args) => report::report(&args).map(|()| Ended::Well),
         Command::Record(args) => record::record(args),
         Command::View(args) => view::view(args),
+        Command::Completions { shell } => {
+            manual::completions(shell, &mut Cli::command());
+            Ok(Ended::Well)
+        }
+        Command::Man { folder } => manual::pages(Cli::command(), &folder).map(|()| Ended::Well),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_consistent() {

@@ -1,13 +1,17 @@
-//! `strandsnap scene list|show|check`.
+//! `strandsnap scene list|show|check|keys|new`.
 
+use super::keys;
 use super::say::{self, say};
 use super::values::SceneArgs;
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::run::{self, cautions};
 use crate::scene::builtin;
 use crate::scene::spec::Spec;
 use crate::strand;
 use crate::strand::theory::Theory;
+use std::fs::File;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
@@ -20,6 +24,16 @@ pub enum Command {
     },
     /// Check a scene and its geometry without running it
     Check(SceneArgs),
+    /// List the keys of a scene, each with what may be written, its unit, default and meaning
+    Keys(keys::Args),
+    /// Start a scene of one's own from a built-in one, comments included
+    New {
+        /// The file to write, such as my-strand or my-strand.toml; never replaces one
+        name: PathBuf,
+        /// The built-in scene to start from
+        #[arg(long, default_value = "ka4")]
+        from: String,
+    },
 }
 
 pub fn scene(command: &Command) -> Result<()> {
@@ -27,6 +41,8 @@ pub fn scene(command: &Command) -> Result<()> {
         Command::List => list(),
         Command::Show { name } => show(name),
         Command::Check(args) => check(args),
+        Command::Keys(args) => keys::print(args),
+        Command::New { name, from } => new(name, from),
     }
 }
 
@@ -41,6 +57,21 @@ fn list() -> Result<()> {
 
 fn show(name: &str) -> Result<()> {
     say::print(format_args!("{}", builtin::find(name)?));
+    Ok(())
+}
+
+fn new(name: &Path, from: &str) -> Result<()> {
+    let text = builtin::find(from)?;
+    let file =
+        if name.extension().is_some_and(|e| e == "toml") { name.into() } else { name.with_added_extension("toml") };
+    // Another process may make the file between a look and the writing.
+    let mut new = File::create_new(&file).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => Error::input(format!("{} exists", file.display()), "choose another name"),
+        _ => Error::io("cannot write", &file, error),
+    })?;
+    new.write_all(text.as_bytes()).map_err(|error| Error::io("cannot write", &file, error))?;
+    say!("{} is a copy of {from}; `strandsnap scene keys` lists what can be changed", file.display());
+    say!("check it: strandsnap scene check {}", file.display());
     Ok(())
 }
 

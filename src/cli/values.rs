@@ -111,7 +111,7 @@ pub fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     }
 }
 
-/// A range of strain in per cent, written as `20..26`; either end may be left out. Gives fractions [-].
+/// A range of strain in per cent, written as `20..26`; either end may be left out. Gives fractions (-).
 pub fn strain_range(text: &str) -> std::result::Result<[f64; 2], String> {
     let wrong = || "write two strains in per cent, such as 20..26, 20.. or ..26".to_string();
     let (from, to) = text.split_once("..").ok_or_else(wrong)?;

@@ -31,19 +31,19 @@ pub trait Bonds: Send {
     /// Computes every bond's action on its particles from `state`; returns the energies of the step.
     fn compute(&mut self, state: &mut State) -> Partial;
     /// Breaks the bonds that reached their limit; calls `broke(slot, cause, true axial stress [Pa])` for each, in order,
-    /// and returns the elastic energy that they held [J].
+    /// and returns the elastic energy that they held (J).
     fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64;
-    /// Stored elastic energy [J].
+    /// Stored elastic energy (J).
     fn elastic_energy(&self, state: &State) -> f64;
     /// Stiffnesses for the bound on the time step.
     fn stiffness(&self, state: &State, out: &mut Stiffness);
-    /// True axial stress of a bond [Pa].
+    /// True axial stress of a bond (Pa).
     fn stress(&self, slot: usize) -> f64;
-    /// Axial force of a bond [N].
+    /// Axial force of a bond (N).
     fn axial_force(&self, slot: usize) -> f64;
-    /// Equivalent plastic strain of a bond [-].
+    /// Equivalent plastic strain of a bond (-).
     fn plastic_strain(&self, slot: usize) -> f64;
-    /// Share of its rupture limit that a bond has reached [-]: it breaks at 1. 0 without a rupture criterion.
+    /// Share of its rupture limit that a bond has reached (-): it breaks at 1. 0 without a rupture criterion.
     fn utilisation(&self, slot: usize, state: &State) -> f64;
     /// Memory of the stage.
     fn bytes(&self) -> Bytes;
@@ -54,7 +54,7 @@ pub struct BondStage<L: BondLaw, const TURN: bool> {
     law: L,
     /// Blocks of [`Self::FIELDS`] fields.
     records: Vec<f64>,
-    /// Rows of the shapes and of the viscous coefficients of axial, shear [N s/m], bending, torsion [N m s], by kind of
+    /// Rows of the shapes and of the viscous coefficients of axial, shear (N s/m), bending, torsion (N m s), by kind of
     /// block.
     constants: Kinds,
     /// Where those of each block are.
@@ -85,7 +85,7 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
     const LIVE: usize = Self::HISTORY + L::HISTORY;
     const FIELDS: usize = Self::LIVE + 1;
 
-    /// All bonds of the assembly; `damping` is the fraction of critical per mode [-].
+    /// All bonds of the assembly; `damping` is the fraction of critical per mode (-).
     pub fn new(law: L, assembly: &Assembly, damping: [f64; MODES], rupture: Option<RuptureCheck>) -> Self {
         let n = assembly.len();
         let blocks = n.div_ceil(BLOCK);
@@ -197,7 +197,7 @@ fn constants<L: BondLaw>(law: &L, a: &Assembly, i: usize, damping: [f64; MODES])
     ]
 }
 
-/// Power that the motion does on a bond against its whole action [W].
+/// Power that the motion does on a bond against its whole action (W).
 fn power(state: &State, slot: usize) -> f64 {
     let pull = state.bond.pull(slot).dot(state.v.get(slot + 1) - state.v.get(slot));
     let [near, far] = state.bond.moments(slot);

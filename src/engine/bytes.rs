@@ -8,9 +8,9 @@ use crate::base::vectors::Vectors;
 /// Memory of one stage.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Bytes {
-    /// Kept between steps [bytes].
+    /// Kept between steps (bytes).
     pub kept: usize,
-    /// Read and written at each step [bytes]: every array that the stage streams, once for each direction and pass.
+    /// Read and written at each step (bytes): every array that the stage streams, once for each direction and pass.
     /// What it gathers here and there counts as if read once.
     pub moved: usize,
 }
@@ -48,23 +48,23 @@ impl StageBytes {
         ]
     }
 
-    /// All that is kept [bytes].
+    /// All that is kept (bytes).
     pub fn kept(&self) -> usize {
         self.stages().iter().map(|(_, bytes)| bytes.kept).sum()
     }
 }
 
-/// Memory behind a vector [bytes].
+/// Memory behind a vector (bytes).
 pub(super) fn behind<T>(v: &Vec<T>) -> usize {
     v.capacity() * size_of::<T>()
 }
 
-/// Memory behind three streams [bytes].
+/// Memory behind three streams (bytes).
 pub(super) fn behind_all(v: &Vectors) -> usize {
     behind(&v.x) + behind(&v.y) + behind(&v.z)
 }
 
-/// A vector, and a number, of a particle [bytes].
+/// A vector, and a number, of a particle (bytes).
 pub(super) const VECTOR: usize = 3 * size_of::<f64>();
 pub(super) const NUMBER: usize = size_of::<f64>();
 
@@ -91,7 +91,7 @@ impl Engine {
         }
     }
 
-    /// What kick, drift and gather move for each particle [bytes].
+    /// What kick, drift and gather move for each particle (bytes).
     fn moved_per_particle(&self) -> usize {
         let (turn, contacts) = (self.plan.rotations, self.contacts.is_some());
         // Velocity in and out, force, inverse mass; and the same for spins.
@@ -105,12 +105,12 @@ impl Engine {
     }
 }
 
-/// What bonds leave for each particle [bytes].
+/// What bonds leave for each particle (bytes).
 fn state_actions(state: &State) -> usize {
     if state.bond.data.is_empty() { 0 } else { state.bond.fields() * NUMBER }
 }
 
-/// Everything that moves a particle along [bytes].
+/// Everything that moves a particle along (bytes).
 fn motion(s: &State) -> usize {
     [&s.x, &s.v, &s.force].map(behind_all).iter().sum::<usize>()
         + [&s.radius, &s.thinned, &s.radius0, &s.mass, &s.inverse_mass].map(behind).iter().sum::<usize>()
@@ -118,7 +118,7 @@ fn motion(s: &State) -> usize {
         + behind(&s.fixed)
 }
 
-/// Everything that turns it [bytes].
+/// Everything that turns it (bytes).
 fn rotations(s: &State) -> usize {
     behind_all(&s.w) + behind_all(&s.torque) + behind(&s.inertia) + behind(&s.inverse_inertia)
 }

@@ -27,21 +27,21 @@ pub trait Contacts: Send {
     fn compute(&mut self, state: &mut State) -> Partial;
     /// What contacts do besides what they have added up.
     fn second_sides(&self) -> Option<SecondSides<'_>>;
-    /// Stored elastic energy at the positions of the last call of `compute` [J].
+    /// Stored elastic energy at the positions of the last call of `compute` (J).
     fn elastic_energy(&self, state: &State) -> f64;
-    /// Adds to each particle the normal forces of its contacts, without regard to direction [N].
+    /// Adds to each particle the normal forces of its contacts, without regard to direction (N).
     fn add_normal_forces(&self, onto: &mut [f64]);
     /// Number of touching pairs.
     fn active(&self) -> usize;
     /// Number of candidate pairs.
     fn candidates(&self) -> usize;
-    /// Stiffnesses of touching pairs for the bound on the time step, as they can become within `horizon` [s].
+    /// Stiffnesses of touching pairs for the bound on the time step, as they can become within `horizon` (s).
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
     /// Memory of the stage, among `particles` particles.
     fn bytes(&self, particles: usize) -> Bytes;
 }
 
-/// By how much the gap of two bodies may close while no particle moves further than 1 [-]: 2 for the way of both, the
+/// By how much the gap of two bodies may close while no particle moves further than 1 (-): 2 for the way of both, the
 /// rest for wires that thicken as they shorten. So a pair that is apart need not be looked at for a while.
 pub fn closing(assembly: &Assembly) -> f64 {
     let largest = assembly.radius.iter().copied().fold(0.0, f64::max);

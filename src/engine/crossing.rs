@@ -15,7 +15,7 @@ use rayon::prelude::*;
 const GRAIN: usize = 2048;
 /// Halvings in the search for the instant at which two segments lie in one plane.
 const HALVINGS: usize = 40;
-/// Two segments have a point in common when they are nearer than this share of the smaller radius [-].
+/// Two segments have a point in common when they are nearer than this share of the smaller radius (-).
 const COMMON: f64 = 0.05;
 
 /// Two bonds of different wires, or of one, that have changed sides.
@@ -23,7 +23,7 @@ const COMMON: f64 = 0.05;
 pub struct Crossing {
     /// First particles of the two bonds.
     pub bonds: [usize; 2],
-    /// Where they crossed [m].
+    /// Where they crossed (m).
     pub position: DVec3,
 }
 
@@ -77,7 +77,7 @@ impl Look<'_> {
     }
 }
 
-/// Six times the signed volume that two segments span [m³].
+/// Six times the signed volume that two segments span (m³).
 fn volume([a0, a1, b0, b1]: &[DVec3; 4]) -> f64 {
     (a1 - a0).dot((b1 - b0).cross(b0 - a0))
 }

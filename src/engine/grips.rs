@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Time over which a jaw's clamp pressure rises [s]; short against a pull, long against a wire's ringing.
+/// Time over which a jaw's clamp pressure rises (s); short against a pull, long against a wire's ringing.
 const CLAMP_RISE: f64 = 50e-6;
 
 /// What a group of particles must do.
@@ -22,7 +22,7 @@ const CLAMP_RISE: f64 = 50e-6;
 enum Kind {
     /// Moves as one rigid body along and about z.
     Rigid,
-    /// Moves along and about z; radially free under a clamp force per particle [N].
+    /// Moves along and about z; radially free under a clamp force per particle (N).
     Jaw { clamp: f64 },
     /// Components prescribed one by one, and loads per particle.
     Components(HoldSpec),
@@ -42,9 +42,9 @@ struct Group {
 /// Reactions on the two grips at the last step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Reaction {
-    /// Force on the lower and upper grip, tension positive [N].
+    /// Force on the lower and upper grip, tension positive (N).
     pub force: [f64; 2],
-    /// Torque about z on the upper grip [N m].
+    /// Torque about z on the upper grip (N m).
     pub torque: f64,
 }
 
@@ -52,20 +52,20 @@ pub struct Reaction {
 pub struct Holds {
     groups: Vec<Group>,
     grip: Option<GripSpec>,
-    /// Axis of the grips in the xy plane [m].
+    /// Axis of the grips in the xy plane (m).
     axis: DVec2,
     /// Gauge before loading and displacement of the upper grip.
     pub stretch: Stretch,
-    /// Length between the last particles held in one grip and in the other, mean over the held wires [m]: particles do
+    /// Length between the last particles held in one grip and in the other, mean over the held wires (m): particles do
     /// not lie just where the grips end, and strain is what this length does.
     free_length: f64,
-    /// Spin of the upper grip about z [rad/s].
+    /// Spin of the upper grip about z (rad/s).
     spin: f64,
     /// Speed of an adaptive pull.
     pub(super) pace: Option<Pace>,
     /// Reactions of the last step.
     pub reaction: Reaction,
-    /// Work done so far [J].
+    /// Work done so far (J).
     pub work: f64,
 }
 
@@ -181,18 +181,18 @@ impl Holds {
         }
     }
 
-    /// Share of the upper grip's speed that a place between the grips has in the affine field of the pull [-].
+    /// Share of the upper grip's speed that a place between the grips has in the affine field of the pull (-).
     fn share(&self, z: f64) -> f64 {
         let [z0, z1] = self.stretch.gauge;
         ((z - z0) / (z1 + self.stretch.displacement - z0)).clamp(0.0, 1.0)
     }
 
-    /// Grip displacement over the length that is free between the grips [-].
+    /// Grip displacement over the length that is free between the grips (-).
     pub fn strain(&self) -> f64 {
         if self.free_length > 0.0 { self.stretch.displacement / self.free_length } else { 0.0 }
     }
 
-    /// Overrides the kicked velocities of held particles; `kicked` is the time that the kick spanned [s].
+    /// Overrides the kicked velocities of held particles; `kicked` is the time that the kick spanned (s).
     pub fn apply(&mut self, state: &mut State, kicked: f64, arch: Arch) {
         let dt = state.dt;
         let mut rise = 0.0;
@@ -231,7 +231,7 @@ impl Holds {
         self.stretch.displacement += rise;
     }
 
-    /// Change of speed of an adaptive pull in this step [m/s].
+    /// Change of speed of an adaptive pull in this step (m/s).
     fn change(&self) -> f64 {
         self.pace.as_ref().map_or(0.0, |pace| pace.change)
     }
@@ -250,7 +250,7 @@ impl Holds {
         }
     }
 
-    /// Torque about z on the driven grip over its inertia [rad/s²].
+    /// Torque about z on the driven grip over its inertia (rad/s²).
     fn free_torque(&self, state: &State) -> f64 {
         let (mut torque, mut inertia) = (0.0, 0.0);
         for p in self.groups.iter().filter(|g| g.driven).flat_map(|g| &g.particles) {
@@ -338,13 +338,13 @@ impl Holds {
         }
     }
 
-    /// Force [N] and moment [N m] that a hold applies to each of its particles at `time` [s].
+    /// Force (N) and moment (N m) that a hold applies to each of its particles at `time` (s).
     fn load(hold: &HoldSpec, particles: usize, time: f64) -> [DVec3; 2] {
         let share = if hold.ramp > 0.0 { smooth(time / hold.ramp) } else { 1.0 } / particles as f64;
         [hold.force * share, hold.moment * share]
     }
 
-    /// Applied force [N] and moment [N m] of each loaded particle.
+    /// Applied force (N) and moment (N m) of each loaded particle.
     fn loads(&self, time: f64) -> BTreeMap<usize, [DVec3; 2]> {
         let mut loads: BTreeMap<usize, [DVec3; 2]> = BTreeMap::new();
         for group in &self.groups {
@@ -359,13 +359,13 @@ impl Holds {
         loads
     }
 
-    /// Kinetic energy at the instant of the positions [J], applied loads counted.
+    /// Kinetic energy at the instant of the positions (J), applied loads counted.
     pub fn kinetic(&self, state: &State) -> f64 {
         let loads = self.loads(state.time);
         state.kinetic(|p| loads.get(&p).copied().unwrap_or_default())
     }
 
-    /// Work up to the instant of the positions [J]: `work` lags by half a step.
+    /// Work up to the instant of the positions (J): `work` lags by half a step.
     pub fn work_now(&self, state: &State) -> f64 {
         let loads = self.loads(state.time);
         let applied: f64 = loads

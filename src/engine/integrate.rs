@@ -170,7 +170,7 @@ impl WithSimd for Thin<'_> {
 /// Chunks that one task takes when there is little to do in each.
 const GRAIN: usize = 4;
 
-/// Velocities and spins over `dt` [s].
+/// Velocities and spins over `dt` (s).
 pub fn kick(state: &mut State, dt: f64, turn: bool, arch: Arch) {
     let State { v, w, force, torque, inverse_mass, inverse_inertia, .. } = state;
     let (v, w) = (&mut *v, &mut *w);
@@ -221,7 +221,7 @@ impl WithSimd for Kick<'_> {
     }
 }
 
-/// Positions over `state.dt`; returns the greatest squared displacement of the step [m²], NaN when a position is not a
+/// Positions over `state.dt`; returns the greatest squared displacement of the step (m²), NaN when a position is not a
 /// number.
 pub fn drift(state: &mut State, arch: Arch) -> f64 {
     let dt = state.dt;

@@ -35,7 +35,7 @@ impl Kinds {
         &self.rows
     }
 
-    /// Memory behind it [bytes].
+    /// Memory behind it (bytes).
     pub fn bytes(&self) -> usize {
         2 * behind(&self.rows) + self.places.capacity() * size_of::<(Box<[u64]>, u32)>()
     }

@@ -10,9 +10,9 @@ use crate::strand::assembly::Assembly;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// Window of the running means, over the time in which an elastic wave runs along the body [-].
+/// Window of the running means, over the time in which an elastic wave runs along the body (-).
 const WINDOW: f64 = 0.125;
-/// By how much strain and stress of a row lag behind its instant, over the same time: the middle of the window [-].
+/// By how much strain and stress of a row lag behind its instant, over the same time: the middle of the window (-).
 pub const MEAN_LAG: f64 = 0.5 * WINDOW;
 
 /// Running means of what a row of the curve says, and who is broken.
@@ -23,7 +23,7 @@ pub const MEAN_LAG: f64 = 0.5 * WINDOW;
 /// strain that the grip brings in a window, v/(16c). A window takes out what neighbouring particles ring; the ringing of
 /// the body as a whole, of a period of 2L/c, stays.
 pub struct Measures {
-    /// Length of the window [s].
+    /// Length of the window (s).
     window: f64,
     area: f64,
     /// The steps in the window.
@@ -40,9 +40,9 @@ pub struct Measures {
 /// What was measured at one step, times its length.
 #[derive(Default, Clone)]
 struct Step {
-    /// [s]
+    /// (s)
     length: f64,
-    /// Strain [-], force of the lower and upper grip [N], torque [N m], axial force of each middle bond [N]; each times s.
+    /// Strain (-), force of the lower and upper grip (N), torque (N m), axial force of each middle bond (N); each times s.
     values: Vec<f64>,
 }
 
@@ -72,7 +72,7 @@ impl Measures {
         }
     }
 
-    /// Takes in a step of `dt` [s]: the grips' reactions, the strain [-] and the bonds' forces, all at one instant.
+    /// Takes in a step of `dt` (s): the grips' reactions, the strain (-) and the bonds' forces, all at one instant.
     pub fn take(&mut self, strain: f64, now: &Reaction, bonds: Option<&dyn Bonds>, dt: f64) {
         let mut step = Step::default();
         while self.steps.front().is_some_and(|first| self.sum.length + dt - first.length >= self.window) {
@@ -98,17 +98,17 @@ impl Measures {
         if self.sum.length > 0.0 { self.sum.values[value] / self.sum.length } else { 0.0 }
     }
 
-    /// Strain of the body: grip displacement over the length that is free between the grips [-].
+    /// Strain of the body: grip displacement over the length that is free between the grips (-).
     pub fn strain(&self) -> f64 {
         self.mean(STRAIN)
     }
 
-    /// Nominal stress: upper grip force over the copper area [Pa].
+    /// Nominal stress: upper grip force over the copper area (Pa).
     pub fn stress(&self) -> f64 {
         if self.area > 0.0 { self.mean(FORCE + 1) / self.area } else { 0.0 }
     }
 
-    /// Axial force of a wire [N]: mean over the bonds in the middle of the gauge, in which a broken one counts with zero
+    /// Axial force of a wire (N): mean over the bonds in the middle of the gauge, in which a broken one counts with zero
     /// from the moment at which it broke, whatever it carried before.
     fn wire_force(&self, wire: usize, whole: &[bool]) -> f64 {
         let range = self.of_wire[wire].clone();
@@ -122,7 +122,7 @@ impl Measures {
     }
 }
 
-/// Time in which an elastic wave runs along the body [s].
+/// Time in which an elastic wave runs along the body (s).
 fn passage(spec: &Spec, assembly: &Assembly) -> f64 {
     assembly.length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt()
 }
@@ -175,7 +175,7 @@ impl Engine {
         }
     }
 
-    /// Nominal axial stress of a wire at mid-gauge [Pa]: the mean over its bonds in the middle twentieth of the gauge, of
+    /// Nominal axial stress of a wire at mid-gauge (Pa): the mean over its bonds in the middle twentieth of the gauge, of
     /// which those that are broken carry nothing. A wire that broke there reports what its pieces still carry by friction.
     pub fn wire_stress(&self, wire: usize) -> f64 {
         self.measures.wire_force(wire, &self.state.whole) / self.assembly.wires[wire].area()
@@ -192,14 +192,14 @@ impl Engine {
         }
     }
 
-    /// Kinetic energy now [J]. Leapfrog's is a product of two velocities half a step apart, which rounding errors in a body
+    /// Kinetic energy now (J). Leapfrog's is a product of two velocities half a step apart, which rounding errors in a body
     /// at rest turn round at every step: what is negative by less than a negligible energy is rest.
     fn kinetic(&self) -> f64 {
         let kinetic = self.holds.kinetic(&self.state);
         if kinetic < 0.0 && -kinetic <= self.negligible_energy() { 0.0 } else { kinetic }
     }
 
-    /// An energy that is nothing [J]: what an elastic strain of 1e-9 everywhere would store.
+    /// An energy that is nothing (J): what an elastic strain of 1e-9 everywhere would store.
     pub fn negligible_energy(&self) -> f64 {
         const STRAIN: f64 = 1e-9;
         let volume = self.assembly.mass.iter().sum::<f64>() / (self.spec.material.density * self.spec.time.mass_scale);
@@ -240,7 +240,7 @@ impl Engine {
         }
     }
 
-    /// [`Snapshot::contact_pressure`] [MPa].
+    /// [`Snapshot::contact_pressure`] (MPa).
     fn contact_pressure(&self) -> Vec<f32> {
         let mut force = vec![0.0; self.state.len()];
         if let Some(contacts) = &self.contacts {
@@ -278,7 +278,7 @@ impl Engine {
         }
     }
 
-    /// The strain at which bonds are expected to break [-]; infinite when they never do.
+    /// The strain at which bonds are expected to break (-); infinite when they never do.
     pub(super) fn rupture_strain(&self) -> f64 {
         match self.spec.bond.rupture.as_ref().map(|r| &r.criterion) {
             // True plastic strain to engineering strain.
@@ -311,7 +311,7 @@ impl Engine {
         end.is_finite().then_some(end)
     }
 
-    /// Fixed ranges of true axial stress [MPa] and plastic strain [-] that the run will not leave.
+    /// Fixed ranges of true axial stress (MPa) and plastic strain (-) that the run will not leave.
     fn ranges(&self) -> ([f32; 2], [f32; 2]) {
         let strain = self.strain_end().unwrap_or(0.0).min(self.rupture_strain());
         match &self.spec.bond.law {
@@ -330,7 +330,7 @@ impl Engine {
         }
     }
 
-    /// Nominal axial stress of a wire strained by `strain` [-], by its bond law alone [Pa].
+    /// Nominal axial stress of a wire strained by `strain` (-), by its bond law alone (Pa).
     pub(super) fn nominal_stress(&self, strain: f64) -> f64 {
         let elastic = self.spec.material.young * strain;
         match &self.spec.bond.law {
@@ -340,7 +340,7 @@ impl Engine {
         }
     }
 
-    /// Upper end of a range of contact pressure [MPa]; `stress` is that of the range of axial stress [MPa].
+    /// Upper end of a range of contact pressure (MPa); `stress` is that of the range of axial stress (MPa).
     ///
     /// A wire under tension N presses inwards with N κ per length, κ = sin²β/R its curvature; a layer carries what
     /// all layers from itself outwards press, and feels it from both sides. As the strand stretches by λ its lay
@@ -381,7 +381,7 @@ impl Engine {
     }
 }
 
-/// Area that particle `i` shows to its neighbours [m²]: d a in a wire, π r² for a free sphere.
+/// Area that particle `i` shows to its neighbours (m²): d a in a wire, π r² for a free sphere.
 fn shown_area(a: &Assembly, i: usize) -> f64 {
     let d = 2.0 * a.radius[i];
     if i >= a.wire_particles {

@@ -48,20 +48,20 @@ use watch::Watch;
 
 /// Steps between two evaluations of the bound on the time step.
 const BOUND_INTERVAL: u64 = 64;
-/// Greatest growth of the step at one evaluation [-].
+/// Greatest growth of the step at one evaluation (-).
 const GROWTH: f64 = 2.0;
-/// First step of bodies that overlap, over the usual one [-]; it grows from one evaluation to the next.
+/// First step of bodies that overlap, over the usual one (-); it grows from one evaluation to the next.
 const START: f64 = 0.25;
-/// Energy of contacts at the start, over a negligible one, from which bodies count as overlapping [-]: that of an elastic
+/// Energy of contacts at the start, over a negligible one, from which bodies count as overlapping (-): that of an elastic
 /// strain of 1e-4 everywhere.
 const THROWN: f64 = 1e10;
-/// Steps of free flight until the end of the run [-].
+/// Steps of free flight until the end of the run (-).
 const FLIGHT_STEPS: f64 = 10_000.0;
-/// Least number of steps of an impact [-]; leapfrog is then good for (π/100)²/24 of its time, 4e-5.
+/// Least number of steps of an impact (-); leapfrog is then good for (π/100)²/24 of its time, 4e-5.
 const IMPACT_STEPS: f64 = 100.0;
-/// A particle that moves further than this share of the least radius in one step has run away [-].
+/// A particle that moves further than this share of the least radius in one step has run away (-).
 const RUNAWAY: f64 = 0.1;
-/// What is fast is stepped so that it moves no further than this share of the least radius in one step [-]: half of
+/// What is fast is stepped so that it moves no further than this share of the least radius in one step (-): half of
 /// what counts as running away, for speeds that grow between two evaluations.
 const TRAVEL: f64 = 0.05;
 
@@ -122,7 +122,7 @@ pub struct Engine {
     holds: Holds,
     stiffness: Stiffness,
     bound: Bound,
-    /// Step to take next [s].
+    /// Step to take next (s).
     next_dt: f64,
     energy: Energy,
     ruptures: Vec<Rupture>,
@@ -333,7 +333,7 @@ impl Engine {
         Ok(())
     }
 
-    /// The step to take from here on [s].
+    /// The step to take from here on (s).
     fn wanted_step(&self) -> Result<f64> {
         if let Some(step) = self.spec.time.step {
             return Ok(step);
@@ -353,7 +353,7 @@ impl Engine {
         Ok(if changes { wanted } else { self.next_dt })
     }
 
-    /// Share of the step that the first steps take [-]: bodies that overlap from the start are thrown apart in a few
+    /// Share of the step that the first steps take (-): bodies that overlap from the start are thrown apart in a few
     /// steps, and with full ones the energy of that is off by per cents.
     fn start(&self) -> f64 {
         let much = THROWN * self.negligible_energy();
@@ -361,22 +361,22 @@ impl Engine {
         if pressed { START } else { 1.0 }
     }
 
-    /// Free flight: nothing limits the step but how finely the scene wants to be seen [s].
+    /// Free flight: nothing limits the step but how finely the scene wants to be seen (s).
     fn flight_step(&self) -> f64 {
         self.spec.stop.time.map_or(f64::INFINITY, |time| time / FLIGHT_STEPS)
     }
 
-    /// The step in which the fastest particle moves by [`TRAVEL`] of the least radius [s]; infinite at rest.
+    /// The step in which the fastest particle moves by [`TRAVEL`] of the least radius (s); infinite at rest.
     fn travel_step(&self) -> f64 {
         TRAVEL * self.least_radius / self.fastest()
     }
 
-    /// Greatest speed of a particle now [m/s].
+    /// Greatest speed of a particle now (m/s).
     fn fastest(&self) -> f64 {
         self.state.v.iter().map(|v| v.length()).fold(0.0, f64::max)
     }
 
-    /// A share of the shortest impact of a free sphere [s]: nothing is stiff before two bodies meet, so the bound comes
+    /// A share of the shortest impact of a free sphere (s): nothing is stiff before two bodies meet, so the bound comes
     /// too late for them, and an impact of a few steps, though stable, has the wrong outcome.
     ///
     /// Contact time 2.868 (m*²/(R*E*²v))^(1/5) (Hertz), m* against an equal sphere, R* against a flat one, twice the
@@ -416,12 +416,12 @@ impl Engine {
     }
 
     /// Strain of the body: grip displacement over gauge length, smoothed as stress is, so that the two belong together
-    /// ([`measure::Measures`]) [-].
+    /// ([`measure::Measures`]) (-).
     pub fn strain(&self) -> f64 {
         self.measures.strain()
     }
 
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub fn time(&self) -> f64 {
         self.state.time
     }
@@ -431,17 +431,17 @@ impl Engine {
         self.state.step
     }
 
-    /// Nominal stress, the mean over an eighth of a wave's way along the strand [Pa].
+    /// Nominal stress, the mean over an eighth of a wave's way along the strand (Pa).
     pub fn stress(&self) -> f64 {
         self.measures.stress()
     }
 
-    /// Current time step [s].
+    /// Current time step (s).
     pub fn time_step(&self) -> f64 {
         self.next_dt
     }
 
-    /// The bound on the stable step [s].
+    /// The bound on the stable step (s).
     pub fn time_step_bound(&self) -> f64 {
         self.bound.step
     }

@@ -11,7 +11,7 @@ use crate::strand::assembly::Assembly;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The search follows bonds up to this multiple of the longest stress-free length [-]: one bond that necks without end
+/// The search follows bonds up to this multiple of the longest stress-free length (-): one bond that necks without end
 /// must not make every particle a neighbour of every other.
 pub const MOST_STRETCH: f64 = 3.0;
 /// Bonds from a particle to the furthest one that moves its stretch of smooth wire.
@@ -28,24 +28,24 @@ pub struct PairList {
 /// The affine stretch that grips impose: u_z = displacement × clamp((z − z₀)/(z₁ − z₀)).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stretch {
-    /// Gauge before loading [m]; z₁ = z₀ when there are no grips.
+    /// Gauge before loading (m); z₁ = z₀ when there are no grips.
     pub gauge: [f64; 2],
-    /// Displacement of the upper grip since the start [m].
+    /// Displacement of the upper grip since the start (m).
     pub displacement: f64,
 }
 
 /// Candidate search with its skin.
 pub struct Neighbours {
-    /// Skin beyond the sum of the undeformed radii [m].
+    /// Skin beyond the sum of the undeformed radii (m).
     skin: f64,
-    /// Extra reach, for contacts that are not between particle centres [m]; from the bonds at the last search.
+    /// Extra reach, for contacts that are not between particle centres (m); from the bonds at the last search.
     margin: f64,
     /// What touches.
     shape: Shape,
-    /// Largest and least undeformed radius [m].
+    /// Largest and least undeformed radius (m).
     largest: f64,
     least: f64,
-    /// Longest stress-free bond, and longest bond at the last search [m].
+    /// Longest stress-free bond, and longest bond at the last search (m).
     rest: f64,
     longest: f64,
     /// Bonded neighbours along a wire that cannot touch: |i − j| below this per wire.
@@ -56,7 +56,7 @@ pub struct Neighbours {
     list: PairList,
     found: Vec<Vec<(u32, u32)>>,
     cells: Cells,
-    /// No pair can come within reach unseen until [`State::travel`] has reached this [m].
+    /// No pair can come within reach unseen until [`State::travel`] has reached this (m).
     safe_until: f64,
     /// Number of searches so far.
     pub rebuilds: u64,
@@ -124,7 +124,7 @@ impl Neighbours {
         left <= 0.0
     }
 
-    /// Greatest distance of a particle from where the affine stretch since the last search would have it [m].
+    /// Greatest distance of a particle from where the affine stretch since the last search would have it (m).
     fn residual(&self, state: &State, now: &Stretch) -> f64 {
         let [low, high] = self.stretch.gauge;
         let length = high + self.stretch.displacement - low;
@@ -193,7 +193,7 @@ impl Neighbours {
         }
     }
 
-    /// Extra reach for what touches between particle centres, until the next search [m].
+    /// Extra reach for what touches between particle centres, until the next search (m).
     ///
     /// Smooth wires that cross may meet half a bond from the nearest particle of either: √(D² + l²/2) − D at touching
     /// distance D, most for the thinnest pair; of broken ones the last half bonds may lie side by side beyond the last
@@ -214,7 +214,7 @@ impl Neighbours {
         }
     }
 
-    /// Memory that it keeps [bytes].
+    /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
         let found: usize = self.found.iter().map(behind).sum();
         let cells = behind(&self.cells.start) + behind(&self.cells.order) + behind(&self.cells.of_particle);
@@ -226,17 +226,17 @@ impl Neighbours {
         (&self.list, &self.reference)
     }
 
-    /// Skin [m].
+    /// Skin (m).
     pub fn skin(&self) -> f64 {
         self.skin
     }
 
-    /// Longest bond at the last search [m].
+    /// Longest bond at the last search (m).
     pub fn longest(&self) -> f64 {
         self.longest
     }
 
-    /// Longest bond at the last search over the longest stress-free one [-]; contacts on bonds beyond [`MOST_STRETCH`]
+    /// Longest bond at the last search over the longest stress-free one (-); contacts on bonds beyond [`MOST_STRETCH`]
     /// are not all found.
     pub fn stretched(&self) -> f64 {
         if self.rest > 0.0 { self.longest / self.rest } else { 0.0 }
@@ -263,7 +263,7 @@ impl Neighbours {
     }
 }
 
-/// Length of the longest bond that holds [m].
+/// Length of the longest bond that holds (m).
 fn longest_bond(state: &State) -> f64 {
     let bonds = (0..state.len()).filter(|slot| state.whole[*slot]);
     bonds.map(|slot| (state.x.get(slot + 1) - state.x.get(slot)).length_squared()).fold(0.0, f64::max).sqrt()

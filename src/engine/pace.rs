@@ -10,7 +10,7 @@ use super::Engine;
 use super::state::State;
 use crate::scene::spec::{AdaptiveSpec, DriveSpec, Spec};
 
-/// Least time in which the pull changes by its fastest speed, in passages of an elastic wave from grip to grip [-].
+/// Least time in which the pull changes by its fastest speed, in passages of an elastic wave from grip to grip (-).
 const RISE_PASSAGES: f64 = 10.0;
 /// Parts into which a pull is divided to foretell how long it takes.
 const PARTS: u32 = 500;
@@ -18,38 +18,38 @@ const PARTS: u32 = 500;
 /// How fast a state may be pulled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// Speed at the start and near ruptures [m/s].
+    /// Speed at the start and near ruptures (m/s).
     slow: f64,
-    /// Strain up to which it stays slow [-].
+    /// Strain up to which it stays slow (-).
     from: f64,
-    /// Greatest speed [m/s].
+    /// Greatest speed (m/s).
     fastest: f64,
-    /// Greatest kinetic energy of the affine field over the work done [-].
+    /// Greatest kinetic energy of the affine field over the work done (-).
     share: f64,
-    /// Kinetic energy of the affine field over half the square of its speed, Σ m s² [kg].
+    /// Kinetic energy of the affine field over half the square of its speed, Σ m s² (kg).
     inertia: f64,
-    /// Length between the grips [m].
+    /// Length between the grips (m).
     length: f64,
-    /// Least time to the next rupture at the speed of any moment [s].
+    /// Least time to the next rupture at the speed of any moment (s).
     settling: f64,
-    /// Greatest acceleration [m/s²].
+    /// Greatest acceleration (m/s²).
     acceleration: f64,
 }
 
 /// What decides on the speed.
 #[derive(Debug, Clone, Copy)]
 pub struct Ahead {
-    /// Work done so far [J].
+    /// Work done so far (J).
     pub work: f64,
-    /// Strain so far [-].
+    /// Strain so far (-).
     pub strain: f64,
-    /// Strain left until the next rupture [-]; 0 from the first rupture on.
+    /// Strain left until the next rupture (-); 0 from the first rupture on.
     pub left: f64,
 }
 
 impl Rule {
-    /// The rule of a scene that pulls adaptively; `inertia` is Σ m s² of its affine field [kg], `length` that between
-    /// the grips [m].
+    /// The rule of a scene that pulls adaptively; `inertia` is Σ m s² of its affine field (kg), `length` that between
+    /// the grips (m).
     pub fn new(spec: &Spec, inertia: f64, length: f64) -> Option<Self> {
         let grip = spec.grip.as_ref()?;
         let (AdaptiveSpec { from, fastest, kinetic, passages }, DriveSpec::Speed(slow)) =
@@ -70,7 +70,7 @@ impl Rule {
         })
     }
 
-    /// Speed that a state allows [m/s].
+    /// Speed that a state allows (m/s).
     pub fn speed(&self, ahead: Ahead) -> f64 {
         if ahead.strain < self.from {
             return self.slow;
@@ -84,13 +84,13 @@ impl Rule {
 /// The speed of the pull, and where it is going.
 #[derive(Debug, Clone)]
 pub struct Pace {
-    /// Speed now [m/s].
+    /// Speed now (m/s).
     pub speed: f64,
-    /// Its change in the last step [m/s].
+    /// Its change in the last step (m/s).
     pub change: f64,
-    /// Speed that it heads for [m/s].
+    /// Speed that it heads for (m/s).
     target: f64,
-    /// How fast it does [m/s²].
+    /// How fast it does (m/s²).
     acceleration: f64,
     rule: Rule,
 }
@@ -101,7 +101,7 @@ impl Pace {
         Self { speed: rule.slow, change: 0.0, target: rule.slow, acceleration: 0.0, rule }
     }
 
-    /// Goes on by `time` [s].
+    /// Goes on by `time` (s).
     pub fn advance(&mut self, time: f64) {
         let (left, most) = (self.target - self.speed, self.acceleration * time);
         self.change = left.clamp(-most, most);
@@ -109,7 +109,7 @@ impl Pace {
         self.speed = if left.abs() <= most { self.target } else { self.speed + self.change };
     }
 
-    /// Heads for the speed that is right now, to be reached by the next look in `interval` [s] if it can be.
+    /// Heads for the speed that is right now, to be reached by the next look in `interval` (s) if it can be.
     fn look(&mut self, ahead: Ahead, interval: f64) {
         self.target = self.rule.speed(ahead);
         // A hair more than needed, so that rounding does not keep it from arriving.
@@ -118,7 +118,7 @@ impl Pace {
     }
 }
 
-/// Σ m s² over the particles, `share` of their z their share s of the pull's speed [kg].
+/// Σ m s² over the particles, `share` of their z their share s of the pull's speed (kg).
 pub fn inertia(state: &State, share: impl Fn(f64) -> f64) -> f64 {
     (0..state.len()).map(|p| state.mass[p] * share(state.x.z[p]).powi(2)).sum()
 }
@@ -135,7 +135,7 @@ impl Engine {
         }
     }
 
-    /// Strain until the bond nearest to its limit reaches it, if it goes on at its mean rate so far [-]. None is left once
+    /// Strain until the bond nearest to its limit reaches it, if it goes on at its mean rate so far (-). None is left once
     /// a bond has broken: what then comes next is the work of waves and of neighbours that take over load, and broken
     /// wires do not flow with the others.
     fn strain_left(&self) -> f64 {
@@ -148,7 +148,7 @@ impl Engine {
         self.holds.strain() * (1.0 - most).max(0.0) / most
     }
 
-    /// Speed of the upper grip along z now, of a pull at constant or adaptive speed [m/s]; 0 of any other drive.
+    /// Speed of the upper grip along z now, of a pull at constant or adaptive speed (m/s); 0 of any other drive.
     pub fn pull_speed(&self) -> f64 {
         let drive = self.spec.grip.as_ref().map(|grip| grip.drive);
         match (&self.holds.pace, drive) {
@@ -158,7 +158,7 @@ impl Engine {
         }
     }
 
-    /// Time that an adaptive pull is expected to take from here to `strain` [s], by the law of the bonds alone: each wire
+    /// Time that an adaptive pull is expected to take from here to `strain` (s), by the law of the bonds alone: each wire
     /// strained as the body, ruptures where the criterion puts them. `None` of any other drive.
     pub fn adaptive_time(&self, strain: f64) -> Option<f64> {
         let rule = &self.holds.pace.as_ref()?.rule;

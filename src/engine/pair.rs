@@ -13,7 +13,7 @@ pub struct Laws<N, T> {
     pub normal: N,
     /// Tangential law.
     pub tangential: T,
-    /// Viscous damping, fraction of critical [-].
+    /// Viscous damping, fraction of critical (-).
     pub damping: f64,
 }
 
@@ -22,32 +22,32 @@ pub struct Laws<N, T> {
 pub struct Meeting<R = f64> {
     /// Unit normal from the first body to the second.
     pub normal: Triple<R>,
-    /// Overlap δ [m]; 0 where the surfaces are apart.
+    /// Overlap δ (m); 0 where the surfaces are apart.
     pub overlap: R,
-    /// By how much the sum of the radii has shrunk in the last step [m].
+    /// By how much the sum of the radii has shrunk in the last step (m).
     pub thinner: R,
-    /// Velocity of the second surface relative to the first at the contact point [m/s].
+    /// Velocity of the second surface relative to the first at the contact point (m/s).
     pub velocity: Triple<R>,
-    /// 2ξ√m* with the damping fraction ξ and the reduced mass m* [√kg].
+    /// 2ξ√m* with the damping fraction ξ and the reduced mass m* (√kg).
     pub viscosity: R,
-    /// Step [s].
+    /// Step (s).
     pub dt: f64,
 }
 
 /// What a contact remembers. All of it but the radius is 0 where nothing touched yet, unless the overlap does not count.
 pub struct History<N: NormalLaw, T: TangentialLaw, R: Real = f64> {
-    /// Reduced radius R* [m], undeformed.
+    /// Reduced radius R* (m), undeformed.
     pub reduced_radius: R,
-    /// Overlap that does not count [m]: two parts of a wire that a bond held until it broke may overlap. Negative where
+    /// Overlap that does not count (m): two parts of a wire that a bond held until it broke may overlap. Negative where
     /// they meet before their surfaces do; 0 for everything else.
     pub offset: R,
     /// Normal law's state.
     pub normal: N::State<R>,
     /// Tangential law's state.
     pub tangential: T::State<R>,
-    /// Elastic normal force at the last step [N].
+    /// Elastic normal force at the last step (N).
     pub normal_force: R,
-    /// Force of the dashpot at the last step [N].
+    /// Force of the dashpot at the last step (N).
     pub viscous: R,
 }
 
@@ -107,7 +107,7 @@ impl<N: NormalLaw, T: TangentialLaw> History<N, T> {
     }
 }
 
-/// Force on the first body [N] and the friction in it (the tangential part, which has a lever arm).
+/// Force on the first body (N) and the friction in it (the tangential part, which has a lever arm).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PairForce<R = f64> {
     /// Whole force on the first body; the second feels minus this.
@@ -116,7 +116,7 @@ pub struct PairForce<R = f64> {
     pub friction: Triple<R>,
 }
 
-/// Energies that contacts give off in a step [J]; see [`Partial`].
+/// Energies that contacts give off in a step (J); see [`Partial`].
 #[derive(Debug, Clone, Copy)]
 pub struct Given<R = f64> {
     /// Plastic work.
@@ -191,8 +191,8 @@ pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
     (PairForce { force: friction - meeting.normal * push, friction }, given)
 }
 
-/// Greatest normal and tangential stiffness [N/m] that a touching pair can reach within `horizon` [s] if it goes on
-/// approaching at `approach` [m/s] from `overlap` [m]; `None` when it has parted.
+/// Greatest normal and tangential stiffness (N/m) that a touching pair can reach within `horizon` (s) if it goes on
+/// approaching at `approach` (m/s) from `overlap` (m); `None` when it has parted.
 pub fn foreseen_stiffness<N: NormalLaw, T: TangentialLaw>(
     laws: &Laws<N, T>,
     history: &History<N, T>,
@@ -219,17 +219,17 @@ pub fn foreseen_stiffness<N: NormalLaw, T: TangentialLaw>(
     Some([then[0].max(now[0]), then[1].max(now[1])])
 }
 
-/// A pair leaves the list: what friction had stored is lost, and returned [J].
+/// A pair leaves the list: what friction had stored is lost, and returned (J).
 pub fn leave<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>) -> f64 {
     if history.touching() { laws.tangential.elastic_energy(&history.tangential) } else { 0.0 }
 }
 
-/// Recoverable energy of the normal force at `overlap` [J].
+/// Recoverable energy of the normal force at `overlap` (J).
 pub fn normal_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>, overlap: f64) -> f64 {
     if history.touching() { laws.normal.elastic_energy(&history.normal, history.reduced_radius, overlap) } else { 0.0 }
 }
 
-/// Recoverable energy of a contact at `overlap` [J].
+/// Recoverable energy of a contact at `overlap` (J).
 pub fn elastic_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>, overlap: f64) -> f64 {
     normal_energy(laws, history, overlap) + leave(laws, history)
 }

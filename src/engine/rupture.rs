@@ -17,11 +17,11 @@ pub type Criterion = RuptureCause;
 /// Rupture limits of all bonds.
 pub struct RuptureCheck {
     criterion: RuptureCriterion,
-    /// Weibull factor per bond slot [-]; empty when there is no scatter.
+    /// Weibull factor per bond slot (-); empty when there is no scatter.
     factor: Vec<f64>,
-    /// Stress-free lengths [m].
+    /// Stress-free lengths (m).
     rest_length: Vec<f64>,
-    /// Plastic strain at which each slot breaks [-]; empty under criteria that look at something else.
+    /// Plastic strain at which each slot breaks (-); empty under criteria that look at something else.
     plastic_limit: Vec<f64>,
 }
 
@@ -48,7 +48,7 @@ impl RuptureCheck {
         Self { criterion: spec.criterion.clone(), factor, rest_length: assembly.rest_length.clone(), plastic_limit }
     }
 
-    /// Plastic strain at which each slot breaks [-], if that is the criterion: bonds can then tell on their way whether
+    /// Plastic strain at which each slot breaks (-), if that is the criterion: bonds can then tell on their way whether
     /// any has reached it, and the pass over all of them is left out.
     pub fn plastic_limit(&self) -> Option<&[f64]> {
         (!self.plastic_limit.is_empty()).then_some(&self.plastic_limit)
@@ -69,18 +69,18 @@ impl RuptureCheck {
         (0..whole.len()).filter(|s| whole[*s]).filter_map(reached).collect()
     }
 
-    /// Memory that it keeps [bytes].
+    /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
         behind(&self.factor) + behind(&self.rest_length) + behind(&self.plastic_limit)
     }
 
-    /// Share of its limit that a bond has reached [-]; it breaks at 1.
+    /// Share of its limit that a bond has reached (-); it breaks at 1.
     pub fn utilisation(&self, slot: usize, state: &State, p: f64, force: &BondForce, section: &Section) -> f64 {
         let demand = self.demand(slot, state, p, force, section);
         demand.value / demand.limit
     }
 
-    /// What the criterion looks at in a bond with equivalent plastic strain `p` [-], and its limit there.
+    /// What the criterion looks at in a bond with equivalent plastic strain `p` (-), and its limit there.
     fn demand(&self, slot: usize, state: &State, p: f64, force: &BondForce, section: &Section) -> Demand {
         let factor = self.factor.get(slot).copied().unwrap_or(1.0);
         match &self.criterion {
@@ -111,7 +111,7 @@ struct Demand {
     cause: Criterion,
 }
 
-/// Curvature of the wire at bond `slot` [1/m], counted from a straight wire: the mean over the angles with its two
+/// Curvature of the wire at bond `slot` (1/m), counted from a straight wire: the mean over the angles with its two
 /// neighbours, as far as those hold.
 fn curvature(state: &State, slot: usize, d: DVec3) -> f64 {
     let turn = |a: DVec3, b: DVec3| a.cross(b).length().atan2(a.dot(b)) / (0.5 * (a.length() + b.length()));

@@ -43,7 +43,7 @@ struct Block {
     constants: u32,
     /// Whether any of them touched at the last step.
     acts: bool,
-    /// Nothing can touch until [`State::travel`] has reached this [m].
+    /// Nothing can touch until [`State::travel`] has reached this (m).
     quiet_until: f64,
 }
 
@@ -78,7 +78,7 @@ fn pair(key: u64) -> [u32; 2] {
 struct Store {
     blocks: Vec<Block>,
     records: Vec<f64>,
-    /// What does not change from search to search: a row of R* [m], 0 where no candidate is, and one of 2ξ√m* [√kg].
+    /// What does not change from search to search: a row of R* (m), 0 where no candidate is, and one of 2ξ√m* (√kg).
     constants: Kinds,
 }
 
@@ -103,7 +103,7 @@ pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     closing: f64,
     /// Wire of each particle.
     wire_of: Vec<u32>,
-    /// Length of each bond slot without stress at the start [m].
+    /// Length of each bond slot without stress at the start (m).
     rest_length: Vec<f64>,
     arch: Arch,
 }
@@ -189,7 +189,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
     }
 
     /// Fills the records from the old ones, and for pairs that were not there afresh; returns what friction had stored
-    /// in pairs that left [J].
+    /// in pairs that left (J).
     fn take_over(&mut self, state: &State) -> f64 {
         let (mut lost, mut o) = (0.0, 0);
         let old = std::mem::take(&mut self.old);
@@ -234,7 +234,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
         }
     }
 
-    /// Overlap that does not count between two particles that were not a pair until now [m]. Across a break the two pieces
+    /// Overlap that does not count between two particles that were not a pair until now (m). Across a break the two pieces
     /// meet where they parted, when the way between the two along the wire is as long as it was without stress: spheres
     /// that overlap there (spacing below 1) do not count as overlapping, and the two ends themselves, which a long bond
     /// held apart, meet before their spheres do.
@@ -253,7 +253,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
         if j == i + 1 { touching - way } else { (touching - way).max(0.0) }
     }
 
-    /// Overlap that counts, now [m].
+    /// Overlap that counts, now (m).
     fn overlap(history: &History<N, T>, state: &State, [i, j]: [usize; 2]) -> f64 {
         state.radius[i] + state.radius[j] - history.offset - (state.x.get(j) - state.x.get(i)).length()
     }

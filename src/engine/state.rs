@@ -9,8 +9,8 @@ pub const CHUNK: usize = 256;
 
 /// What bonds do to their two particles, in blocks of [`CHUNK`] slots, field after field.
 pub struct BondActions {
-    /// Per block: the factor of the bond on the radius e^(−ε_p/2) [-]; its pull on the first particle [N], of which the
-    /// second feels the opposite; and where particles turn its moments on the first and on the second [N m]. All of them
+    /// Per block: the factor of the bond on the radius e^(−ε_p/2) (-); its pull on the first particle (N), of which the
+    /// second feels the opposite; and where particles turn its moments on the first and on the second (N m). All of them
     /// 0 where no bond is.
     pub data: Vec<f64>,
     turn: bool,
@@ -54,17 +54,17 @@ impl BondActions {
         DVec3::from_array([0, 1, 2].map(|k| self.get(slot, field + k)))
     }
 
-    /// Pull of a bond on its first particle [N].
+    /// Pull of a bond on its first particle (N).
     pub fn pull(&self, slot: usize) -> DVec3 {
         self.vector(slot, Self::PULL)
     }
 
-    /// Moments of a bond on its first and on its second particle [N m].
+    /// Moments of a bond on its first and on its second particle (N m).
     pub fn moments(&self, slot: usize) -> [DVec3; 2] {
         if self.turn { [self.vector(slot, Self::NEAR), self.vector(slot, Self::FAR)] } else { [DVec3::ZERO; 2] }
     }
 
-    /// Bending moment and torque of a bond [N m].
+    /// Bending moment and torque of a bond (N m).
     pub fn moment(&self, slot: usize) -> DVec3 {
         let [near, far] = self.moments(slot);
         0.5 * (near - far)
@@ -81,38 +81,38 @@ impl BondActions {
 
 /// All particles.
 pub struct State {
-    /// Centres x_n [m].
+    /// Centres x_n (m).
     pub x: Vectors,
-    /// Velocities v_{n−1/2} [m/s].
+    /// Velocities v_{n−1/2} (m/s).
     pub v: Vectors,
-    /// Spins ω_{n−1/2} [rad/s].
+    /// Spins ω_{n−1/2} (rad/s).
     pub w: Vectors,
-    /// Forces F_n [N].
+    /// Forces F_n (N).
     pub force: Vectors,
-    /// Torques about the centres [N m].
+    /// Torques about the centres (N m).
     pub torque: Vectors,
-    /// Forces from contacts that the contact stage has added up itself [N]: spheres leave the second sides of pairs to
+    /// Forces from contacts that the contact stage has added up itself (N): spheres leave the second sides of pairs to
     /// the gathering of all forces. Empty while there is no contact stage.
     pub(super) contact_force: Vectors,
-    /// The same for torques [N m].
+    /// The same for torques (N m).
     pub(super) contact_torque: Vectors,
     /// What bonds do.
     pub bond: BondActions,
     /// Whether each bond slot holds.
     pub whole: Vec<bool>,
-    /// Length without stress that the bond of each slot had when it broke [m]; 0 where none did.
+    /// Length without stress that the bond of each slot had when it broke (m); 0 where none did.
     pub parted: Vec<f64>,
-    /// Current contact radii [m].
+    /// Current contact radii (m).
     pub radius: Vec<f64>,
-    /// By how much each has shrunk in the last step [m].
+    /// By how much each has shrunk in the last step (m).
     pub thinned: Vec<f64>,
-    /// Undeformed radii [m].
+    /// Undeformed radii (m).
     pub radius0: Vec<f64>,
-    /// Masses [kg].
+    /// Masses (kg).
     pub mass: Vec<f64>,
-    /// Rotational inertias [kg m²].
+    /// Rotational inertias (kg m²).
     pub inertia: Vec<f64>,
-    /// Their inverses [1/kg], [1/(kg m²)]: multiplying is cheaper than dividing.
+    /// Their inverses (1/kg), [1/(kg m²)]: multiplying is cheaper than dividing.
     pub inverse_mass: Vec<f64>,
     /// See `inverse_mass`.
     pub inverse_inertia: Vec<f64>,
@@ -122,11 +122,11 @@ pub struct State {
     pub fixed: Vec<u8>,
     /// Steps done.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Step that led here [s].
+    /// Step that led here (s).
     pub dt: f64,
-    /// Sum over the steps of the greatest displacement in each [m]: no particle has gone further.
+    /// Sum over the steps of the greatest displacement in each (m): no particle has gone further.
     pub travel: f64,
 }
 
@@ -161,7 +161,7 @@ impl State {
         }
     }
 
-    /// Force of all contacts on particle `p` [N]: the whole force less what the bonds do.
+    /// Force of all contacts on particle `p` (N): the whole force less what the bonds do.
     pub fn force_from_contacts(&self, p: usize) -> DVec3 {
         let before = if p > 0 { self.bond.pull(p - 1) } else { DVec3::ZERO };
         self.force.get(p) - (self.bond.pull(p) - before)
@@ -191,8 +191,8 @@ impl State {
         self.mass.is_empty()
     }
 
-    /// Kinetic energy at the instant of the positions, ½ m v_{n−1/2}·v_{n+1/2} [J]; `load` is the applied force [N] and
-    /// moment [N m] on each particle. Prescribed components do not follow forces.
+    /// Kinetic energy at the instant of the positions, ½ m v_{n−1/2}·v_{n+1/2} (J); `load` is the applied force (N) and
+    /// moment (N m) on each particle. Prescribed components do not follow forces.
     ///
     /// This is the form that leapfrog conserves together with the potential: exactly for linear springs, where
     /// ½ m |v_n|² swings with the square of the step times the stiffness, and is shaken by every rupture.
@@ -207,7 +207,7 @@ impl State {
             .sum()
     }
 
-    /// Power of forces and torques in the prescribed components [W].
+    /// Power of forces and torques in the prescribed components (W).
     pub fn held_power(&self) -> f64 {
         let power = |i: usize, first: u8, f: DVec3, v: DVec3| (f - self.free_part(i, first, f)).dot(v);
         (0..self.len())
@@ -225,23 +225,23 @@ impl State {
 
 /// What contacts see of all particles; see [`State`].
 pub struct Seen<'a> {
-    /// Centres [m].
+    /// Centres (m).
     pub x: [&'a [f64]; 3],
-    /// Velocities [m/s].
+    /// Velocities (m/s).
     pub v: [&'a [f64]; 3],
-    /// Spins [rad/s].
+    /// Spins (rad/s).
     pub w: [&'a [f64]; 3],
-    /// Contact radii [m].
+    /// Contact radii (m).
     pub radius: &'a [f64],
-    /// By how much each has shrunk in the last step [m].
+    /// By how much each has shrunk in the last step (m).
     pub thinned: &'a [f64],
-    /// Step [s].
+    /// Step (s).
     pub dt: f64,
     /// See [`State::travel`].
     pub travel: f64,
 }
 
-/// Forces [N] and torques [N m] from contacts, of some particles.
+/// Forces (N) and torques (N m) from contacts, of some particles.
 pub struct ContactSides<'a> {
     /// Axis by axis.
     pub force: [&'a mut [f64]; 3],
@@ -268,15 +268,15 @@ impl<'a> ContactSides<'a> {
 /// Sums of one chunk each; added up in order.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Partial {
-    /// Plastic work [J].
+    /// Plastic work (J).
     pub plastic: f64,
-    /// Viscous damping [J].
+    /// Viscous damping (J).
     pub damping: f64,
-    /// Friction [J].
+    /// Friction (J).
     pub friction: f64,
-    /// Work of contact pressure on thinning wires [J].
+    /// Work of contact pressure on thinning wires (J).
     pub thinning: f64,
-    /// Elastic energy of contacts on wires that broke under them [J].
+    /// Elastic energy of contacts on wires that broke under them (J).
     pub released: f64,
     /// The deepest contact.
     pub deepest: Deepest,
@@ -285,18 +285,18 @@ pub struct Partial {
 /// The deepest of some contacts.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Deepest {
-    /// Overlap over the smaller of the two current radii [-].
+    /// Overlap over the smaller of the two current radii (-).
     pub ratio: f64,
     /// The particle and the other one, or the first particle of the segment touched.
     pub pair: [u32; 2],
-    /// Normal force [N].
+    /// Normal force (N).
     pub force: f64,
-    /// Area of the contact [m²]: πR*δ of a circle, Σ √(2R*δ) ds of a patch along a wire.
+    /// Area of the contact (m²): πR*δ of a circle, Σ √(2R*δ) ds of a patch along a wire.
     pub area: f64,
 }
 
 impl Deepest {
-    /// Takes in a touching pair with its overlap, the smaller radius [m], the area [m²] and the normal force [N]. No
+    /// Takes in a touching pair with its overlap, the smaller radius (m), the area (m²) and the normal force (N). No
     /// division unless it is the deepest so far: every contact comes by at every step.
     #[inline(always)]
     pub fn meet(&mut self, pair: [u32; 2], overlap: f64, radius: f64, area: impl FnOnce() -> f64, force: f64) {

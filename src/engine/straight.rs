@@ -23,24 +23,24 @@ pub fn runs(particles: &[u32]) -> Vec<Range<usize>> {
 pub struct Straight<'a> {
     pub runs: &'a [Range<usize>],
     pub state: &'a mut State,
-    /// Velocity along z [m/s].
+    /// Velocity along z (m/s).
     pub speed: f64,
-    /// Time that the kick spanned [s].
+    /// Time that the kick spanned (s).
     pub kicked: f64,
-    /// Where the grip's axis crosses the plane of x and y [m].
+    /// Where the grip's axis crosses the plane of x and y (m).
     pub axis: [f64; 2],
 }
 
 /// What that took.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Effort {
-    /// Force along z [N].
+    /// Force along z (N).
     pub force: f64,
-    /// Torque about the axis [N m].
+    /// Torque about the axis (N m).
     pub torque: f64,
-    /// Mass of the particles [kg].
+    /// Mass of the particles (kg).
     pub mass: f64,
-    /// Work [J].
+    /// Work (J).
     pub work: f64,
 }
 

@@ -16,28 +16,28 @@ use rayon::prelude::*;
 #[derive(Debug, Clone, Copy)]
 struct Element {
     nodes: [u32; 3],
-    /// Share of the element's displacement that each node carries [-].
+    /// Share of the element's displacement that each node carries (-).
     weights: [f64; 3],
-    /// Stiffness along the normal or axis, and across it [N/m].
+    /// Stiffness along the normal or axis, and across it (N/m).
     normal: f64,
     across: f64,
-    /// Lever arms of the two sides for the stiffness across [m].
+    /// Lever arms of the two sides for the stiffness across (m).
     arm: [f64; 2],
-    /// Bending and torsional stiffness [N m/rad].
+    /// Bending and torsional stiffness (N m/rad).
     bend: f64,
     twist: f64,
-    /// Largest viscous coefficient of its translation [N s/m] and rotation [N m s].
+    /// Largest viscous coefficient of its translation (N s/m) and rotation (N m s).
     viscous: [f64; 2],
     bond: bool,
 }
 
 impl Element {
-    /// Share of the element's displacement that a node carries [-].
+    /// Share of the element's displacement that a node carries (-).
     fn weight(&self, node: usize) -> f64 {
         self.weights[node]
     }
 
-    /// Lever arm of a node [m].
+    /// Lever arm of a node (m).
     fn lever(&self, node: usize) -> f64 {
         self.arm[node.min(1)]
     }
@@ -46,7 +46,7 @@ impl Element {
         self.normal.max(self.across)
     }
 
-    /// √(k/m*) of a contact on its own [1/s].
+    /// √(k/m*) of a contact on its own (1/s).
     fn pair_frequency(&self, state: &State, held: &impl Fn(usize) -> bool) -> f64 {
         let free = (0..3).filter(|k| self.weight(*k) > 0.0 && !held(self.nodes[*k] as usize));
         let inverse_mass: f64 =
@@ -63,7 +63,7 @@ impl Element {
 /// What limits the time step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bound {
-    /// Bound on the stable step [s]; infinite when nothing is stiff.
+    /// Bound on the stable step (s); infinite when nothing is stiff.
     pub step: f64,
     /// First particle of the limiting element.
     pub particle: usize,
@@ -84,22 +84,22 @@ impl Bound {
 #[derive(Default)]
 pub struct Stiffness {
     elements: Vec<Element>,
-    /// Σ stiffness × weight per particle [N/m].
+    /// Σ stiffness × weight per particle (N/m).
     translation: Vec<f64>,
-    /// The same for rotation [N m/rad].
+    /// The same for rotation (N m/rad).
     rotation: Vec<f64>,
-    /// Σ viscous coefficient × weight per particle, translation [N s/m] and rotation [N m s].
+    /// Σ viscous coefficient × weight per particle, translation (N s/m) and rotation (N m s).
     viscous: Vec<[f64; 2]>,
 }
 
 /// What limits the step.
 #[derive(Default, Clone, Copy)]
 struct Worst<'a> {
-    /// Greatest eigenvalue of stiffness over mass [1/s²], with its mode and element.
+    /// Greatest eigenvalue of stiffness over mass (1/s²), with its mode and element.
     stiffest: Option<(f64, StiffnessMode, &'a Element)>,
-    /// Greatest eigenvalue of damping over mass [1/s], bounded element by element like the stiffness.
+    /// Greatest eigenvalue of damping over mass (1/s), bounded element by element like the stiffness.
     damping: f64,
-    /// Least step that resolves a contact [s].
+    /// Least step that resolves a contact (s).
     shortest: Option<(f64, &'a Element)>,
 }
 
@@ -119,7 +119,7 @@ impl Worst<'_> {
 }
 
 impl Stiffness {
-    /// Memory that it keeps [bytes].
+    /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
         behind(&self.elements) + behind(&self.translation) + behind(&self.rotation) + behind(&self.viscous)
     }
@@ -129,7 +129,7 @@ impl Stiffness {
         self.elements.clear();
     }
 
-    /// Adds bond `slot` of length `length` [m] with its viscous coefficients.
+    /// Adds bond `slot` of length `length` (m) with its viscous coefficients.
     pub fn bond(&mut self, slot: usize, k: &BondStiffness, length: f64, viscosity: [f64; 4], turn: bool) {
         let arm = if turn { 0.5 * length } else { 0.0 };
         let (shear, bend, twist) = if turn { (k.shear, k.bend, k.twist) } else { (0.0, 0.0, 0.0) };
@@ -150,9 +150,9 @@ impl Stiffness {
     }
 
     /// Adds a contact of the first node with the second and third; `weights` are the shares of the point of contact that
-    /// each carries [-], `arm` the lever
-    /// arms of friction on the two sides [m] (0 when nothing turns), `viscosity` the viscous coefficient along the normal
-    /// [N s/m].
+    /// each carries (-), `arm` the lever
+    /// arms of friction on the two sides (m) (0 when nothing turns), `viscosity` the viscous coefficient along the normal
+    /// (N s/m).
     pub fn contact(&mut self, nodes: [u32; 3], weights: [f64; 3], stiffness: [f64; 2], arm: [f64; 2], viscosity: f64) {
         let [normal, across] = stiffness;
         self.elements.push(Element {
@@ -168,7 +168,7 @@ impl Stiffness {
         });
     }
 
-    /// The bound for what was added; a contact is stepped at least as finely as Δt √(k/m*) = `resolution` [-]. Particles
+    /// The bound for what was added; a contact is stepped at least as finely as Δt √(k/m*) = `resolution` (-). Particles
     /// that are wholly held do not move and do not count.
     pub fn bound(&mut self, state: &State, resolution: f64, held: impl Fn(usize) -> bool + Sync) -> Bound {
         let n = state.len();
@@ -224,7 +224,7 @@ impl Stiffness {
         worst
     }
 
-    /// Largest eigenvalue of damping over mass that one element can have [1/s], with shares as for stiffness.
+    /// Largest eigenvalue of damping over mass that one element can have (1/s), with shares as for stiffness.
     fn damping(&self, e: &Element, state: &State, held: &impl Fn(usize) -> bool) -> f64 {
         if e.viscous == [0.0; 2] {
             return 0.0;
@@ -239,7 +239,7 @@ impl Stiffness {
             .sum()
     }
 
-    /// Largest eigenvalue of one element with its shares [1/s²], and its mode.
+    /// Largest eigenvalue of one element with its shares (1/s²), and its mode.
     fn element(&self, e: &Element, state: &State, held: &impl Fn(usize) -> bool) -> (f64, StiffnessMode) {
         let (ke, qe) = (e.translation(), e.rotation());
         let (mut mass, mut levers, mut turn) = (0.0, 0.0, [0.0; 3]);

@@ -33,26 +33,26 @@ pub struct RunInfo {
     pub wire_particles: usize,
     /// Number of particles, free spheres included.
     pub particles: usize,
-    /// Initial particle radius [mm].
+    /// Initial particle radius (mm).
     pub radius: Vec<f32>,
-    /// Initial centre of each particle [mm].
+    /// Initial centre of each particle (mm).
     pub rest_position: Vec<[f32; 3]>,
-    /// z of the lower and upper grip face before loading [mm]; the gauge lies between. `None` for free bodies.
+    /// z of the lower and upper grip face before loading (mm); the gauge lies between. `None` for free bodies.
     pub gauge: Option<[f32; 2]>,
     /// A range of true axial stress that the run will not exceed, for a colour scale that is fixed
-    /// over the whole sequence [MPa].
+    /// over the whole sequence (MPa).
     pub stress_range: [f32; 2],
-    /// The same for equivalent plastic strain [-].
+    /// The same for equivalent plastic strain (-).
     pub plastic_strain_range: [f32; 2],
-    /// The same for particle speed [m/s].
+    /// The same for particle speed (m/s).
     pub speed_range: [f32; 2],
-    /// A range of contact pressure for a colour scale [MPa]; single particles may exceed it.
+    /// A range of contact pressure for a colour scale (MPa); single particles may exceed it.
     pub contact_pressure_range: [f32; 2],
-    /// The strain at which the run is expected to end [-], for axes and progress; `None` when unknown.
+    /// The strain at which the run is expected to end (-), for axes and progress; `None` when unknown.
     pub strain_end: Option<f64>,
-    /// An energy that is nothing [J]: no ratio means anything of energies below it.
+    /// An energy that is nothing (J): no ratio means anything of energies below it.
     pub negligible_energy: f64,
-    /// Time in which an elastic wave runs along the body [s].
+    /// Time in which an elastic wave runs along the body (s).
     pub wave_passage: f64,
 }
 
@@ -73,7 +73,7 @@ pub struct WireInfo {
     pub first: usize,
     /// Number of particles; bond slots `first .. first + len - 1`.
     pub len: usize,
-    /// Diameter [mm].
+    /// Diameter (mm).
     pub diameter: f32,
 }
 
@@ -82,21 +82,21 @@ pub struct WireInfo {
 pub struct Sample {
     /// Step.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Grip displacement over gauge length [-]. Like stress, forces and torque it is a running mean over an eighth of an
+    /// Grip displacement over gauge length (-). Like stress, forces and torque it is a running mean over an eighth of an
     /// elastic wave's passage ([`crate::engine::measure::Measures`]): all of them lag alike, so none is shifted against
     /// another. Energies and counts are those of the instant.
     pub strain: f64,
-    /// Nominal stress: upper grip force over ΣnA₀ [Pa].
+    /// Nominal stress: upper grip force over ΣnA₀ (Pa).
     pub stress: f64,
-    /// Force of the lower grip and of the upper grip, tension positive [N].
+    /// Force of the lower grip and of the upper grip, tension positive (N).
     pub grip_force: [f64; 2],
-    /// Torque about z on the upper grip [N m].
+    /// Torque about z on the upper grip (N m).
     pub torque: f64,
-    /// Mean nominal axial stress of the wires of each layer at mid-gauge [Pa], broken ones included.
+    /// Mean nominal axial stress of the wires of each layer at mid-gauge (Pa), broken ones included.
     pub layer_stress: Vec<f64>,
-    /// Nominal axial stress of each wire at mid-gauge [Pa]: the mean over its bonds in the middle twentieth of the gauge, of
+    /// Nominal axial stress of each wire at mid-gauge (Pa): the mean over its bonds in the middle twentieth of the gauge, of
     /// which broken ones carry nothing.
     pub wire_stress: Vec<f64>,
     /// Wires broken so far.
@@ -105,13 +105,13 @@ pub struct Sample {
     pub bonds_broken: usize,
     /// Active contacts.
     pub contacts: usize,
-    /// Time step [s].
+    /// Time step (s).
     pub time_step: f64,
-    /// Energies [J].
+    /// Energies (J).
     pub energy: Energy,
 }
 
-/// The energy ledger [J]; every term is cumulative except `kinetic` and the two elastic ones.
+/// The energy ledger (J); every term is cumulative except `kinetic` and the two elastic ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Energy {
     /// Work done by grips, holds and applied loads, plus the energy that the run started with: of motion, and of
@@ -139,7 +139,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Elastic plus dissipated energy, without kinetic energy [J].
+    /// Elastic plus dissipated energy, without kinetic energy (J).
     pub fn internal(&self) -> f64 {
         self.elastic_bonds
             + self.elastic_contacts
@@ -151,7 +151,7 @@ impl Energy {
             + self.released
     }
 
-    /// What the ledger does not account for: work − kinetic − internal [J].
+    /// What the ledger does not account for: work − kinetic − internal (J).
     pub fn residual(&self) -> f64 {
         self.work - self.kinetic - self.internal()
     }
@@ -162,22 +162,22 @@ impl Energy {
 pub struct Snapshot {
     /// The curve's row at this instant.
     pub sample: Sample,
-    /// Centres [mm], one per particle.
+    /// Centres (mm), one per particle.
     pub position: Vec<[f32; 3]>,
-    /// Current radii [mm] (wires thin as they stretch), one per particle.
+    /// Current radii (mm) (wires thin as they stretch), one per particle.
     pub radius: Vec<f32>,
-    /// Speed [m/s], one per particle.
+    /// Speed (m/s), one per particle.
     pub speed: Vec<f32>,
     /// State, one per bond slot (slot i joins particles i and i + 1; as many slots as particles).
     pub bond_state: Vec<BondState>,
-    /// True axial stress [MPa], one per bond slot; 0 where no bond is.
+    /// True axial stress (MPa), one per bond slot; 0 where no bond is.
     pub bond_stress: Vec<f32>,
-    /// Equivalent plastic strain [-], one per bond slot.
+    /// Equivalent plastic strain (-), one per bond slot.
     pub plastic_strain: Vec<f32>,
-    /// Share of its rupture limit that a bond has reached [-], one per bond slot: it breaks at 1; 0 without a rupture
+    /// Share of its rupture limit that a bond has reached (-), one per bond slot: it breaks at 1; 0 without a rupture
     /// criterion or without a bond.
     pub utilisation: Vec<f32>,
-    /// Normal forces of a particle's contacts over the area that it shows to its neighbours [MPa], one per particle:
+    /// Normal forces of a particle's contacts over the area that it shows to its neighbours (MPa), one per particle:
     /// ΣF_n / (d a) in a wire of diameter d with spacing a, ΣF_n / (π r²) for a free sphere.
     pub contact_pressure: Vec<f32>,
 }
@@ -196,34 +196,34 @@ pub struct Findings {
 /// The deepest contact of a run, when it was deepest.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DeepestContact {
-    /// Overlap over the smaller of the two radii [-].
+    /// Overlap over the smaller of the two radii (-).
     pub ratio: f64,
     /// The two bodies.
     pub bodies: [Body; 2],
-    /// Where [m].
+    /// Where (m).
     pub position: [f64; 3],
-    /// Normal force [N].
+    /// Normal force (N).
     pub force: f64,
-    /// Force over the area πR*δ of the contact [Pa].
+    /// Force over the area πR*δ of the contact (Pa).
     pub pressure: f64,
     /// Step.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Strain of the body [-].
+    /// Strain of the body (-).
     pub strain: f64,
 }
 
 /// A time step, and when it was chosen.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StepAt {
-    /// The time step [s].
+    /// The time step (s).
     pub seconds: f64,
     /// Step.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Strain of the body [-].
+    /// Strain of the body (-).
     pub strain: f64,
     /// What limited it.
     pub limit: StepLimit,
@@ -250,9 +250,9 @@ pub struct Rupture {
     pub order: usize,
     /// Step.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Strain of the body [-].
+    /// Strain of the body (-).
     pub strain: f64,
     /// Wire, from 0.
     pub wire: usize,
@@ -262,15 +262,15 @@ pub struct Rupture {
     pub bond: usize,
     /// Number of the bond along its wire, from 0.
     pub bond_in_wire: usize,
-    /// Centre of the bond when it broke [m].
+    /// Centre of the bond when it broke (m).
     pub position: [f64; 3],
-    /// z of the bond's centre before loading [m].
+    /// z of the bond's centre before loading (m).
     pub rest_z: f64,
     /// Cause.
     pub cause: RuptureCause,
-    /// True axial stress just before [Pa].
+    /// True axial stress just before (Pa).
     pub stress: f64,
-    /// Nominal stress of the body just before [Pa].
+    /// Nominal stress of the body just before (Pa).
     pub body_stress: f64,
     /// True when this is the wire's first rupture.
     pub first_of_wire: bool,

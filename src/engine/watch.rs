@@ -16,17 +16,17 @@ use crate::scene::plan::ContactPlan;
 use crate::scene::spec::{BondLawSpec, GripKind};
 use crate::strand::assembly::Assembly;
 
-/// Overlap over the smaller radius beyond which a contact is said to be deep [-]: Hertz's parabola a² = Rδ, from which
+/// Overlap over the smaller radius beyond which a contact is said to be deep (-): Hertz's parabola a² = Rδ, from which
 /// every contact law here starts, is 5 % off the circle then.
 const DEEP: f64 = 0.1;
-/// Share of the first step below which the step is said to have shrunk [-].
+/// Share of the first step below which the step is said to have shrunk (-).
 const SHRUNK: f64 = 0.25;
-/// A body bends, though its rotations were left out, when a bond has turned by this angle [rad].
+/// A body bends, though its rotations were left out, when a bond has turned by this angle (rad).
 const BENT: f64 = 1e-3;
 /// Bonds between two looks at necking: those that flow at less than this share of the one that flows most have
-/// stopped [-].
+/// stopped (-).
 const STOPPED: f64 = 0.1;
-/// A neck stands out from its wire by this plastic strain [-]: less may be a wave that passes.
+/// A neck stands out from its wire by this plastic strain (-): less may be a wave that passes.
 const STANDS_OUT: f64 = 0.005;
 /// A wire of fewer free bonds has no surroundings that a neck could stand out from.
 const FEWEST: usize = 8;
@@ -46,9 +46,9 @@ pub struct Watch {
 /// Strain that localises (Considère 1885): past the maximum load of a bond, dσ/dp ≤ σ, it alone goes on and the others
 /// unload. How far, depends on its length.
 struct Necking {
-    /// Plastic strain at the maximum load of a bond [-].
+    /// Plastic strain at the maximum load of a bond (-).
     from: f64,
-    /// Plastic strain of every bond at the last look [-].
+    /// Plastic strain of every bond at the last look (-).
     before: Vec<f64>,
 }
 

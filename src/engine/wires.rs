@@ -49,12 +49,12 @@ use pulp::Arch;
 use rayon::prelude::*;
 use spread::{FarSum, NearSum, Spread};
 
-/// Movement of particles moves points of a centreline by up to this [-]: the weights of a cubic, or of a quartic near an
+/// Movement of particles moves points of a centreline by up to this (-): the weights of a cubic, or of a quartic near an
 /// end of the wire.
 const SPREAD: f64 = 2.2;
 
 /// Cells of a stretch beside another wire must be this much shorter than the patch in which wires touch that cross: the
-/// sine of the angle times the length of a stretch, over the sum of the radii [-]. Below, a patch 1 % of the radius deep
+/// sine of the angle times the length of a stretch, over the sum of the radii (-). Below, a patch 1 % of the radius deep
 /// has some ten cells.
 const RESOLVED: f64 = 0.25;
 
@@ -81,16 +81,16 @@ enum Mode {
 /// What came out for a stretch beside another wire.
 #[expect(clippy::large_enum_variant, reason = "it lives on the stack for one contact")]
 enum Touch {
-    /// Nothing touches, at a gap of `gap` [m]; the foot is at `t`.
+    /// Nothing touches, at a gap of `gap` (m); the foot is at `t`.
     Apart { t: f64, gap: f64 },
     /// They touch, or did at the last step.
     Here {
         answer: Answer<f64>,
         t: f64,
-        /// Sum of the radii [m].
+        /// Sum of the radii (m).
         touching: f64,
         per_length: f64,
-        /// Of the gap [1/m].
+        /// Of the gap (1/m).
         curvature: f64,
     },
 }
@@ -100,7 +100,7 @@ enum Touch {
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct Contact<N: NormalLaw, T: TangentialLaw> {
-    /// Nothing can touch until [`State::travel`] has reached this [m].
+    /// Nothing can touch until [`State::travel`] has reached this (m).
     quiet_until: f64,
     place: Place,
     i: u32,
@@ -113,28 +113,28 @@ struct Contact<N: NormalLaw, T: TangentialLaw> {
     /// Taken over by the next list.
     taken: bool,
     history: History<N, T>,
-    /// Greatest overlap of each cell so far [m]; across, of the patch in the first.
+    /// Greatest overlap of each cell so far (m); across, of the patch in the first.
     dents: [f64; CELLS],
-    /// What part of each cell counted at the last step [-].
+    /// What part of each cell counted at the last step (-).
     shares: [f64; CELLS],
-    /// Length of a cell along the undeformed wire [m].
+    /// Length of a cell along the undeformed wire (m).
     cell_length: f64,
-    /// Stiffness per length [Pa], of the angle at which they came to touch: what is stored changes by work alone.
+    /// Stiffness per length (Pa), of the angle at which they came to touch: what is stored changes by work alone.
     per_length: f64,
-    /// 2ξ√m* [√kg].
+    /// 2ξ√m* (√kg).
     viscosity: f64,
-    /// Overlap at the last step, at its deepest [m].
+    /// Overlap at the last step, at its deepest (m).
     overlap: f64,
-    /// Sum of the radii at the last step, less the overlap that does not count [m].
+    /// Sum of the radii at the last step, less the overlap that does not count (m).
     reach: f64,
-    /// Length of a stretch [m], and curvature of its gap [1/m], at the last step.
+    /// Length of a stretch (m), and curvature of its gap (1/m), at the last step.
     length: f64,
     curvature: f64,
-    /// Elastic energy of the normal force [J].
+    /// Elastic energy of the normal force (J).
     energy: f64,
-    /// Where the force acts, in bonds from the particle [-].
+    /// Where the force acts, in bonds from the particle (-).
     u: f64,
-    /// Lever arms of the two sides [m].
+    /// Lever arms of the two sides (m).
     arm: [f64; 2],
 }
 
@@ -143,7 +143,7 @@ pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
     laws: Laws<N, T>,
     line: LineStiffness,
     chains: Chains,
-    /// Spacing of each wire [m].
+    /// Spacing of each wire (m).
     spacing: Vec<f64>,
     contacts: Vec<Contact<N, T>>,
     old: Vec<Contact<N, T>>,
@@ -460,7 +460,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
-    /// Normal and tangential stiffness of a stretch that comes nearer by `closer` [m], in [N/m].
+    /// Normal and tangential stiffness of a stretch that comes nearer by `closer` (m), in (N/m).
     fn foreseen(&self, c: &Contact<N, T>, closer: f64) -> [f64; 2] {
         let modulus = self.laws.normal.effective_modulus();
         let normal = c.per_length * patch_length(c.overlap + closer, c.curvature, c.length);

@@ -1,10 +1,10 @@
 //! Viscous damping as a fraction of the critical one.
 
-/// Coefficient c = 2 ξ √(m k) [N s/m] of a dashpot beside a spring (linear oscillator; ξ = 1 is critical).
+/// Coefficient c = 2 ξ √(m k) (N s/m) of a dashpot beside a spring (linear oscillator; ξ = 1 is critical).
 ///
-/// `fraction` ξ [-]; `mass` [kg], for a contact the reduced mass m*; `stiffness` [N/m], for a contact the present
-/// dF/dδ (Tsuji, Tanaka & Ishida 1992). With a moment of inertia [kg m²] and a stiffness in [N m/rad] it answers a
-/// rotational coefficient [N m s/rad].
+/// `fraction` ξ (-); `mass` (kg), for a contact the reduced mass m*; `stiffness` (N/m), for a contact the present
+/// dF/dδ (Tsuji, Tanaka & Ishida 1992). With a moment of inertia (kg m²) and a stiffness in (N m/rad) it answers a
+/// rotational coefficient (N m s/rad).
 #[inline(always)]
 pub fn viscous_coefficient(fraction: f64, mass: f64, stiffness: f64) -> f64 {
     2.0 * fraction * (mass * stiffness).sqrt()

@@ -8,23 +8,23 @@ use crate::scene::spec::TimeSpec;
 use serde::{Deserialize, Serialize};
 
 /// Rows whose internal energy is below this share of the run's greatest one say nothing about kinetic over internal
-/// energy [-]: a pull starts with kinetic energy and no strain, where the ratio is infinite. The usual demand on
+/// energy (-): a pull starts with kinetic energy and no strain, where the ratio is infinite. The usual demand on
 /// quasi-static analyses by explicit integration is a small ratio throughout most of the process, not at its start.
 pub const LEAST_INTERNAL_SHARE: f64 = 0.05;
 
-/// Passages of an elastic wave along the body after which loading is judged [-]. A pull starts as an even field of
+/// Passages of an elastic wave along the body after which loading is judged (-). A pull starts as an even field of
 /// velocities without any strain: against the elastic energy ½Eε² of ε = n v/c, after n passages, its kinetic energy ρv²/6
 /// is 1/(3n²); of a wire that yields at once it still is a few per cent after ten.
 pub const FIRST_PASSAGES: f64 = 10.0;
 
-/// Share of the expected strain from which a row is judged as it comes [-]: even an elastic body, whose energy goes with
+/// Share of the expected strain from which a row is judged as it comes (-): even an elastic body, whose energy goes with
 /// the square of its strain, then has [`LEAST_INTERNAL_SHARE`] of its greatest energy.
 const TELLING_STRAIN: f64 = 0.25;
 
-/// Unbalanced share of the energy ledger above which a run warns [-].
+/// Unbalanced share of the energy ledger above which a run warns (-).
 pub const ENERGY_LIMIT: f64 = 0.01;
 
-/// The same, above which it stops [-]. A step that is not stable feeds energy in without end; everything else that was
+/// The same, above which it stops (-). A step that is not stable feeds energy in without end; everything else that was
 /// tried, jaws that crush loose pieces included, stays below the warning.
 const ENERGY_STOP: f64 = 0.2;
 
@@ -35,14 +35,14 @@ const ENERGY_STOP: f64 = 0.2;
 /// so the whole run is given beside it and judged by nobody.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct QuasiStatic {
-    /// Greatest kinetic over internal energy before the first rupture [-], over rows with at least 5 % of the
+    /// Greatest kinetic over internal energy before the first rupture (-), over rows with at least 5 % of the
     /// run's greatest internal energy.
     pub kinetic_over_internal_max: Option<f64>,
-    /// The same over the whole run [-].
+    /// The same over the whole run (-).
     pub kinetic_over_internal_overall: Option<f64>,
-    /// Greatest difference of the two grip forces before the first rupture, over the run's peak grip force [%].
+    /// Greatest difference of the two grip forces before the first rupture, over the run's peak grip force (%).
     pub grip_force_mismatch_percent: Option<f64>,
-    /// The same over the whole run [%].
+    /// The same over the whole run (%).
     pub grip_force_mismatch_overall_percent: Option<f64>,
 }
 
@@ -58,17 +58,17 @@ struct Row {
 /// Judges the rows of a run. What must stop the run is an error, what the user must know is a [`Notice`].
 pub struct Guard {
     limits: TimeSpec,
-    /// Energies below this one are nothing [J].
+    /// Energies below this one are nothing (J).
     negligible: f64,
     rows: Vec<Row>,
-    /// Time in which an elastic wave runs along the body [s].
+    /// Time in which an elastic wave runs along the body (s).
     passage: f64,
     gripped: bool,
     strain_end: f64,
     ruptured: bool,
-    /// Most work done so far [J].
+    /// Most work done so far (J).
     work: f64,
-    /// Greatest unbalanced share of the ledger [-].
+    /// Greatest unbalanced share of the ledger (-).
     residual: Option<f64>,
     now: Instant,
     notices: Vec<Notice>,
@@ -172,7 +172,7 @@ impl Guard {
         }
     }
 
-    /// Greatest share of the energy in the ledger that was unaccounted for [-]; `None` when there was none.
+    /// Greatest share of the energy in the ledger that was unaccounted for (-); `None` when there was none.
     pub fn greatest_residual(&self) -> Option<f64> {
         self.residual
     }

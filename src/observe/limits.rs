@@ -14,46 +14,46 @@ pub struct Limits {
     pub least_time_step: Step,
     /// The greatest time step and what limited it.
     pub greatest_time_step: Step,
-    /// Most energy that was unaccounted for at any row, over the most work done until then [%]; `None` at rest.
+    /// Most energy that was unaccounted for at any row, over the most work done until then (%); `None` at rest.
     pub energy_residual_greatest_percent: Option<f64>,
 }
 
 /// The deepest contact of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Deepest {
-    /// Overlap over the smaller of the two radii [%].
+    /// Overlap over the smaller of the two radii (%).
     pub overlap_percent_of_radius: f64,
     /// The two bodies.
     pub between: [Body; 2],
-    /// Where [mm].
+    /// Where (mm).
     pub z_mm: f64,
-    /// Strain of the body [%].
+    /// Strain of the body (%).
     pub strain_percent: f64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time_s: f64,
     /// Step.
     pub step: u64,
-    /// Normal force [N].
+    /// Normal force (N).
     pub force_n: f64,
-    /// Mean pressure over the contact [MPa].
+    /// Mean pressure over the contact (MPa).
     pub pressure_mpa: f64,
 }
 
 /// A time step and when it was chosen.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Step {
-    /// The time step [s].
+    /// The time step (s).
     pub seconds: f64,
-    /// Strain of the body [%].
+    /// Strain of the body (%).
     pub strain_percent: f64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time_s: f64,
     /// What limited it.
     pub limited_by: StepLimit,
 }
 
 impl Limits {
-    /// What the engine saw, and the ledger's greatest gap [-].
+    /// What the engine saw, and the ledger's greatest gap (-).
     pub fn new(seen: view::Findings, residual: Option<f64>) -> Self {
         Self {
             deepest_contact: seen.deepest.map(|at| Deepest {

@@ -3,15 +3,15 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Fall of the nominal stress below its peak by which a body has failed, and at which the second elongation is read [-].
+/// Fall of the nominal stress below its peak by which a body has failed, and at which the second elongation is read (-).
 pub const DROP: f64 = 0.2;
 
 /// A stress and the strain at which it was reached.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Peak {
-    /// Nominal stress [Pa].
+    /// Nominal stress (Pa).
     pub stress: f64,
-    /// Strain of the body [-].
+    /// Strain of the body (-).
     pub strain: f64,
 }
 
@@ -22,7 +22,7 @@ pub struct Peaks {
     pub tension: Option<Peak>,
     /// Least nominal stress of the body, below zero where it was compressed.
     pub compression: Option<Peak>,
-    /// Strain at which the stress of a body in which a bond had broken first lay [`DROP`] below the greatest, after it [-];
+    /// Strain at which the stress of a body in which a bond had broken first lay [`DROP`] below the greatest, after it (-);
     /// `None` when it never did. A body that is unloaded whole does not drop.
     pub drop: Option<f64>,
     /// Greatest nominal stress at mid-gauge of each wire.
@@ -43,7 +43,7 @@ impl Monitor {
         self.ruptured = true;
     }
 
-    /// The body's strain [-], its nominal stress [Pa] and those of its wires, in order of time.
+    /// The body's strain (-), its nominal stress (Pa) and those of its wires, in order of time.
     pub fn see(&mut self, strain: f64, stress: f64, wires: impl Iterator<Item = f64>) {
         let (now, peaks) = (Peak { stress, strain }, &mut self.peaks);
         if peaks.tension.is_none_or(|peak| stress > peak.stress) {

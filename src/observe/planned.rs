@@ -5,16 +5,16 @@ use crate::scene::spec::StopSpec;
 /// Where a run is expected to end; the first that is reached ends it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlannedEnd {
-    /// Strain of the body [-].
+    /// Strain of the body (-).
     pub strain: Option<f64>,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: Option<f64>,
     /// Steps.
     pub steps: Option<u64>,
 }
 
 impl PlannedEnd {
-    /// From the scene's stop conditions and the engine's own expectation of the final strain [-]
+    /// From the scene's stop conditions and the engine's own expectation of the final strain (-)
     /// ([`crate::engine::view::RunInfo::strain_end`]), which wins over `stop.strain`: it also knows
     /// when the wires will have broken.
     pub fn new(stop: &StopSpec, strain_end: Option<f64>) -> Self {
@@ -26,7 +26,7 @@ impl PlannedEnd {
         self.strain.is_some() || self.time.is_some() || self.steps.is_some()
     }
 
-    /// Fraction of the planned run that is done [-]: the greatest over the known ends, because the
+    /// Fraction of the planned run that is done (-): the greatest over the known ends, because the
     /// first one reached ends the run. Above 1 when a run goes on past its expected end; 0 when no
     /// end is known.
     pub fn fraction(&self, strain: f64, time: f64, steps: u64) -> f64 {

@@ -5,16 +5,16 @@
 //! | entity | contents |
 //! | --- | --- |
 //! | `/headline` | what happened: the first break, the result, notices |
-//! | `/strand/<layer>/wire_<NN>` | particles: positions [mm], mean radius [mm], colours; fields `Bond`: true axial stress [MPa], equivalent plastic strain [-], utilisation to rupture [-], contact pressure [MPa], state |
+//! | `/strand/<layer>/wire_<NN>` | particles: positions (mm), mean radius (mm), colours; fields `Bond`: true axial stress (MPa), equivalent plastic strain (-), utilisation to rupture (-), contact pressure (MPa), state |
 //! | `/strand/<layer>/wire_<NN>/tube` | the same wire as a smooth tube, apart where it broke, with coloured tips; fields as above |
-//! | `/strand/<layer>/wire_<NN>/ruptures` | labelled points at the places of rupture [mm], from their time on |
+//! | `/strand/<layer>/wire_<NN>/ruptures` | labelled points at the places of rupture (mm), from their time on |
 //! | `/first_break`, `/focus` | mark and label of the first break; what the eye of the close view follows |
-//! | `/spheres`, `/grips` | free spheres; boxes around what the grips hold [mm] |
+//! | `/spheres`, `/grips` | free spheres; boxes around what the grips hold (mm) |
 //! | `/map/<layer>`, `/map/<layer>/wire_<NN>/ruptures` | unrolled map: a row per wire, coloured like the particles; ruptures and their order |
 //! | `/chart` | nominal stress over strain, drawn with axes in % and MPa |
 //! | `/states/<layer>/wire_<NN>` | lane of the wire's state: whole, yielding, broken |
-//! | `/stress/body`, `/stress/layers`, `/stress/wires/<layer>` | nominal stress [MPa]; over `microstrain` the first is the stress–strain curve |
-//! | `/broken`, `/energy` | wires and bonds broken; energy ledger [J] |
+//! | `/stress/body`, `/stress/layers`, `/stress/wires/<layer>` | nominal stress (MPa); over `microstrain` the first is the stress–strain curve |
+//! | `/broken`, `/energy` | wires and bonds broken; energy ledger (J) |
 //! | `/ruptures` | log, a line per rupture, and notices as warnings |
 //! | `/about`, properties | what the run is |
 //!

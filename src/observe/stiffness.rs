@@ -7,15 +7,15 @@ use crate::scene::spec::{BondLawSpec, RuptureCriterion, Shape, Spec};
 use crate::strand::theory::Theory;
 use serde::{Deserialize, Serialize};
 
-/// Deviation from strand theory from which a run warns [-].
+/// Deviation from strand theory from which a run warns (-).
 pub const LIMIT: f64 = 0.05;
-/// Rows are used from this many passages of an elastic wave along the body on [-]: the pull has settled, and whatever
+/// Rows are used from this many passages of an elastic wave along the body on (-): the pull has settled, and whatever
 /// smooths the forces over a fraction of a passage with it.
 const PASSAGES: f64 = 2.0;
-/// Rows are used up to this share of the strain at which wires yield or break [-]: bending strains their outermost fibres
+/// Rows are used up to this share of the strain at which wires yield or break (-): bending strains their outermost fibres
 /// a little more.
 const ELASTIC: f64 = 0.8;
-/// And up to this strain [-]: log strain takes 0.5 % off a line by then.
+/// And up to this strain (-): log strain takes 0.5 % off a line by then.
 const SMALL: f64 = 5e-3;
 /// Rows that make a line.
 const LEAST_ROWS: usize = 4;
@@ -23,17 +23,17 @@ const LEAST_ROWS: usize = 4;
 /// Stiffness expected and measured, ends held.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stiffness {
-    /// Nominal modulus by strand theory: force per strain over the wires' sections [GPa].
+    /// Nominal modulus by strand theory: force per strain over the wires' sections (GPa).
     pub expected_gpa: f64,
-    /// Slope of nominal stress over strain in the window [GPa]; `None` when it could not be measured.
+    /// Slope of nominal stress over strain in the window (GPa); `None` when it could not be measured.
     pub measured_gpa: Option<f64>,
-    /// Measured against expected [%].
+    /// Measured against expected (%).
     pub deviation_percent: Option<f64>,
-    /// Torque that holds the ends over strain, by strand theory with the extensible rod's twist [N m].
+    /// Torque that holds the ends over strain, by strand theory with the extensible rod's twist (N m).
     pub expected_torque_n_m: f64,
-    /// Slope of the torque over strain in the window, same sign as the row's [N m].
+    /// Slope of the torque over strain in the window, same sign as the row's (N m).
     pub measured_torque_n_m: Option<f64>,
-    /// The window: strains between which rows are used [%].
+    /// The window: strains between which rows are used (%).
     pub window_percent: [f64; 2],
     /// Rows in it.
     pub rows: usize,
@@ -56,13 +56,13 @@ pub enum NotMeasured {
 /// A row of the curve as far as it matters here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Strain [-].
+    /// Strain (-).
     pub strain: f64,
-    /// Nominal stress [Pa].
+    /// Nominal stress (Pa).
     pub stress: f64,
-    /// Torque [N m].
+    /// Torque (N m).
     pub torque: f64,
 }
 
@@ -115,7 +115,7 @@ pub fn measure(rows: &[Row], spec: &Spec) -> Option<Stiffness> {
     })
 }
 
-/// Time in which an elastic wave runs along the body [s].
+/// Time in which an elastic wave runs along the body (s).
 pub fn passage(spec: &Spec) -> Option<f64> {
     let length = match (&spec.strand, spec.wires.first().map(|wire| &wire.path)) {
         (Some(strand), _) => strand.length,
@@ -125,7 +125,7 @@ pub fn passage(spec: &Spec) -> Option<f64> {
     Some(length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt())
 }
 
-/// Strain up to which rows are elastic [-].
+/// Strain up to which rows are elastic (-).
 fn elastic_strain(spec: &Spec) -> f64 {
     let young = spec.material.young;
     let yields = match &spec.bond.law {
@@ -202,7 +202,7 @@ impl NotMeasured {
         }
     }
 
-    /// The reason in words; `from` and `to` are the window [%].
+    /// The reason in words; `from` and `to` are the window (%).
     pub fn words(self, from: f64, to: f64) -> String {
         match self {
             NotMeasured::LayersClose => {

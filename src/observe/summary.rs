@@ -26,20 +26,20 @@ pub struct RunSummary {
     pub stopped: StopReason,
     /// The same in words.
     pub stopped_because: String,
-    /// Greatest nominal stress of all steps [MPa], of a body that failed: a bond broke, and stress fell 20 % below its peak.
+    /// Greatest nominal stress of all steps (MPa), of a body that failed: a bond broke, and stress fell 20 % below its peak.
     /// `None` for any other, whose strength the run does not know, however it ended.
     pub tensile_strength_mpa: Option<f64>,
-    /// Strain at the tensile strength [%]; `None` without one.
+    /// Strain at the tensile strength (%); `None` without one.
     pub fracture_elongation_percent: Option<f64>,
-    /// Strain at which the stress has fallen 20 % below its peak [%]; `None` when it never did.
+    /// Strain at which the stress has fallen 20 % below its peak (%); `None` when it never did.
     pub elongation_at_20_percent_drop_percent: Option<f64>,
-    /// Greatest nominal stress of all steps [MPa], whether the body failed or not; `None` unless it was pulled.
+    /// Greatest nominal stress of all steps (MPa), whether the body failed or not; `None` unless it was pulled.
     pub greatest_stress_mpa: Option<f64>,
-    /// Strain at the greatest stress [%].
+    /// Strain at the greatest stress (%).
     pub strain_at_greatest_stress_percent: Option<f64>,
-    /// Least nominal stress of all steps [MPa], tension positive, so that it is negative; `None` unless the body was pushed.
+    /// Least nominal stress of all steps (MPa), tension positive, so that it is negative; `None` unless the body was pushed.
     pub compressive_peak_mpa: Option<f64>,
-    /// Strain at the compressive peak [%], negative where the body was shortened.
+    /// Strain at the compressive peak (%), negative where the body was shortened.
     pub strain_at_compressive_peak_percent: Option<f64>,
     /// The first rupture; `None` when nothing broke.
     pub first_rupture: Option<Break>,
@@ -51,16 +51,16 @@ pub struct RunSummary {
     pub wires_broken: usize,
     /// Bonds broken in all.
     pub bonds_broken: usize,
-    /// Strain of the body at the end [%].
+    /// Strain of the body at the end (%).
     pub final_strain_percent: Option<f64>,
-    /// Nominal stress at the end [MPa].
+    /// Nominal stress at the end (MPa).
     pub residual_stress_mpa: Option<f64>,
     /// Initial stiffness beside strand theory; `None` where that has nothing to say.
     #[serde(default)]
     pub stiffness: Option<Stiffness>,
-    /// Energy ledger at the end [J].
+    /// Energy ledger at the end (J).
     pub energy: Energy,
-    /// What the ledger does not account for, over the work done [%]; `None` when the work is negligible.
+    /// What the ledger does not account for, over the work done (%); `None` when the work is negligible.
     pub energy_residual_percent: Option<f64>,
     /// How far loading was from quasi-static.
     #[serde(flatten)]
@@ -68,11 +68,11 @@ pub struct RunSummary {
     /// How near the run came to the limits of its model.
     #[serde(flatten)]
     pub limits: Limits,
-    /// Factor on particle mass [-].
+    /// Factor on particle mass (-).
     pub mass_scale: f64,
-    /// Factor on rotational inertia [-].
+    /// Factor on rotational inertia (-).
     pub inertia_scale: f64,
-    /// Seed of the scatter [-].
+    /// Seed of the scatter (-).
     pub seed: u64,
     /// The draw that this strand is, where bonds scatter: its first wire, layer and place say nothing of other strands.
     /// `None` where every bond is as strong as the other.
@@ -119,9 +119,9 @@ impl ExtremeKind {
 pub struct Extreme {
     /// What it is.
     pub kind: ExtremeKind,
-    /// Nominal stress, tension positive [MPa].
+    /// Nominal stress, tension positive (MPa).
     pub stress_mpa: f64,
-    /// Strain at it [%].
+    /// Strain at it (%).
     pub strain_percent: f64,
 }
 
@@ -150,9 +150,9 @@ impl RunSummary {
 pub struct Found {
     /// Step.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time_s: f64,
-    /// Strain of the body [%]; `None` without grips.
+    /// Strain of the body (%); `None` without grips.
     pub strain_percent: Option<f64>,
     /// What was found: its `kind` and values in SI units.
     #[serde(flatten)]
@@ -192,13 +192,13 @@ pub struct Break {
     pub wire: usize,
     /// Layer.
     pub layer: String,
-    /// Where it broke, stretched [mm].
+    /// Where it broke, stretched (mm).
     pub z_mm: f64,
-    /// Where that was before loading [mm].
+    /// Where that was before loading (mm).
     pub rest_z_mm: f64,
-    /// Strain of the body [%].
+    /// Strain of the body (%).
     pub strain_percent: f64,
-    /// True axial stress of the bond just before [MPa].
+    /// True axial stress of the bond just before (MPa).
     pub stress_mpa: f64,
     /// Cause.
     pub cause: String,
@@ -209,13 +209,13 @@ pub struct Break {
 pub struct Cost {
     /// Steps.
     pub steps: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub simulated_s: f64,
-    /// From the start of the run to the writing of the summary, output included [s].
+    /// From the start of the run to the writing of the summary, output included (s).
     pub wall_s: f64,
-    /// Processor time of the whole program in that span, all threads [s]; `None` where the system does not tell.
+    /// Processor time of the whole program in that span, all threads (s); `None` where the system does not tell.
     pub cpu_s: Option<f64>,
-    /// Wall time in the engine over steps, output not included [ms].
+    /// Wall time in the engine over steps, output not included (ms).
     pub ms_per_step: Option<f64>,
     /// Threads that the engine had.
     pub threads: usize,

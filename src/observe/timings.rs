@@ -24,7 +24,7 @@ pub struct Timings {
     pub drained: Duration,
     /// Making the animation.
     pub animation: Duration,
-    /// Size of the animation [bytes].
+    /// Size of the animation (bytes).
     pub animation_bytes: u64,
 }
 
@@ -42,7 +42,7 @@ impl Timings {
         self.animation_bytes += other.animation_bytes;
     }
 
-    /// Mean per frame [ms]: draw, read-back, overlay, encode.
+    /// Mean per frame (ms): draw, read-back, overlay, encode.
     pub fn per_frame_ms(&self) -> [f64; 4] {
         let n = f64::from(self.frames.max(1));
         [self.draw, self.read_back, self.overlay, self.encode].map(|d| d.as_secs_f64() * 1e3 / n)

@@ -19,7 +19,7 @@ use std::sync::Arc;
 const MAGIC: [u8; 12] = *b"strandsnap\0T";
 /// Raised whenever what is written changes its meaning or order.
 const VERSION: u32 = 4;
-/// No record is this long [bytes]; a length above it is damage.
+/// No record is this long (bytes); a length above it is damage.
 const LONGEST_RECORD: u32 = 1 << 30;
 
 /// What a trajectory tells, in the order of the run.

@@ -4,7 +4,7 @@ use crate::engine::view::{RunInfo, Rupture};
 use crate::scene::spec::Spec;
 use serde::{Deserialize, Serialize};
 
-/// Number of wire `wire` as people see it [-]: counted from 1.
+/// Number of wire `wire` as people see it (-): counted from 1.
 pub fn wire_number(wire: usize) -> usize {
     wire + 1
 }
@@ -28,7 +28,7 @@ pub fn rupture_line(info: &RunInfo, rupture: &Rupture) -> String {
 pub struct OneDraw {
     /// Seed of the scatter.
     pub seed: u64,
-    /// Weibull modulus of the rupture value from bond to bond [-].
+    /// Weibull modulus of the rupture value from bond to bond (-).
     pub weibull_modulus: f64,
 }
 

@@ -6,9 +6,9 @@ use crate::engine::view::{Rupture, Sample};
 /// The quantity along the horizontal axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Abscissa {
-    /// Strain of the body [%].
+    /// Strain of the body (%).
     Strain,
-    /// Simulated time [ms].
+    /// Simulated time (ms).
     Time,
 }
 

@@ -121,7 +121,7 @@ fn stresses(s: &RunSummary) -> Vec<(&'static str, String, String)> {
     facts
 }
 
-/// A distance from mid-length before loading [mm], and its direction.
+/// A distance from mid-length before loading (mm), and its direction.
 fn from_middle(distance: f64) -> (String, &'static str) {
     let towards = if distance < 0.0 {
         "first rupture, towards the lower grip, before loading"

@@ -65,7 +65,7 @@ fn around_fracture(source: &Source, rows: &[&Sample], [from, to]: [f64; 2]) -> F
     }
 }
 
-/// Strains between which the wires of a pulled body break, with some room [%].
+/// Strains between which the wires of a pulled body break, with some room (%).
 pub fn fracture_range(source: &Source) -> Option<[f64; 2]> {
     let (first, last) = (source.ruptures.first()?, source.samples.last()?);
     let from = first.strain * 1e2;

@@ -103,7 +103,7 @@ fn chart(source: &Source) -> Figure {
     }
 }
 
-/// Greatest energy of the run [J].
+/// Greatest energy of the run (J).
 fn greatest(source: &Source) -> f64 {
     source.samples.iter().flat_map(|row| [row.energy.work, row.energy.internal()]).fold(0.0, f64::max)
 }

@@ -13,7 +13,7 @@ const LAYER_COLOURS: usize = 6;
 pub struct Figure {
     /// Its anchor.
     pub id: &'static str,
-    /// Height [px].
+    /// Height (px).
     pub height: usize,
     /// What it shows, for those who do not see it and below the chart.
     pub caption: Markup,

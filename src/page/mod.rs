@@ -58,7 +58,7 @@ const SECTIONS: [fn(&Source) -> Result<Section>; 9] = [
 pub struct Written {
     /// Where it is.
     pub path: PathBuf,
-    /// How big it is [bytes].
+    /// How big it is (bytes).
     pub bytes: usize,
     /// Frames in it, and pictures that the run has.
     pub frames: [usize; 2],

@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 
 /// Where `strandsnap render RUN` draws.
 const RENDER: &str = "render";
-/// Pictures are shown no wider than this [px].
+/// Pictures are shown no wider than this (px).
 const WIDEST: u32 = 1280;
-/// Of the JPEG [%]: the small print of a frame stays sharp, and fifty of them stay below 10 MB.
+/// Of the JPEG (%): the small print of a frame stays sharp, and fifty of them stay below 10 MB.
 const QUALITY: u8 = 75;
 
 /// The numbered pictures of a run, one per snapshot.
@@ -28,7 +28,7 @@ pub struct Pictures {
 pub struct Embedded {
     /// `data:` address of a JPEG.
     pub address: String,
-    /// Width and height [px].
+    /// Width and height (px).
     pub size: [u32; 2],
 }
 

@@ -50,7 +50,7 @@ pub struct State {
     pub number: usize,
     /// The row of the curve at this instant.
     pub sample: Sample,
-    /// True axial stress of each bond slot [MPa]; NaN where no bond holds.
+    /// True axial stress of each bond slot (MPa); NaN where no bond holds.
     pub stress: Vec<f32>,
     /// What is special about it.
     pub label: Option<&'static str>,
@@ -144,7 +144,7 @@ impl Source {
         self.states.iter().filter(|state| state.picture.is_some()).count()
     }
 
-    /// z of mid-length before loading: half-way between the grips [mm]. `None` for free bodies.
+    /// z of mid-length before loading: half-way between the grips (mm). `None` for free bodies.
     pub fn mid_length(&self) -> Option<f64> {
         self.info.gauge.map(|[low, high]| 0.5 * (f64::from(low) + f64::from(high)))
     }

@@ -12,21 +12,21 @@ use serde_json::{Value, json};
 
 /// Cells in a row at most: a screen shows no more.
 const MOST_CELLS: usize = 400;
-/// Height of a wire's row and of what stands above and below them all [px].
+/// Height of a wire's row and of what stands above and below them all (px).
 const ROW: usize = 17;
 const AROUND: usize = 146;
 const TALLEST: usize = 1400;
-/// Room for half a cell at the ends of the strand [mm].
+/// Room for half a cell at the ends of the strand (mm).
 const CELL: f64 = 0.5;
 
 /// A wire's row: one heat map of one line, because wires differ in where their bonds are.
 struct Row {
     wire: usize,
-    /// Height of its middle in the chart: one for each row, with one free between layers [-].
+    /// Height of its middle in the chart: one for each row, with one free between layers (-).
     y: usize,
     /// Bonds in a cell.
     group: usize,
-    /// Centre of each cell before loading [mm].
+    /// Centre of each cell before loading (mm).
     x: Vec<f64>,
 }
 
@@ -43,7 +43,7 @@ impl<'a> Map<'a> {
         (!rows.is_empty()).then_some(Self { source, rows })
     }
 
-    /// Stress of every cell in a state, row by row: the mean of the bonds that hold [MPa].
+    /// Stress of every cell in a state, row by row: the mean of the bonds that hold (MPa).
     pub fn stress(&self, state: &State) -> Vec<Value> {
         let of = |row: &Row| {
             let wire = &self.source.info.wires[row.wire];
@@ -201,7 +201,7 @@ fn mean(bonds: &[f32]) -> f64 {
     if count == 0 { f64::NAN } else { sum / f64::from(count) }
 }
 
-/// Where the bonds of a wire are before loading [mm]: z in a body between grips; for a free one, which may lie in any
+/// Where the bonds of a wire are before loading (mm): z in a body between grips; for a free one, which may lie in any
 /// direction, the length along the wire.
 fn places(source: &Source, wire: usize) -> Vec<f64> {
     let of = &source.info.wires[wire];

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 /// Rows per line at most, and points in a chart at most: a strand of many wires gets fewer rows.
 const MOST_ROWS: usize = 800;
 const MOST_POINTS: usize = 40_000;
-/// Stress below which there is nothing to show [MPa].
+/// Stress below which there is nothing to show (MPa).
 const LEAST: f64 = 1e-3;
 
 /// Layer means and wires over strain, whole and around fracture.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// First root of cos x cosh x = −1: the clamped–free beam's first mode [-].
+/// First root of cos x cosh x = −1: the clamped–free beam's first mode (-).
 ///
 /// Source: Timoshenko, *Vibration Problems in Engineering*, 3rd ed. 1955, section 53.
 pub const CLAMPED_FREE_ROOT: f64 = 1.875_104_068_711_961;
@@ -10,41 +10,41 @@ pub const CLAMPED_FREE_ROOT: f64 = 1.875_104_068_711_961;
 /// A straight round bar of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoundBar {
-    /// Length L [m].
+    /// Length L (m).
     pub length: f64,
-    /// Diameter d [m].
+    /// Diameter d (m).
     pub diameter: f64,
-    /// Young's modulus E [Pa].
+    /// Young's modulus E (Pa).
     pub young: f64,
-    /// Poisson's ratio ν [-].
+    /// Poisson's ratio ν (-).
     pub poisson: f64,
-    /// Density ρ [kg/m³].
+    /// Density ρ (kg/m³).
     pub density: f64,
 }
 
 impl RoundBar {
-    /// Cross-section A = π d²/4 [m²].
+    /// Cross-section A = π d²/4 (m²).
     pub fn area(&self) -> f64 {
         PI * self.diameter.powi(2) / 4.0
     }
 
-    /// Second moment of area I = π d⁴/64 [m⁴].
+    /// Second moment of area I = π d⁴/64 (m⁴).
     pub fn second_moment(&self) -> f64 {
         PI * self.diameter.powi(4) / 64.0
     }
 
-    /// Polar moment J = 2 I [m⁴].
+    /// Polar moment J = 2 I (m⁴).
     pub fn polar_moment(&self) -> f64 {
         2.0 * self.second_moment()
     }
 
-    /// Shear modulus G = E/(2(1 + ν)) [Pa].
+    /// Shear modulus G = E/(2(1 + ν)) (Pa).
     pub fn shear_modulus(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))
     }
 
-    /// Deflection of the loaded tip of a cantilever, P L³/(3 E I) + P L/(κ G A) [m], for a transverse force `force`
-    /// P [N].
+    /// Deflection of the loaded tip of a cantilever, P L³/(3 E I) + P L/(κ G A) (m), for a transverse force `force`
+    /// P (N).
     ///
     /// Source: Timoshenko & Gere, *Mechanics of Materials*, beams with shear deformation; κ of [`shear_coefficient`].
     pub fn cantilever_tip(&self, force: f64) -> f64 {
@@ -53,56 +53,56 @@ impl RoundBar {
         bending + force * self.length / shear_stiffness
     }
 
-    /// Rotation of the end of a bar under torque `torque` T [N m], T L/(G J) [rad] (Saint-Venant).
+    /// Rotation of the end of a bar under torque `torque` T (N m), T L/(G J) (rad) (Saint-Venant).
     pub fn twist(&self, torque: f64) -> f64 {
         torque * self.length / (self.shear_modulus() * self.polar_moment())
     }
 
-    /// Elongation of a bar under axial force `force` N [N], N L/(E A) [m] (Hooke).
+    /// Elongation of a bar under axial force `force` N (N), N L/(E A) (m) (Hooke).
     pub fn elongation(&self, force: f64) -> f64 {
         force * self.length / (self.young * self.area())
     }
 
-    /// Speed of axial waves in a thin bar, √(E/ρ) [m/s].
+    /// Speed of axial waves in a thin bar, √(E/ρ) (m/s).
     pub fn axial_wave_speed(&self) -> f64 {
         (self.young / self.density).sqrt()
     }
 
-    /// Speed of torsional waves in a round bar, √(G/ρ) [m/s].
+    /// Speed of torsional waves in a round bar, √(G/ρ) (m/s).
     pub fn torsional_wave_speed(&self) -> f64 {
         (self.shear_modulus() / self.density).sqrt()
     }
 
     /// First bending frequency of a cantilever without shear and rotary inertia,
-    /// ω₁ = 1.8751² √(E I/(ρ A))/L² [rad/s] (Euler–Bernoulli; see [`CLAMPED_FREE_ROOT`]).
+    /// ω₁ = 1.8751² √(E I/(ρ A))/L² (rad/s) (Euler–Bernoulli; see [`CLAMPED_FREE_ROOT`]).
     pub fn first_bending_frequency(&self) -> f64 {
         let rigidity = self.young * self.second_moment() / (self.density * self.area());
         CLAMPED_FREE_ROOT.powi(2) * rigidity.sqrt() / self.length.powi(2)
     }
 
-    /// First axial frequency of a bar clamped at one end, π/2 · √(E/ρ)/L [rad/s].
+    /// First axial frequency of a bar clamped at one end, π/2 · √(E/ρ)/L (rad/s).
     pub fn first_axial_frequency(&self) -> f64 {
         PI / 2.0 * self.axial_wave_speed() / self.length
     }
 
-    /// First torsional frequency of a bar clamped at one end, π/2 · √(G/ρ)/L [rad/s].
+    /// First torsional frequency of a bar clamped at one end, π/2 · √(G/ρ)/L (rad/s).
     pub fn first_torsional_frequency(&self) -> f64 {
         PI / 2.0 * self.torsional_wave_speed() / self.length
     }
 
-    /// Buckling load of a clamped–free column, π² E I/(4 L²) [N] (Euler 1744).
+    /// Buckling load of a clamped–free column, π² E I/(4 L²) (N) (Euler 1744).
     pub fn buckling_load(&self) -> f64 {
         PI.powi(2) * self.young * self.second_moment() / (4.0 * self.length.powi(2))
     }
 
-    /// Timoshenko's Φ = 12 E I/(κ G A l²) of a piece of length `piece` l [m]: shear over bending compliance [-].
+    /// Timoshenko's Φ = 12 E I/(κ G A l²) of a piece of length `piece` l (m): shear over bending compliance (-).
     pub fn shear_parameter(&self, piece: f64) -> f64 {
         let shear = shear_coefficient(self.poisson) * self.shear_modulus() * self.area();
         12.0 * self.young * self.second_moment() / (shear * piece.powi(2))
     }
 }
 
-/// Shear coefficient of a solid round section, κ = 6(1 + ν)/(7 + 6ν) [-].
+/// Shear coefficient of a solid round section, κ = 6(1 + ν)/(7 + 6ν) (-).
 ///
 /// Source: Cowper, J. Appl. Mech. 33 (1966) 335.
 pub fn shear_coefficient(poisson: f64) -> f64 {

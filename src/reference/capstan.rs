@@ -2,13 +2,13 @@
 //!
 //! Source: Euler 1769 (the string); Kirchhoff's rod equations for a wire of finite thickness, see [`Wrapped::rate`].
 
-/// Pull over hold of a string without thickness, T₂/T₁ = e^(μφ) [-] (Euler, Eytelwein), for friction coefficient
-/// `friction` μ [-] and turning angle `angle` φ [rad], the curvature times the length of contact.
+/// Pull over hold of a string without thickness, T₂/T₁ = e^(μφ) (-) (Euler, Eytelwein), for friction coefficient
+/// `friction` μ (-) and turning angle `angle` φ (rad), the curvature times the length of contact.
 pub fn string_ratio(friction: f64, angle: f64) -> f64 {
     (friction * angle).exp()
 }
 
-/// Pull over hold of a string laid as a polygon whose corners turn by `turns` θ each [rad]: [-].
+/// Pull over hold of a string laid as a polygon whose corners turn by `turns` θ each (rad): (-).
 ///
 /// At a corner N = (T₁ + T₂) sin(θ/2) and (T₂ − T₁) cos(θ/2) = μ N, so T₂/T₁ = (1 + μ tan(θ/2))/(1 − μ tan(θ/2)).
 pub fn polygon_ratio(friction: f64, turns: impl IntoIterator<Item = f64>) -> f64 {
@@ -22,16 +22,16 @@ pub fn polygon_ratio(friction: f64, turns: impl IntoIterator<Item = f64>) -> f64
 /// A round wire on a body, laid in its natural shape of constant curvature (circle or helix).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wrapped {
-    /// Friction coefficient μ [-].
+    /// Friction coefficient μ (-).
     pub friction: f64,
-    /// Curvature κ of its axis [1/m].
+    /// Curvature κ of its axis (1/m).
     pub curvature: f64,
-    /// Radius r of the wire [m].
+    /// Radius r of the wire (m).
     pub radius: f64,
 }
 
 impl Wrapped {
-    /// Growth λ of the pull per length, T ~ e^(λs) [1/m].
+    /// Growth λ of the pull per length, T ~ e^(λs) (1/m).
     ///
     /// Contact pressure q and friction μ q act at the surface, r inside the axis. The wire slides along its own shape,
     /// so its bending moment does not change and the couple μ q r of friction is balanced by a shear force V = −μ q r.

@@ -9,22 +9,22 @@ use std::f64::consts::FRAC_PI_2;
 /// A buckled clamped–free column, in terms of its length and of Euler's load π²EI/(4L²).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Column {
-    /// Load over Euler's load [-].
+    /// Load over Euler's load (-).
     pub load: f64,
-    /// Shortening over length [-].
+    /// Shortening over length (-).
     pub shortening: f64,
-    /// Sideways deflection of the tip over length [-].
+    /// Sideways deflection of the tip over length (-).
     pub deflection: f64,
 }
 
 impl Column {
-    /// The column with k = sin(α/2), α the slope of its tip [-], 0 ≤ k < 1.
+    /// The column with k = sin(α/2), α the slope of its tip (-), 0 ≤ k < 1.
     pub fn with_modulus(k: f64) -> Self {
         let (first, second) = (elliptic::first(FRAC_PI_2, k), elliptic::second(FRAC_PI_2, k));
         Self { load: (first / FRAC_PI_2).powi(2), shortening: 2.0 - 2.0 * second / first, deflection: 2.0 * k / first }
     }
 
-    /// The column whose tip has come down by `shortening` of its length [-], 0 to 1.
+    /// The column whose tip has come down by `shortening` of its length (-), 0 to 1.
     pub fn shortened(shortening: f64) -> Self {
         let (mut low, mut high) = (0.0, 1.0 - 1e-12);
         for _ in 0..100 {

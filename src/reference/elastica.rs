@@ -8,15 +8,15 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 /// Where the tip of the cantilever is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tip {
-    /// Deflection along the force over the length, δ/L [-].
+    /// Deflection along the force over the length, δ/L (-).
     pub deflection: f64,
-    /// Distance from the clamp across the force over the length, 1 − Δ/L [-].
+    /// Distance from the clamp across the force over the length, 1 − Δ/L (-).
     pub reach: f64,
-    /// Slope φ₀ [rad].
+    /// Slope φ₀ (rad).
     pub slope: f64,
 }
 
-/// Tip under the load P L²/(E I) = `load` > 0 [-].
+/// Tip under the load P L²/(E I) = `load` > 0 (-).
 ///
 /// With p² = (1 + sin φ₀)/2 and sin θ₁ = 1/(p√2): √load = F(π/2, p) − F(θ₁, p), from which φ₀ follows;
 /// δ/L = 1 − 2 [E(π/2, p) − E(θ₁, p)]/√load and 1 − Δ/L = √(2 sin φ₀/load).

@@ -2,15 +2,15 @@
 //!
 //! Source: Carlson, Numer. Math. 33 (1979) 1; DLMF 19.25.
 
-/// Incomplete integral of the first kind F(φ, k) = ∫₀^φ dt/√(1 − k² sin²t) [-]; `angle` φ in [0, π/2] [rad], `modulus`
-/// k in [0, 1] [-].
+/// Incomplete integral of the first kind F(φ, k) = ∫₀^φ dt/√(1 − k² sin²t) (-); `angle` φ in [0, π/2] (rad), `modulus`
+/// k in [0, 1] (-).
 pub fn first(angle: f64, modulus: f64) -> f64 {
     let (sine, cosine) = angle.sin_cos();
     let rest = 1.0 - (modulus * sine).powi(2);
     sine * carlson_rf(cosine * cosine, rest, 1.0)
 }
 
-/// Incomplete integral of the second kind E(φ, k) = ∫₀^φ √(1 − k² sin²t) dt [-]; arguments as in [`first`].
+/// Incomplete integral of the second kind E(φ, k) = ∫₀^φ √(1 − k² sin²t) dt (-); arguments as in [`first`].
 pub fn second(angle: f64, modulus: f64) -> f64 {
     let (sine, cosine) = angle.sin_cos();
     let part = (modulus * sine).powi(2);

@@ -2,24 +2,24 @@
 
 use std::f64::consts::TAU;
 
-/// Lay angle β between wire and axis, tan β = 2π R/h [rad], for radius [m] and pitch [m] (infinite when straight).
+/// Lay angle β between wire and axis, tan β = 2π R/h (rad), for radius (m) and pitch (m) (infinite when straight).
 pub fn lay_angle(radius: f64, pitch: f64) -> f64 {
     (TAU * radius / pitch).atan()
 }
 
-/// Arc length L/cos β of a wire that advances by `length` along the axis [m].
+/// Arc length L/cos β of a wire that advances by `length` along the axis (m).
 pub fn arc_length(radius: f64, pitch: f64, length: f64) -> f64 {
     length * 1.0_f64.hypot(TAU * radius / pitch)
 }
 
-/// Curvature sin²β/R [1/m]; 0 on the axis.
+/// Curvature sin²β/R (1/m); 0 on the axis.
 pub fn curvature(radius: f64, pitch: f64) -> f64 {
     // R k²/(1 + R²k²) with k = 2π/h is sin²β/R without the division by a zero radius.
     let rate = TAU / pitch;
     radius * rate.powi(2) / (1.0 + (radius * rate).powi(2))
 }
 
-/// Torsion s sin β cos β/R [1/m] for lay direction `lay` s (+1 right, −1 left); s 2π/h on the axis.
+/// Torsion s sin β cos β/R (1/m) for lay direction `lay` s (+1 right, −1 left); s 2π/h on the axis.
 pub fn torsion(radius: f64, pitch: f64, lay: f64) -> f64 {
     let rate = TAU / pitch;
     lay * rate / (1.0 + (radius * rate).powi(2))

@@ -8,16 +8,16 @@ use std::f64::consts::PI;
 /// The pair's effective values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
-    /// Effective modulus E* = [Σ(1 − ν²)/E]⁻¹ [Pa].
+    /// Effective modulus E* = [Σ(1 − ν²)/E]⁻¹ (Pa).
     pub modulus: f64,
-    /// Effective radius R* = [Σ1/R]⁻¹ [m].
+    /// Effective radius R* = [Σ1/R]⁻¹ (m).
     pub radius: f64,
-    /// Effective mass m* = [Σ1/m]⁻¹ [kg].
+    /// Effective mass m* = [Σ1/m]⁻¹ (kg).
     pub mass: f64,
 }
 
 impl Pair {
-    /// Two equal spheres of radius `radius` [m], `young` [Pa], `poisson` [-] and `density` [kg/m³].
+    /// Two equal spheres of radius `radius` (m), `young` (Pa), `poisson` (-) and `density` (kg/m³).
     pub fn equal_spheres(radius: f64, young: f64, poisson: f64, density: f64) -> Self {
         Self {
             modulus: young / (2.0 * (1.0 - poisson * poisson)),
@@ -26,25 +26,25 @@ impl Pair {
         }
     }
 
-    /// Normal force at overlap `overlap` δ ≥ 0 [m], (4/3) E* √R* δ^(3/2) [N].
+    /// Normal force at overlap `overlap` δ ≥ 0 (m), (4/3) E* √R* δ^(3/2) (N).
     pub fn force(&self, overlap: f64) -> f64 {
         4.0 / 3.0 * self.modulus * self.radius.sqrt() * overlap.powf(1.5)
     }
 
-    /// Greatest overlap when meeting at relative speed `speed` v [m/s],
-    /// (15 m* v²/(16 E* √R*))^(2/5) [m].
+    /// Greatest overlap when meeting at relative speed `speed` v (m/s),
+    /// (15 m* v²/(16 E* √R*))^(2/5) (m).
     pub fn greatest_overlap(&self, speed: f64) -> f64 {
         (15.0 * self.mass * speed.powi(2) / (16.0 * self.modulus * self.radius.sqrt())).powf(0.4)
     }
 
-    /// Duration of the contact at relative speed `speed` v [m/s], 2.868 (m*²/(R* E*² v))^(1/5) [s].
+    /// Duration of the contact at relative speed `speed` v (m/s), 2.868 (m*²/(R* E*² v))^(1/5) (s).
     pub fn contact_time(&self, speed: f64) -> f64 {
         contact_time_factor() * (self.mass.powi(2) / (self.radius * self.modulus.powi(2) * speed)).powf(0.2)
     }
 }
 
 /// Factor on the force (4/3) E* √R_e δ^(3/2), R_e = √(R′R″), that Hertz's elliptical contact gives for relative radii of
-/// curvature of ratio `ratio` R′/R″ ≥ 1 [-]: F₂^(−3/2).
+/// curvature of ratio `ratio` R′/R″ ≥ 1 (-): F₂^(−3/2).
 ///
 /// With e² = 1 − (b/a)² from R′/R″ = [(a/b)² E(e) − K(e)]/[K(e) − E(e)],
 /// F₁³ = 4/(π e²) (b/a)^(3/2) {[(a/b)² E − K][K − E]}^(1/2) and F₂ = (2/π) (b/a)^(1/2) K/F₁
@@ -70,7 +70,7 @@ pub fn elliptical_factor(ratio: f64) -> f64 {
     (2.0 / PI * slim.sqrt() * k / f1).powf(-1.5)
 }
 
-/// The 2.868 of the contact time: 2 (15/16)^(2/5) ∫₀¹ dx/√(1 − x^(5/2)) [-], where the integral is
+/// The 2.868 of the contact time: 2 (15/16)^(2/5) ∫₀¹ dx/√(1 − x^(5/2)) (-), where the integral is
 /// √π Γ(7/5)/Γ(9/10) (Johnson 1985, section 11.4).
 fn contact_time_factor() -> f64 {
     const INTEGRAL: f64 = 1.471_637_592_162_353;

@@ -5,42 +5,42 @@
 /// A contact held at constant normal force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Held {
-    /// Effective shear modulus G* = [Σ(2 − ν)/G]⁻¹ [Pa].
+    /// Effective shear modulus G* = [Σ(2 − ν)/G]⁻¹ (Pa).
     pub shear_modulus: f64,
-    /// Contact radius a [m].
+    /// Contact radius a (m).
     pub radius: f64,
-    /// Normal force F_n [N].
+    /// Normal force F_n (N).
     pub normal_force: f64,
-    /// Friction coefficient μ [-].
+    /// Friction coefficient μ (-).
     pub friction: f64,
 }
 
 impl Held {
-    /// No-slip stiffness k_t = 8 G* a [N/m].
+    /// No-slip stiffness k_t = 8 G* a (N/m).
     pub fn stiffness(&self) -> f64 {
         8.0 * self.shear_modulus * self.radius
     }
 
-    /// Displacement at which the whole contact slides, δ_c = 3 μ F_n/(2 k_t) [m].
+    /// Displacement at which the whole contact slides, δ_c = 3 μ F_n/(2 k_t) (m).
     pub fn sliding_displacement(&self) -> f64 {
         1.5 * self.friction * self.normal_force / self.stiffness()
     }
 
-    /// Force of the law `mindlin` at displacement `slip` δ_t ≥ 0 [m], min(k_t δ_t, μ F_n) [N].
+    /// Force of the law `mindlin` at displacement `slip` δ_t ≥ 0 (m), min(k_t δ_t, μ F_n) (N).
     pub fn no_slip_force(&self, slip: f64) -> f64 {
         (self.stiffness() * slip).min(self.friction * self.normal_force)
     }
 
-    /// Force of the law `mindlin-deresiewicz` on first loading to `slip` δ_t ≥ 0 [m],
-    /// μ F_n [1 − (1 − δ_t/δ_c)^(3/2)] [N].
+    /// Force of the law `mindlin-deresiewicz` on first loading to `slip` δ_t ≥ 0 (m),
+    /// μ F_n [1 − (1 − δ_t/δ_c)^(3/2)] (N).
     pub fn partial_slip_force(&self, slip: f64) -> f64 {
         let left = (1.0 - slip / self.sliding_displacement()).max(0.0);
         self.friction * self.normal_force * (1.0 - left.powf(1.5))
     }
 }
 
-/// Effective shear modulus of two bodies of one material, G* = G/(2 (2 − ν)) [Pa], from `shear` G [Pa] and
-/// `poisson` ν [-].
+/// Effective shear modulus of two bodies of one material, G* = G/(2 (2 − ν)) (Pa), from `shear` G (Pa) and
+/// `poisson` ν (-).
 pub fn effective_shear_modulus(shear: f64, poisson: f64) -> f64 {
     shear / (2.0 * (2.0 - poisson))
 }

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`beam`] | cantilever, torsion bar, free vibration, Euler buckling, wave speed |
 //! | [`elastica`] | large deflection of a cantilever |
-//! | [`column`] | a column beyond its buckling load |
+//! | [`mod@column`] | a column beyond its buckling load |
 //! | [`spring`] | stiffness of an open-coiled helical spring |
 //! | [`capstan`] | a wire that slides round another |
 //! | [`helix`] | lay angle, arc length, curvature and torsion of a helical wire |

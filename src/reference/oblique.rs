@@ -12,34 +12,34 @@
 /// Spheres of one elastic material with a moment of inertia I = k² m R².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spheres {
-    /// Poisson's ratio ν [-].
+    /// Poisson's ratio ν (-).
     pub poisson: f64,
-    /// k² = I/(m R²) [-]; 2/5 for a solid sphere.
+    /// k² = I/(m R²) (-); 2/5 for a solid sphere.
     pub gyration: f64,
 }
 
 impl Spheres {
-    /// κ = 2(1 − ν)/(2 − ν), tangential over normal stiffness of the contact [-].
+    /// κ = 2(1 − ν)/(2 − ν), tangential over normal stiffness of the contact (-).
     pub fn stiffness_ratio(&self) -> f64 {
         2.0 * (1.0 - self.poisson) / (2.0 - self.poisson)
     }
 
-    /// χ = κ (1 + 1/k²)/2 [-].
+    /// χ = κ (1 + 1/k²)/2 (-).
     pub fn chi(&self) -> f64 {
         0.5 * self.stiffness_ratio() * (1.0 + 1.0 / self.gyration)
     }
 
-    /// ψ₁ from which on the whole contact slides all the time, 4χ − 1 [-].
+    /// ψ₁ from which on the whole contact slides all the time, 4χ − 1 (-).
     pub fn sliding_from(&self) -> f64 {
         4.0 * self.chi() - 1.0
     }
 
-    /// ψ₂ of rigid bodies that slide throughout, ψ₁ − 4χ [-]: friction takes μ times the normal impulse.
+    /// ψ₂ of rigid bodies that slide throughout, ψ₁ − 4χ (-): friction takes μ times the normal impulse.
     pub fn sliding(&self, psi1: f64) -> f64 {
         psi1 - 4.0 * self.chi()
     }
 
-    /// ψ₂ after an impact at ψ₁ = `psi1` ≥ 0 [-], for the elastic contact resolved by `springs` springs over its
+    /// ψ₂ after an impact at ψ₁ = `psi1` ≥ 0 (-), for the elastic contact resolved by `springs` springs over its
     /// greatest radius.
     ///
     /// In units of the greatest overlap d, of the time d/v_n and of the displacement μ d/κ: δ″ = −(5/4) δ^(3/2),
@@ -57,7 +57,7 @@ impl Spheres {
         slip_rate
     }
 
-    /// ψ₂ after an impact at ψ₁ = `psi1` ≥ 0 [-] of a contact that is one spring of the no-slip stiffness 8G*a: it sticks
+    /// ψ₂ after an impact at ψ₁ = `psi1` ≥ 0 (-) of a contact that is one spring of the no-slip stiffness 8G*a: it sticks
     /// or slides as a whole and, as the normal force falls, keeps a/a_before of its pull (the law `mindlin`, not the
     /// elastic theory). `steps` over the greatest overlap's time.
     ///
@@ -82,7 +82,7 @@ impl Spheres {
         }
     }
 
-    /// Tangential impulse over μ times the normal one, (ψ₁ − ψ₂)/(4χ) [-].
+    /// Tangential impulse over μ times the normal one, (ψ₁ − ψ₂)/(4χ) (-).
     pub fn impulse(&self, psi1: f64, psi2: f64) -> f64 {
         (psi1 - psi2) / (4.0 * self.chi())
     }

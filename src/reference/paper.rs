@@ -30,21 +30,21 @@ pub struct Paper {
 pub struct Specimen {
     /// Wires per layer, inside out.
     pub wires_per_layer: Vec<usize>,
-    /// Wire diameter [mm].
+    /// Wire diameter (mm).
     pub wire_diameter_mm: f64,
-    /// Pitch [mm].
+    /// Pitch (mm).
     pub pitch_mm: f64,
-    /// Lay radius of the outer layer [mm] (printed as a diameter; only a radius fits 18 wires).
+    /// Lay radius of the outer layer (mm) (printed as a diameter; only a radius fits 18 wires).
     pub outer_lay_radius_mm: f64,
-    /// Length [mm].
+    /// Length (mm).
     pub length_mm: f64,
-    /// Gauge length [mm].
+    /// Gauge length (mm).
     pub gauge_length_mm: f64,
-    /// Speed of the test machine [mm/min].
+    /// Speed of the test machine (mm/min).
     pub test_speed_mm_per_min: f64,
-    /// Friction coefficient [-].
+    /// Friction coefficient (-).
     pub friction: f64,
-    /// Nominal section [mm²].
+    /// Nominal section (mm²).
     pub nominal_area_mm2: f64,
 }
 
@@ -52,9 +52,9 @@ pub struct Specimen {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Strength {
-    /// Tensile strength [MPa].
+    /// Tensile strength (MPa).
     pub tensile_strength_mpa: f64,
-    /// Elongation at fracture [%].
+    /// Elongation at fracture (%).
     pub fracture_elongation_percent: f64,
 }
 
@@ -62,13 +62,13 @@ pub struct Strength {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Simulation {
-    /// Pitch [mm].
+    /// Pitch (mm).
     pub pitch_mm: f64,
-    /// Wire diameter [mm].
+    /// Wire diameter (mm).
     pub wire_diameter_mm: f64,
-    /// Tensile strength [MPa].
+    /// Tensile strength (MPa).
     pub tensile_strength_mpa: f64,
-    /// Elongation at fracture [%].
+    /// Elongation at fracture (%).
     pub fracture_elongation_percent: f64,
     /// Error against the experiment, where the paper states it.
     pub error_against_experiment_percent: Option<RelativeError>,
@@ -78,9 +78,9 @@ pub struct Simulation {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RelativeError {
-    /// Of the tensile strength [%].
+    /// Of the tensile strength (%).
     pub strength: f64,
-    /// Of the elongation at fracture [%].
+    /// Of the elongation at fracture (%).
     pub elongation: f64,
 }
 
@@ -88,9 +88,9 @@ pub struct RelativeError {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fits {
-    /// Elongation at fracture [%] over pitch [mm].
+    /// Elongation at fracture (%) over pitch (mm).
     pub elongation_over_pitch: ExponentialFit,
-    /// Elongation at fracture [%] over wire diameter [mm].
+    /// Elongation at fracture (%) over wire diameter (mm).
     pub elongation_over_diameter: ExponentialFit,
 }
 
@@ -130,7 +130,7 @@ pub struct Fracture {
 }
 
 impl Paper {
-    /// The simulation at `pitch_mm` [mm] and `wire_diameter_mm` [mm], if the paper has it.
+    /// The simulation at `pitch_mm` (mm) and `wire_diameter_mm` (mm), if the paper has it.
     pub fn simulation_at(&self, pitch_mm: f64, wire_diameter_mm: f64) -> Option<&Simulation> {
         self.simulation
             .iter()

@@ -7,29 +7,29 @@ use std::f64::consts::PI;
 /// A round section of one yield stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Section {
-    /// Radius r [m].
+    /// Radius r (m).
     pub radius: f64,
-    /// Yield stress σ_y [Pa].
+    /// Yield stress σ_y (Pa).
     pub yield_stress: f64,
 }
 
 impl Section {
-    /// Axial force at yield, N_p = σ_y π r² [N].
+    /// Axial force at yield, N_p = σ_y π r² (N).
     pub fn plastic_force(&self) -> f64 {
         self.yield_stress * PI * self.radius.powi(2)
     }
 
-    /// Fully plastic bending moment, M_p = (4/3) σ_y r³ [N m].
+    /// Fully plastic bending moment, M_p = (4/3) σ_y r³ (N m).
     pub fn plastic_moment(&self) -> f64 {
         4.0 / 3.0 * self.yield_stress * self.radius.powi(3)
     }
 
-    /// Bending moment at first yield, M_e = (π/4) σ_y r³ [N m].
+    /// Bending moment at first yield, M_e = (π/4) σ_y r³ (N m).
     pub fn first_yield_moment(&self) -> f64 {
         PI / 4.0 * self.yield_stress * self.radius.powi(3)
     }
 
-    /// Bending moment [N m] at `share` ≥ 0 times the curvature of first yield, elastic–perfectly plastic fibres.
+    /// Bending moment (N m) at `share` ≥ 0 times the curvature of first yield, elastic–perfectly plastic fibres.
     ///
     /// Fibres beyond s r from the neutral axis, s = 1/share, have yielded: integrating the stress over the section gives
     /// M = 4 σ_y r³ [(asin s − s√(1−s²)(1−2s²))/(8s) + (1−s²)^(3/2)/3], (π/4)σ_y r³ at s = 1 and (4/3)σ_y r³ at s → 0.
@@ -43,12 +43,12 @@ impl Section {
         4.0 * self.yield_stress * self.radius.powi(3) * (core + rest.powf(1.5) / 3.0)
     }
 
-    /// Fully plastic torque, T_p = (2π/3)(σ_y/√3) r³ [N m] (von Mises).
+    /// Fully plastic torque, T_p = (2π/3)(σ_y/√3) r³ (N m) (von Mises).
     pub fn plastic_torque(&self) -> f64 {
         2.0 * PI / 3.0 * self.yield_stress / 3.0_f64.sqrt() * self.radius.powi(3)
     }
 
-    /// Shear force at yield, V_p = (σ_y/√3) π r² [N] (von Mises).
+    /// Shear force at yield, V_p = (σ_y/√3) π r² (N) (von Mises).
     pub fn plastic_shear(&self) -> f64 {
         self.yield_stress / 3.0_f64.sqrt() * PI * self.radius.powi(2)
     }
@@ -58,16 +58,16 @@ impl Section {
 /// by the yield surface (N/N_p)² + |M|/M_p + (T/T_p)² = 1 with the associated flow rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flow {
-    /// Bending moment M [N m].
+    /// Bending moment M (N m).
     pub moment: f64,
-    /// Torque T [N m].
+    /// Torque T (N m).
     pub torque: f64,
-    /// Plastic elongation per bending angle [m/rad]; per angle of twist where it is only twisted.
+    /// Plastic elongation per bending angle (m/rad); per angle of twist where it is only twisted.
     pub elongation: f64,
 }
 
 impl Section {
-    /// Plastic flow under `axial` N [N] with `twist` ≥ 0 radians of torsion per radian of bending [-]; infinite
+    /// Plastic flow under `axial` N (N) with `twist` ≥ 0 radians of torsion per radian of bending (-); infinite
     /// where it is only twisted.
     ///
     /// Normality: u′ : θ′ : φ′ = 2N/N_p² : 1/M_p : 2T/T_p². So T = T_p² φ′/(2 M_p θ′) while that leaves room for a
@@ -85,7 +85,7 @@ impl Section {
         Flow { moment, torque, elongation }
     }
 
-    /// Bending moment [N m] at which every fibre yields in tension or compression under `axial` N ≥ 0 [N]: the exact
+    /// Bending moment (N m) at which every fibre yields in tension or compression under `axial` N ≥ 0 (N): the exact
     /// limit of a round section, N/N_p = (2/π)(θ + sin θ cos θ), M/M_p = cos³θ.
     pub fn exact_moment(&self, axial: f64) -> f64 {
         let share = axial / self.plastic_force();
@@ -97,20 +97,20 @@ impl Section {
 /// One point of a uniform tension test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TensionPoint {
-    /// True plastic strain p [-].
+    /// True plastic strain p (-).
     pub plastic_strain: f64,
-    /// True stress σ_y(p) [Pa].
+    /// True stress σ_y(p) (Pa).
     pub true_stress: f64,
-    /// True (logarithmic) strain ε = p + σ/E [-].
+    /// True (logarithmic) strain ε = p + σ/E (-).
     pub true_strain: f64,
-    /// Engineering strain e^ε − 1 [-].
+    /// Engineering strain e^ε − 1 (-).
     pub engineering_strain: f64,
-    /// Engineering stress σ e^(−p), force over initial area [Pa].
+    /// Engineering stress σ e^(−p), force over initial area (Pa).
     pub engineering_stress: f64,
 }
 
-/// The point of uniform tension at true plastic strain `plastic_strain` p [-] with true stress `stress` σ_y(p) [Pa]
-/// and Young's modulus `young` E [Pa].
+/// The point of uniform tension at true plastic strain `plastic_strain` p (-) with true stress `stress` σ_y(p) (Pa)
+/// and Young's modulus `young` E (Pa).
 ///
 /// The area is A₀ e^(−p): plastic flow keeps the volume, elastic contraction is left out, as in the bonds (physics
 /// page, section 3). Counting the elastic strain too, σ e^(−ε), is lower by the factor e^(−σ/E), 0.3 % for copper.
@@ -125,7 +125,7 @@ pub fn tension_point(plastic_strain: f64, stress: f64, young: f64) -> TensionPoi
     }
 }
 
-/// The point of uniform tension at engineering strain `strain` [-], for a hardening law `stress` σ_y(p) [Pa] that does
+/// The point of uniform tension at engineering strain `strain` (-), for a hardening law `stress` σ_y(p) (Pa) that does
 /// not fall; below yield the wire is elastic (p = 0, σ = E ε).
 pub fn tension_at(strain: f64, stress: impl Fn(f64) -> f64, young: f64) -> TensionPoint {
     let true_strain = strain.ln_1p();
@@ -137,10 +137,10 @@ pub fn tension_at(strain: f64, stress: impl Fn(f64) -> f64, young: f64) -> Tensi
     tension_point(p, stress(p), young)
 }
 
-/// Least plastic strain [-] in `0..=limit` at which dσ/dp has fallen to σ, so that the tension force stops growing and
+/// Least plastic strain (-) in `0..=limit` at which dσ/dp has fallen to σ, so that the tension force stops growing and
 /// a neck can form; `None` when the wire strains uniformly up to `limit`.
 ///
-/// `stress` is σ_y(p) [Pa], `slope` its derivative [Pa]. With the area A₀ e^(−p) the force σ A₀ e^(−p) peaks where
+/// `stress` is σ_y(p) (Pa), `slope` its derivative (Pa). With the area A₀ e^(−p) the force σ A₀ e^(−p) peaks where
 /// dσ/dp = σ (Considère 1885).
 pub fn considere_strain(stress: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64, limit: f64) -> Option<f64> {
     // A law may harden anew, so the first crossing is looked for in pieces before it is refined.

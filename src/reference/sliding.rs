@@ -1,13 +1,13 @@
 //! A solid sphere thrown to slide on a fixed plane under constant normal force: friction slows it and spins it up
 //! until it rolls. Source: Timoshenko & Young, *Advanced Dynamics*, 1948 (the billiard ball).
 
-/// Time from which the sphere rolls, 2 v₀/(7 μ g′) [s], thrown at `speed` v₀ [m/s] without spin, with friction
-/// coefficient `friction` μ [-] and normal acceleration `acceleration` g′ = F_n/m [m/s²].
+/// Time from which the sphere rolls, 2 v₀/(7 μ g′) (s), thrown at `speed` v₀ (m/s) without spin, with friction
+/// coefficient `friction` μ (-) and normal acceleration `acceleration` g′ = F_n/m (m/s²).
 pub fn rolling_start(speed: f64, friction: f64, acceleration: f64) -> f64 {
     2.0 * speed / (7.0 * friction * acceleration)
 }
 
-/// Speed from then on, (5/7) v₀ [m/s].
+/// Speed from then on, (5/7) v₀ (m/s).
 pub fn rolling_speed(speed: f64) -> f64 {
     5.0 / 7.0 * speed
 }

@@ -14,9 +14,9 @@ use std::f64::consts::TAU;
 pub struct Spring {
     /// Wire.
     pub wire: RoundBar,
-    /// Radius R of the helix [m].
+    /// Radius R of the helix (m).
     pub radius: f64,
-    /// Pitch h [m].
+    /// Pitch h (m).
     pub pitch: f64,
 }
 
@@ -29,12 +29,12 @@ struct Compliance {
 }
 
 impl Spring {
-    /// Number of turns n [-].
+    /// Number of turns n (-).
     pub fn turns(&self) -> f64 {
         self.wire.length / (TAU * self.radius).hypot(self.pitch)
     }
 
-    /// Stiffness of the close-coiled spring, G d⁴/(8 D³ n) [N/m].
+    /// Stiffness of the close-coiled spring, G d⁴/(8 D³ n) (N/m).
     pub fn close_coiled(&self) -> f64 {
         let diameter = 2.0 * self.radius;
         self.wire.shear_modulus() * self.wire.diameter.powi(4) / (8.0 * diameter.powi(3) * self.turns())
@@ -56,7 +56,7 @@ impl Spring {
         (self.pitch / turn, TAU * self.radius / turn)
     }
 
-    /// Stiffness of many turns under a force along the axis, ends free to turn about it [N/m]: torque F R cos α and
+    /// Stiffness of many turns under a force along the axis, ends free to turn about it (N/m): torque F R cos α and
     /// bending moment F R sin α everywhere, with axial force F sin α and shear F cos α.
     pub fn central_free(&self) -> f64 {
         let (c, (s, k)) = (self.compliance(), self.rise());
@@ -65,7 +65,7 @@ impl Spring {
         1.0 / (self.wire.length * per_length)
     }
 
-    /// The same with ends that cannot turn [N/m]: the couple M about the axis that keeps them is there too, torque
+    /// The same with ends that cannot turn (N/m): the couple M about the axis that keeps them is there too, torque
     /// F R cos α + M sin α and bending moment F R sin α − M cos α.
     pub fn central_held(&self) -> f64 {
         let (c, (s, k)) = (self.compliance(), self.rise());
@@ -75,7 +75,7 @@ impl Spring {
     }
 
     /// Stiffness with one end clamped and the other moved along the axis without any other displacement or rotation
-    /// [N/m]; with `free`, it may turn about the axis as a rigid body.
+    /// (N/m); with `free`, it may turn about the axis as a rigid body.
     ///
     /// The 6 × 6 compliance at the axis is Castigliano's, ∫ of the section's compliances along the wire (Simpson). It
     /// counts the lateral forces and couples that clamps add to the central force of [`Spring::central_held`].

@@ -20,8 +20,8 @@ pub enum Ends {
     FixedFreeHalf,
 }
 
-/// Greatest angular frequency [rad/s] of a chain of `masses` ≥ 1 moving masses of `mass` [kg] (≥ 2 for a chain
-/// without a wall) and springs of `stiffness` [N/m].
+/// Greatest angular frequency (rad/s) of a chain of `masses` ≥ 1 moving masses of `mass` (kg) (≥ 2 for a chain
+/// without a wall) and springs of `stiffness` (N/m).
 ///
 /// ω = 2 √(k/m) sin(q/2) with the greatest admissible phase q per spring.
 pub fn greatest_frequency(ends: Ends, masses: usize, stiffness: f64, mass: f64) -> f64 {
@@ -36,12 +36,12 @@ pub fn greatest_frequency(ends: Ends, masses: usize, stiffness: f64, mass: f64) 
     2.0 * (stiffness / mass).sqrt() * (0.5 * phase).sin()
 }
 
-/// Critical step 2/ω_max [s]; see [`greatest_frequency`].
+/// Critical step 2/ω_max (s); see [`greatest_frequency`].
 pub fn critical_step(ends: Ends, masses: usize, stiffness: f64, mass: f64) -> f64 {
     2.0 / greatest_frequency(ends, masses, stiffness, mass)
 }
 
-/// Limit of the critical step for a long chain, √(m/k) [s].
+/// Limit of the critical step for a long chain, √(m/k) (s).
 pub fn critical_step_of_long_chain(stiffness: f64, mass: f64) -> f64 {
     (mass / stiffness).sqrt()
 }

@@ -20,13 +20,13 @@ use std::f64::consts::FRAC_PI_4;
 pub struct Layer {
     /// Number of wires n.
     pub wires: usize,
-    /// Wire diameter d [m].
+    /// Wire diameter d (m).
     pub diameter: f64,
-    /// Lay radius R [m]; 0 for a core wire.
+    /// Lay radius R (m); 0 for a core wire.
     pub radius: f64,
-    /// Pitch h [m]; infinite when straight.
+    /// Pitch h (m); infinite when straight.
     pub pitch: f64,
-    /// Lay direction s [-]: +1 right, −1 left. It turns the torque only.
+    /// Lay direction s (-): +1 right, −1 left. It turns the torque only.
     pub lay: f64,
 }
 
@@ -44,20 +44,20 @@ pub enum Wire {
 /// What a strand carries per unit of its strain, ends held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wrench {
-    /// Axial force over strain [N].
+    /// Axial force over strain (N).
     pub force: f64,
-    /// Torque about the axis over strain, positive where right lay would untwist [N m].
+    /// Torque about the axis over strain, positive where right lay would untwist (N m).
     pub torque: f64,
 }
 
 impl Layer {
-    /// Lay angle β [rad].
+    /// Lay angle β (rad).
     pub fn lay_angle(&self) -> f64 {
         lay_angle(self.radius, self.pitch)
     }
 
-    /// What the layer's wires carry per unit of strand strain when each responds by `response`. `young` is E [Pa],
-    /// `poisson` ν [-].
+    /// What the layer's wires carry per unit of strand strain when each responds by `response`. `young` is E (Pa),
+    /// `poisson` ν (-).
     pub fn wrench(&self, response: Response, young: f64, poisson: f64, wire: Wire) -> Wrench {
         let stiffness = young * self.area();
         let tension = stiffness * response.strain;
@@ -86,7 +86,7 @@ impl Layer {
         }
     }
 
-    /// Section of all its wires [m²].
+    /// Section of all its wires (m²).
     fn area(&self) -> f64 {
         FRAC_PI_4 * self.weight()
     }
@@ -97,27 +97,27 @@ impl Layer {
     }
 }
 
-/// Exact axial strain of a helical wire, √((1 + ε)² cos²β + (R′/R)² sin²β) − 1 [-], when the strand is stretched by
-/// `strain` ε [-] without turning and the lay radius becomes R′ = `contraction` R ([-], 1 when the radius stays).
-/// `lay_angle` is β [rad].
+/// Exact axial strain of a helical wire, √((1 + ε)² cos²β + (R′/R)² sin²β) − 1 (-), when the strand is stretched by
+/// `strain` ε (-) without turning and the lay radius becomes R′ = `contraction` R ((-), 1 when the radius stays).
+/// `lay_angle` is β (rad).
 pub fn wire_strain(strain: f64, lay_angle: f64, contraction: f64) -> f64 {
     let along = (1.0 + strain) * lay_angle.cos();
     let around = contraction * lay_angle.sin();
     along.hypot(around) - 1.0
 }
 
-/// E_strand/E when the lay radii stay: Σ n A cos³β/Σ n A [-] (Hruska 1951).
+/// E_strand/E when the lay radii stay: Σ n A cos³β/Σ n A (-) (Hruska 1951).
 pub fn stiffness_factor(layers: &[Layer]) -> f64 {
     mean_over_section(layers, |_, layer| layer.lay_angle().cos().powi(3))
 }
 
-/// E_strand/E when wires thin by Poisson's ratio `poisson` ν [-] and each layer, listed from the inside out, rests on
-/// the one below; the wires' own bending and torsion are counted as the textbook does [-] (Costello 1997, chapter 3).
+/// E_strand/E when wires thin by Poisson's ratio `poisson` ν (-) and each layer, listed from the inside out, rests on
+/// the one below; the wires' own bending and torsion are counted as the textbook does (-) (Costello 1997, chapter 3).
 pub fn stiffness_factor_contracting(layers: &[Layer], poisson: f64) -> f64 {
     elastic(layers, 1.0, poisson, Wire::Inextensible).force / area(layers)
 }
 
-/// Stiffness of an elastic strand of one material whose ends are held: `young` E [Pa], `poisson` ν [-], layers from the
+/// Stiffness of an elastic strand of one material whose ends are held: `young` E (Pa), `poisson` ν (-), layers from the
 /// inside out, each resting on the one below.
 ///
 /// [`Wire::Extensible`] is what a strand should show; the textbook's formula gives 4 to 5 % less torque.
@@ -130,13 +130,13 @@ pub fn elastic(layers: &[Layer], young: f64, poisson: f64, wire: Wire) -> Wrench
     })
 }
 
-/// Section of all wires [m²].
+/// Section of all wires (m²).
 pub fn area(layers: &[Layer]) -> f64 {
     layers.iter().map(Layer::area).sum()
 }
 
-/// Strain of the strand [-], pulled with ends held, at which layers that lie apart have come to rest on each other: until
-/// then a loose layer follows the pull by closing in and hardly carries. `gaps` are the radial gaps below each layer [m],
+/// Strain of the strand (-), pulled with ends held, at which layers that lie apart have come to rest on each other: until
+/// then a loose layer follows the pull by closing in and hardly carries. `gaps` are the radial gaps below each layer (m),
 /// from the inside out, 0 where it rests on what is below.
 ///
 /// A wire that carries nothing keeps its length, ε cos²β = −(ΔR/R) sin²β, and a layer moves in by its own gap and all
@@ -153,9 +153,9 @@ pub fn closing_strain(layers: &[Layer], gaps: &[f64]) -> f64 {
 /// What a layer's wires do per unit of strand strain, ends not turning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
-    /// Axial strain of a wire [-].
+    /// Axial strain of a wire (-).
     pub strain: f64,
-    /// Relative change of the lay radius, ΔR/R [-]; 0 for a core wire.
+    /// Relative change of the lay radius, ΔR/R (-); 0 for a core wire.
     pub radius: f64,
 }
 
@@ -187,12 +187,12 @@ pub fn contracting_responses(layers: &[Layer], poisson: f64) -> Vec<Response> {
         .collect()
 }
 
-/// Nominal strength of the strand over that of its wires when all of them reach it together: Σ n A cos β/Σ n A [-].
+/// Nominal strength of the strand over that of its wires when all of them reach it together: Σ n A cos β/Σ n A (-).
 pub fn strength_factor(layers: &[Layer]) -> f64 {
     mean_over_section(layers, |_, layer| layer.lay_angle().cos())
 }
 
-/// Strain of the strand [-] at which the most strained of its wires is stretched by `wire` [-], its elongation at fracture,
+/// Strain of the strand (-) at which the most strained of its wires is stretched by `wire` (-), its elongation at fracture,
 /// when the strand keeps its volume, so that lay radii go as 1/√(1 + ε), and does not turn.
 pub fn elongation(layers: &[Layer], wire: f64) -> f64 {
     let greatest = |strain: f64| {
@@ -273,7 +273,7 @@ mod tests {
         assert!((plain - beta.cos().powi(2)).abs() < 1e-6);
     }
 
-    /// Seven wires, a core and six, by diameters and pitch [mm].
+    /// Seven wires, a core and six, by diameters and pitch (mm).
     fn seven(core: f64, helical: f64, pitch: f64) -> [Layer; 2] {
         let layer = |wires, diameter: f64, radius: f64, pitch: f64| Layer {
             wires,
@@ -286,7 +286,7 @@ mod tests {
     }
 
     /// Strands of the literature (Utting & Jones 1987, Costello's example, Ghoreishi et al. 2007, Jiang et al. 1999):
-    /// force [N] and, where it is known, torque by the textbook and by the extensible rod [N m] at a strain.
+    /// force (N) and, where it is known, torque by the textbook and by the extensible rod (N m) at a strain.
     #[test]
     fn strands_with_known_answers() {
         let inch = 25.4;

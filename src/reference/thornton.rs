@@ -5,24 +5,24 @@
 use crate::reference::hertz::Pair;
 use std::f64::consts::PI;
 
-/// Overlap at which a contact yields, δ_y = (π p_y/(2 E*))² R* [m], for limiting pressure `pressure` p_y [Pa].
+/// Overlap at which a contact yields, δ_y = (π p_y/(2 E*))² R* (m), for limiting pressure `pressure` p_y (Pa).
 pub fn yield_overlap(pair: &Pair, pressure: f64) -> f64 {
     (PI * pressure / (2.0 * pair.modulus)).powi(2) * pair.radius
 }
 
-/// Force at which a contact yields, F_y = π³ R*² p_y³/(6 E*²) [N].
+/// Force at which a contact yields, F_y = π³ R*² p_y³/(6 E*²) (N).
 pub fn yield_force(pair: &Pair, pressure: f64) -> f64 {
     PI.powi(3) * pair.radius.powi(2) * pressure.powi(3) / (6.0 * pair.modulus.powi(2))
 }
 
-/// Greatest approach speed that stays elastic, V_y = (π/(2 E*))² (8 π R*³/(15 m*))^(1/2) p_y^(5/2) [m/s].
+/// Greatest approach speed that stays elastic, V_y = (π/(2 E*))² (8 π R*³/(15 m*))^(1/2) p_y^(5/2) (m/s).
 pub fn yield_velocity(pair: &Pair, pressure: f64) -> f64 {
     (PI / (2.0 * pair.modulus)).powi(2)
         * (8.0 * PI * pair.radius.powi(3) / (15.0 * pair.mass)).sqrt()
         * pressure.powf(2.5)
 }
 
-/// Coefficient of restitution at V/V_y = `ratio` [-]; 1 up to a ratio of 1.
+/// Coefficient of restitution at V/V_y = `ratio` (-); 1 up to a ratio of 1.
 ///
 /// e = (6√3/5)^(1/2) (1 − x²/6)^(1/2) [x/(x + 2√(6/5 − x²/5))]^(1/4) with x = V_y/V.
 pub fn restitution(ratio: f64) -> f64 {
@@ -34,20 +34,20 @@ pub fn restitution(ratio: f64) -> f64 {
     (1.2 * 3.0_f64.sqrt()).sqrt() * (1.0 - x * x / 6.0).sqrt() * rebound.powf(0.25)
 }
 
-/// Radius of the dent, R_p = (4E*/3F_m) [(2F_m + F_y)/(2π p_y)]^(3/2) [m], and the overlap that it leaves,
-/// δ_p = δ_m − (3F_m/(4E* √R_p))^(2/3) [m], after loading to `force` F_m [N] at `overlap` δ_m [m].
+/// Radius of the dent, R_p = (4E*/3F_m) [(2F_m + F_y)/(2π p_y)]^(3/2) (m), and the overlap that it leaves,
+/// δ_p = δ_m − (3F_m/(4E* √R_p))^(2/3) (m), after loading to `force` F_m (N) at `overlap` δ_m (m).
 fn dent(pair: &Pair, pressure: f64, overlap: f64, force: f64) -> (f64, f64) {
     let bracket = (2.0 * force + yield_force(pair, pressure)) / (2.0 * PI * pressure);
     let radius = 4.0 * pair.modulus / (3.0 * force) * bracket.powf(1.5);
     (radius, overlap - (3.0 * force / (4.0 * pair.modulus * radius.sqrt())).powf(2.0 / 3.0))
 }
 
-/// Force on the plastic line, F_y + π p_y R* (δ − δ_y) [N].
+/// Force on the plastic line, F_y + π p_y R* (δ − δ_y) (N).
 fn plastic_line(pair: &Pair, pressure: f64, overlap: f64) -> f64 {
     yield_force(pair, pressure) + PI * pressure * pair.radius * (overlap - yield_overlap(pair, pressure))
 }
 
-/// Force [N] at `overlap` δ [m] of a contact whose greatest overlap so far is `greatest` δ_m ≥ δ [m], however often it
+/// Force (N) at `overlap` δ (m) of a contact whose greatest overlap so far is `greatest` δ_m ≥ δ (m), however often it
 /// was unloaded and loaded again in between: Hertz's curve below yield, the plastic line at δ = δ_m, and below it
 /// (4/3) E* √R_p (δ − δ_p)^(3/2).
 pub fn force(pair: &Pair, pressure: f64, greatest: f64, overlap: f64) -> f64 {
@@ -58,7 +58,7 @@ pub fn force(pair: &Pair, pressure: f64, greatest: f64, overlap: f64) -> f64 {
     Pair { radius, ..*pair }.force((overlap - residual).max(0.0))
 }
 
-/// Energy that a contact has dissipated when it was loaded to `greatest` δ_m [m], however often [J]: the work of loading
+/// Energy that a contact has dissipated when it was loaded to `greatest` δ_m (m), however often (J): the work of loading
 /// less what the curve of unloading gives back, (2/5) F_m (δ_m − δ_p).
 pub fn dissipated(pair: &Pair, pressure: f64, greatest: f64) -> f64 {
     let (start, start_force) = (yield_overlap(pair, pressure), yield_force(pair, pressure));

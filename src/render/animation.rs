@@ -15,12 +15,12 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// How long a picture is shown [ms]. The pictures lie denser around ruptures, so that there the same pace is slow
+/// How long a picture is shown (ms). The pictures lie denser around ruptures, so that there the same pace is slow
 /// motion.
 const SHOWN: u32 = 70;
-/// How long the first picture after a rupture is shown [ms].
+/// How long the first picture after a rupture is shown (ms).
 const PAUSE: u32 = 500;
-/// How long the last picture is shown before it begins again [ms].
+/// How long the last picture is shown before it begins again (ms).
 const END: u32 = 2500;
 
 /// The file formats.
@@ -39,7 +39,7 @@ pub struct AnimationOptions {
 }
 
 impl AnimationOptions {
-    /// `file` ends in `.gif`, `.png` or `.apng`; `width` [px] makes it smaller than the pictures.
+    /// `file` ends in `.gif`, `.png` or `.apng`; `width` (px) makes it smaller than the pictures.
     ///
     /// # Errors
     /// [`Error::Input`] for another ending.
@@ -71,7 +71,7 @@ pub struct Still {
     pub pause: bool,
 }
 
-/// Makes the animation of `stills`; nothing when there are none. Returns its size [bytes].
+/// Makes the animation of `stills`; nothing when there are none. Returns its size (bytes).
 ///
 /// # Errors
 /// [`Error::Io`] when a picture cannot be read or the file not be written.
@@ -107,7 +107,7 @@ impl Pictures<'_> {
         self.stills.len()
     }
 
-    /// Each picture, made smaller where that is asked for, and how long it is shown [ms].
+    /// Each picture, made smaller where that is asked for, and how long it is shown (ms).
     fn iter(&self) -> impl Iterator<Item = Result<(RgbImage, u32)>> + '_ {
         let last = self.stills.len() - 1;
         self.stills.iter().enumerate().map(move |(i, still)| {
@@ -133,7 +133,7 @@ impl Pictures<'_> {
     }
 }
 
-/// A part of a picture: left, top, width, height [px].
+/// A part of a picture: left, top, width, height (px).
 type Part = [u32; 4];
 
 /// The least part that holds every pixel that differs; a corner pixel when none does, because a picture must show

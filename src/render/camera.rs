@@ -8,31 +8,31 @@ use glam::{Mat3, Vec3};
 pub struct Camera {
     /// World axes to view axes: x right, y up, z towards the eye.
     pub rotation: Mat3,
-    /// The point in the middle of the panel [mm].
+    /// The point in the middle of the panel (mm).
     pub centre: Vec3,
-    /// The panel [px].
+    /// The panel (px).
     pub panel: Rect,
-    /// Magnification [px/mm].
+    /// Magnification (px/mm).
     pub scale: f32,
-    /// Half of the depth that is drawn [mm].
+    /// Half of the depth that is drawn (mm).
     pub depth: f32,
 }
 
 impl Camera {
     /// Rotation of an eye that sees the strand's axis z to the right and y up, turned by `azimuth_deg` about the
-    /// vertical and by `elevation_deg` about the horizontal [°].
+    /// vertical and by `elevation_deg` about the horizontal (°).
     pub fn orientation(azimuth_deg: f32, elevation_deg: f32) -> Mat3 {
         // Rows are the view axes in world coordinates: right = z, up = y, towards the eye = right × up = −x.
         let base = Mat3::from_cols(Vec3::new(0.0, 0.0, -1.0), Vec3::Y, Vec3::X);
         Mat3::from_rotation_x(elevation_deg.to_radians()) * Mat3::from_rotation_y(azimuth_deg.to_radians()) * base
     }
 
-    /// View coordinates of a point [mm], relative to the centre.
+    /// View coordinates of a point (mm), relative to the centre.
     pub fn to_view(&self, p: Vec3) -> Vec3 {
         self.rotation * (p - self.centre)
     }
 
-    /// Whether a piece of wire between two spheres (centre and radius [mm]) can reach into the panel.
+    /// Whether a piece of wire between two spheres (centre and radius (mm)) can reach into the panel.
     pub fn sees(&self, a: [f32; 4], b: [f32; 4]) -> bool {
         let reach = a[3].max(b[3]) + 2.0 / self.scale;
         let [a, b] = [a, b].map(|p| self.to_view(Vec3::new(p[0], p[1], p[2])));

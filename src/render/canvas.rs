@@ -8,33 +8,33 @@ use image::RgbImage;
 /// A rectangle in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rect {
-    /// Left edge [px].
+    /// Left edge (px).
     pub x: f32,
-    /// Top edge [px].
+    /// Top edge (px).
     pub y: f32,
-    /// Width [px].
+    /// Width (px).
     pub w: f32,
-    /// Height [px].
+    /// Height (px).
     pub h: f32,
 }
 
 impl Rect {
-    /// A rectangle from its corner and size [px].
+    /// A rectangle from its corner and size (px).
     pub fn new(x: f32, y: f32, w: f32, h: f32) -> Self {
         Self { x, y, w, h }
     }
 
-    /// Right edge [px].
+    /// Right edge (px).
     pub fn right(&self) -> f32 {
         self.x + self.w
     }
 
-    /// Bottom edge [px].
+    /// Bottom edge (px).
     pub fn bottom(&self) -> f32 {
         self.y + self.h
     }
 
-    /// The rectangle without margins left, top, right and bottom [px].
+    /// The rectangle without margins left, top, right and bottom (px).
     pub fn inset(&self, left: f32, top: f32, right: f32, bottom: f32) -> Self {
         Self::new(self.x + left, self.y + top, self.w - left - right, self.h - top - bottom)
     }
@@ -74,7 +74,7 @@ pub enum Align {
 /// How a text looks.
 #[derive(Debug, Clone, Copy)]
 pub struct Type {
-    /// Height of an em [px].
+    /// Height of an em (px).
     pub size: f32,
     /// Weight.
     pub weight: Weight,
@@ -108,12 +108,12 @@ impl Fonts {
         }
     }
 
-    /// Width of a text [px].
+    /// Width of a text (px).
     pub fn width(&self, text: &str, size: f32, weight: Weight) -> f32 {
         self.layout(text, size, weight, |_, _| ())
     }
 
-    /// Calls `place(glyph, x)` for every character and returns the width [px]. Figures all get the width of a zero,
+    /// Calls `place(glyph, x)` for every character and returns the width (px). Figures all get the width of a zero,
     /// so that numbers do not dance from frame to frame.
     fn layout(&self, text: &str, size: f32, weight: Weight, mut place: impl FnMut(ab_glyph::GlyphId, f32)) -> f32 {
         let font = self.get(weight);
@@ -150,7 +150,7 @@ pub struct Canvas<'a> {
     pub image: RgbImage,
     /// Fonts.
     pub fonts: &'a Fonts,
-    /// Size of a layout pixel [px]: 1 for a frame of 720 lines, 3 for 2160.
+    /// Size of a layout pixel (px): 1 for a frame of 720 lines, 3 for 2160.
     pub unit: f32,
 }
 
@@ -248,7 +248,7 @@ impl Canvas<'_> {
         }
     }
 
-    /// Writes a text with its baseline at `y`; returns its width [px].
+    /// Writes a text with its baseline at `y`; returns its width (px).
     pub fn text(&mut self, x: f32, y: f32, kind: Type, text: &str) -> f32 {
         let width = self.fonts.width(text, kind.size, kind.weight);
         let start = x - width * share(kind.align);

@@ -18,7 +18,7 @@ const PALETTE: [Rgb; 9] = [
     [120, 90, 180],
 ];
 
-/// Where in its map a range starts [-]. The very darkest colours would vanish before a dark ground.
+/// Where in its map a range starts (-). The very darkest colours would vanish before a dark ground.
 pub const DARKEST: f64 = 0.1;
 
 /// A quantity, its fixed range and its colours.
@@ -77,7 +77,7 @@ impl ColourScale {
         }
     }
 
-    /// Colour at `fraction` of the range [-], clamped to 0–1; grey for categories.
+    /// Colour at `fraction` of the range (-), clamped to 0–1; grey for categories.
     pub fn at(&self, fraction: f64) -> Rgb {
         let Some(map) = self.map else {
             return [128; 3];
@@ -152,7 +152,7 @@ pub fn desaturated(colour: Rgb) -> Rgb {
     [r, g, b].map(|v| (metal + 0.12 * (v - grey)).round().clamp(0.0, 255.0) as u8)
 }
 
-/// sRGB byte to linear light (IEC 61966-2-1) [-].
+/// sRGB byte to linear light (IEC 61966-2-1) (-).
 pub fn linear(byte: u8) -> f32 {
     let v = f32::from(byte) / 255.0;
     if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }

@@ -7,7 +7,7 @@ use super::style::Rgb;
 use super::viewpoint;
 use crate::engine::view::{BondState, WireInfo};
 
-/// Draws the panel: the cut at what was `rest_z` before loading [mm], looking down from the upper grip.
+/// Draws the panel: the cut at what was `rest_z` before loading (mm), looking down from the upper grip.
 pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data, rest_z: f32) {
     let u = canvas.unit;
     canvas.fill(panel, data.style.panel, 1.0);

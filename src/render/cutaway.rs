@@ -12,21 +12,21 @@ use super::viewpoint::{self, Body};
 use crate::engine::view::{RunInfo, Rupture};
 use glam::Vec3;
 
-/// Turn of the eye from the plain side view, so that cut faces are seen [°]: about the vertical and the horizontal.
+/// Turn of the eye from the plain side view, so that cut faces are seen (°): about the vertical and the horizontal.
 const TURN: [f32; 2] = [-24.0, 12.0];
-/// Half the length of the opening over the body's radius [-]: of the layer next to the innermost, and what each
+/// Half the length of the opening over the body's radius (-): of the layer next to the innermost, and what each
 /// layer further out has more.
 const HALF_LENGTH: [f32; 2] = [1.0, 1.15];
-/// Where the opening begins in the layer that broke first, over the body's radius [-]: beside the break, so that the
+/// Where the opening begins in the layer that broke first, over the body's radius (-): beside the break, so that the
 /// break is seen; and by how much later in each layer further in.
 const BESIDE: [f32; 2] = [0.35, 0.8];
-/// By how much the opening ends earlier in each layer further in, over the body's radius [-], where it lies beside.
+/// By how much the opening ends earlier in each layer further in, over the body's radius (-), where it lies beside.
 const STEP: f32 = 0.45;
-/// Half the angle of the opening about the eye's direction [°]: of the outermost layer, and what each layer further
+/// Half the angle of the opening about the eye's direction (°): of the outermost layer, and what each layer further
 /// in has less.
 const HALF_ANGLE: [f32; 2] = [80.0, 12.0];
 
-/// Camera on the section that is now at `z` [mm], wide enough for the whole opening.
+/// Camera on the section that is now at `z` (mm), wide enough for the whole opening.
 pub fn camera(info: &RunInfo, body: &Body, options: &CameraOptions, panel: Rect, z: f32) -> Camera {
     let turned = CameraOptions {
         azimuth_deg: options.azimuth_deg + TURN[0],
@@ -44,7 +44,7 @@ fn stretch(info: &RunInfo) -> f32 {
     info.strain_end.unwrap_or(viewpoint::UNKNOWN_STRAIN) as f32
 }
 
-/// Half the length of the opening in a layer [mm]; 0 for the innermost, which stays whole.
+/// Half the length of the opening in a layer (mm); 0 for the innermost, which stays whole.
 fn half_length(layer: usize, body: &Body) -> f32 {
     match layer {
         0 => 0.0,
@@ -52,7 +52,7 @@ fn half_length(layer: usize, body: &Body) -> f32 {
     }
 }
 
-/// Where each layer is open, from and to, about the section in view [mm before loading]. Layers outside `first`, the
+/// Where each layer is open, from and to, about the section in view (mm before loading). Layers outside `first`, the
 /// layer that broke first, are open around the section; from that layer inwards they are open beside it.
 fn intervals(body: &Body, first: Option<usize>) -> Vec<[f32; 2]> {
     let count = body.layer_radius.len();
@@ -69,7 +69,7 @@ fn intervals(body: &Body, first: Option<usize>) -> Vec<[f32; 2]> {
     (0..count).map(one).collect()
 }
 
-/// An opening around what was at `rest_z` before loading [mm], towards the eye of a camera.
+/// An opening around what was at `rest_z` before loading (mm), towards the eye of a camera.
 pub struct Opening<'a> {
     info: &'a RunInfo,
     body: &'a Body,
@@ -88,7 +88,7 @@ impl<'a> Opening<'a> {
         Self { info: data.info, body: data.body, rest_z, intervals, eye }
     }
 
-    /// Whether `layer` is cut off at a place before loading [mm].
+    /// Whether `layer` is cut off at a place before loading (mm).
     fn opens(&self, layer: usize, rest: [f32; 3]) -> bool {
         let across = Vec3::new(rest[0], rest[1], 0.0) - self.body.axis;
         let inwards = self.info.layers.len().saturating_sub(1 + layer) as f32;
@@ -152,7 +152,7 @@ fn names<'a>(data: &Data<'a>) -> impl Iterator<Item = &'a str> {
     info.layers.iter().rev().map(String::as_str)
 }
 
-/// A point on the ledge that each layer shows on the left [px], outermost first.
+/// A point on the ledge that each layer shows on the left (px), outermost first.
 fn ledges(data: &Data, camera: &Camera, opening: &Opening) -> Vec<[f32; 2]> {
     let count = data.info.layers.len();
     (0..count)

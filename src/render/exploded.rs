@@ -8,10 +8,10 @@ use super::style::CameraOptions;
 use super::viewpoint::Body;
 use glam::Vec3;
 
-/// Space between layers over the body's radius [-].
+/// Space between layers over the body's radius (-).
 const SPACE: f32 = 0.62;
 
-/// How far each layer is moved up in the picture [mm], outermost on top, and the total height of the stack [mm].
+/// How far each layer is moved up in the picture (mm), outermost on top, and the total height of the stack (mm).
 pub fn lifts(body: &Body) -> (Vec<f32>, f32) {
     let space = SPACE * body.radius;
     let height = body.layer_radius.iter().map(|r| 2.0 * r + space).sum::<f32>();
@@ -24,7 +24,7 @@ pub fn lifts(body: &Body) -> (Vec<f32>, f32) {
     (body.layer_radius.iter().map(lift).collect(), height)
 }
 
-/// Positions with every layer moved to its place [mm].
+/// Positions with every layer moved to its place (mm).
 pub fn positions(data: &Data, lifts: &[f32], camera: &Camera) -> Vec<[f32; 3]> {
     let up = camera.rotation.transpose() * Vec3::Y;
     let mut position = data.snapshot.position.clone();
@@ -37,7 +37,7 @@ pub fn positions(data: &Data, lifts: &[f32], camera: &Camera) -> Vec<[f32; 3]> {
     position
 }
 
-/// Camera on the section at `z` [mm] that holds the whole stack; `turn_deg` is added to the elevation.
+/// Camera on the section at `z` (mm) that holds the whole stack; `turn_deg` is added to the elevation.
 pub fn camera(body: &Body, options: &CameraOptions, panel: Rect, unit: f32, z: f32, turn_deg: f32) -> Camera {
     // The title needs room above, the scale bar below.
     let (above, below) = (20.0 * unit, 14.0 * unit);

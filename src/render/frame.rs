@@ -28,7 +28,7 @@ pub struct Data<'a> {
     pub body: &'a Body,
     /// The instant.
     pub snapshot: &'a Snapshot,
-    /// Strain [-] and nominal stress [Pa] so far.
+    /// Strain (-) and nominal stress (Pa) so far.
     pub curve: &'a [(f64, f64)],
     /// Ruptures so far, in order.
     pub ruptures: &'a [Rupture],
@@ -46,18 +46,18 @@ impl Data<'_> {
         self.ruptures.iter().filter(|r| r.first_of_wire).enumerate().map(|(k, r)| (k + 1, r))
     }
 
-    /// Where the broken bond is now, between its two particles [mm].
+    /// Where the broken bond is now, between its two particles (mm).
     pub fn place(&self, rupture: &Rupture) -> Vec3 {
         let at = |i: usize| Vec3::from(self.snapshot.position[i]);
         0.5 * (at(rupture.bond) + at(rupture.bond + 1))
     }
 
-    /// z of the two grip faces now [mm].
+    /// z of the two grip faces now (mm).
     pub fn grip_faces(&self) -> Option<[f32; 2]> {
         self.info.gauge.map(|faces| faces.map(|z| viewpoint::current_z(self.info, self.snapshot, z)))
     }
 
-    /// z of the body's two ends now [mm].
+    /// z of the body's two ends now (mm).
     pub fn ends(&self) -> [f32; 2] {
         [self.body.low.z, self.body.high.z].map(|z| viewpoint::current_z(self.info, self.snapshot, z))
     }
@@ -126,7 +126,7 @@ impl Renderer {
         self.layout.panels.iter().map(|(v, r)| (*v, [r.x, r.y, r.w, r.h].map(|c| c as u32))).collect()
     }
 
-    /// Draws one frame. `curve` holds strain [-] and nominal stress [Pa] up to the snapshot, `ruptures` what broke
+    /// Draws one frame. `curve` holds strain (-) and nominal stress (Pa) up to the snapshot, `ruptures` what broke
     /// up to it, in order.
     ///
     /// # Errors
@@ -163,7 +163,7 @@ impl Renderer {
     }
 }
 
-/// How wires look with their particles at `position` [mm], each wire in its shade [-], without the removed ones.
+/// How wires look with their particles at `position` (mm), each wire in its shade (-), without the removed ones.
 fn looks(data: &Data, position: Vec<[f32; 3]>, shade: Vec<f32>, removed: Vec<bool>) -> Looks {
     let occlusion = occlusion(data.info, &position, &data.snapshot.radius, &removed);
     Looks { position, colour: data.colours.to_vec(), occlusion, shade, removed }

@@ -100,7 +100,7 @@ fn size_text(info: &RunInfo) -> String {
     }
 }
 
-/// Width of a block [px]; at least a little, so that the caption does not dance as figures come and go.
+/// Width of a block (px); at least a little, so that the caption does not dance as figures come and go.
 fn block_width(canvas: &Canvas, block: &Block) -> f32 {
     let u = canvas.unit;
     let small = |t: &str| canvas.fonts.width(t, 11.0 * u, Weight::Regular);

@@ -8,7 +8,7 @@ pub const BADGE: f32 = 8.5;
 
 /// Places at least `pitch` apart within `[low, high]`, in the order of `wanted` (ascending), with the least sum of
 /// squared shifts before the ends are taken into account: `x_i − i·pitch` must not fall, which is isotonic
-/// regression, solved by pooling neighbours that violate it (Barlow et al. 1972). All lengths in [px].
+/// regression, solved by pooling neighbours that violate it (Barlow et al. 1972). All lengths in (px).
 pub fn spread(wanted: &[f32], pitch: f32, low: f32, high: f32) -> Vec<f32> {
     // Pools of neighbours: mean of what they want, and how many they are.
     let mut pools: Vec<(f32, usize)> = Vec::new();
@@ -29,7 +29,7 @@ pub fn spread(wanted: &[f32], pitch: f32, low: f32, high: f32) -> Vec<f32> {
     starts.enumerate().map(|(i, start)| start + i as f32 * pitch).collect()
 }
 
-/// A number and the place in the picture that it belongs to [px].
+/// A number and the place in the picture that it belongs to (px).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
     /// The number.

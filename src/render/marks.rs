@@ -8,7 +8,7 @@ use super::ticks::{label, round_step};
 use crate::engine::view::Rupture;
 use glam::Vec3;
 
-/// Title in the panel's top left corner; returns where it ends [px].
+/// Title in the panel's top left corner; returns where it ends (px).
 pub fn title(canvas: &mut Canvas, panel: Rect, data: &Data, text: &str) -> f32 {
     let u = canvas.unit;
     let kind = Type { size: 12.0 * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };

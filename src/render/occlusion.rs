@@ -3,7 +3,7 @@
 use crate::engine::view::RunInfo;
 use glam::Vec3;
 
-/// Reach over the particle's own diameter [-].
+/// Reach over the particle's own diameter (-).
 const REACH: f32 = 2.2;
 
 /// Per particle: the sum of w·d (xyz, world axes) and of w over neighbours of other wires, where d is the direction

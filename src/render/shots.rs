@@ -21,7 +21,7 @@ pub struct Shot {
     pub caption: &'static str,
     /// Remark after the title.
     pub remark: String,
-    /// Depth over which things darken [mm].
+    /// Depth over which things darken (mm).
     pub fade: f32,
 }
 
@@ -30,7 +30,7 @@ pub fn is_solid(view: View) -> bool {
     !matches!(view, View::CrossSection | View::Unrolled | View::Curve)
 }
 
-/// Side of a close-up: a title, and a turn about the strand's axis [°].
+/// Side of a close-up: a title, and a turn about the strand's axis (°).
 type Side = (&'static str, f32);
 const FRONT: Side = ("front", 0.0);
 const BACK: Side = ("back", 180.0);
@@ -110,7 +110,7 @@ fn sides(panel: Rect, unit: f32, preferred: Side) -> Vec<(Rect, Side)> {
     }
 }
 
-/// z before loading [mm] of the section that close-ups follow.
+/// z before loading (mm) of the section that close-ups follow.
 pub fn focus(data: &Data, options: &FrameOptions) -> f32 {
     let [low, high] = data.info.gauge.unwrap_or([data.body.low.z, data.body.high.z]);
     let first = data.ruptures.first().map(|r| r.rest_z as f32 * 1e3);

@@ -32,7 +32,7 @@ pub struct Drawing {
     pub camera: Camera,
     /// Which segments.
     pub instances: Range<u32>,
-    /// Depth over which things darken [mm].
+    /// Depth over which things darken (mm).
     pub fade: f32,
 }
 

@@ -10,7 +10,7 @@ pub type Rgb = [u8; 3];
 /// What to draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameOptions {
-    /// Width and height [px].
+    /// Width and height (px).
     pub size: [u32; 2],
     /// Quantity that colours the wires.
     pub colour: ColourBy,
@@ -38,13 +38,13 @@ impl Default for FrameOptions {
 /// Viewpoint of the three-dimensional panels. The strand's axis z points right, y points up, the eye looks along +x.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraOptions {
-    /// Turn of the eye about the vertical [°].
+    /// Turn of the eye about the vertical (°).
     pub azimuth_deg: f32,
-    /// Turn of the eye about the horizontal, which is the strand's axis when the azimuth is 0 [°].
+    /// Turn of the eye about the horizontal, which is the strand's axis when the azimuth is 0 (°).
     pub elevation_deg: f32,
-    /// Magnification over what fits the panel [-].
+    /// Magnification over what fits the panel (-).
     pub zoom: f32,
-    /// Section that the close-up follows, as z before loading [mm]. `None`: the middle of the gauge until a bond
+    /// Section that the close-up follows, as z before loading (mm). `None`: the middle of the gauge until a bond
     /// breaks, then the place of the first rupture.
     pub focus_z_mm: Option<f32>,
 }
@@ -109,8 +109,8 @@ pub struct Style {
     pub accent: Rgb,
     /// Faces where wires were cut off to show what lies behind them.
     pub cut: Rgb,
-    /// Light added along silhouettes, linear RGB [-].
+    /// Light added along silhouettes, linear RGB (-).
     pub rim: [f32; 3],
-    /// Darkening along silhouettes, 0 to 1 [-].
+    /// Darkening along silhouettes, 0 to 1 (-).
     pub edge: f32,
 }

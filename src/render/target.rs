@@ -12,9 +12,9 @@ pub const SAMPLES: u32 = 4;
 
 /// The picture and what it takes to read it back.
 pub struct Target {
-    /// Width [px].
+    /// Width (px).
     pub width: u32,
-    /// Height [px].
+    /// Height (px).
     pub height: u32,
     resolved: wgpu::Texture,
     samples: wgpu::TextureView,

@@ -19,7 +19,7 @@ const GROUP: f32 = 110.0;
 struct Rows {
     area: Rect,
     range: [f32; 2],
-    /// Top of each wire's row [px].
+    /// Top of each wire's row (px).
     top: Vec<f32>,
     height: f32,
 }

@@ -7,10 +7,10 @@ use super::style::CameraOptions;
 use crate::engine::view::{RunInfo, Snapshot};
 use glam::Vec3;
 
-/// Strain for which the overview leaves room when the run does not know where it will end [-].
+/// Strain for which the overview leaves room when the run does not know where it will end (-).
 pub const UNKNOWN_STRAIN: f64 = 0.3;
 
-/// Size and place of the body before loading [mm].
+/// Size and place of the body before loading (mm).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// Least corner of the box around all particles.
@@ -21,9 +21,9 @@ pub struct Body {
     pub axis: Vec3,
     /// Greatest distance of a wire's surface from the axis.
     pub radius: f32,
-    /// Mean distance of each wire from the axis over the greatest such distance [-]; 1 when all lie on the axis.
+    /// Mean distance of each wire from the axis over the greatest such distance (-); 1 when all lie on the axis.
     pub depth: Vec<f32>,
-    /// Greatest distance of a wire's surface from the axis, per layer [mm].
+    /// Greatest distance of a wire's surface from the axis, per layer (mm).
     pub layer_radius: Vec<f32>,
 }
 
@@ -79,7 +79,7 @@ pub fn overview(info: &RunInfo, body: &Body, options: &CameraOptions, panel: Rec
     Camera { rotation: Camera::orientation(0.0, options.elevation_deg), centre, panel, scale, depth: reach }
 }
 
-/// Camera of a close-up on the section at `z` [mm]; `turn_deg` is added to the elevation.
+/// Camera of a close-up on the section at `z` (mm); `turn_deg` is added to the elevation.
 pub fn section(body: &Body, options: &CameraOptions, panel: Rect, z: f32, turn_deg: f32) -> Camera {
     // The strand fills a little more than half of the height: the rest is for wires that spring out.
     let scale = options.zoom * (panel.h / 3.5).min(panel.w / 5.0) / body.radius;
@@ -124,7 +124,7 @@ pub fn everything(body: &Body, snapshot: &Snapshot, options: &CameraOptions, pan
     Camera { rotation, centre, panel, scale: scale * options.zoom, depth }
 }
 
-/// Where the material section that was at `rest_z` is now [mm]: the median over wires, which a wire that sprang
+/// Where the material section that was at `rest_z` is now (mm): the median over wires, which a wire that sprang
 /// back does not move.
 pub fn current_z(info: &RunInfo, snapshot: &Snapshot, rest_z: f32) -> f32 {
     let mut places: Vec<f32> = info

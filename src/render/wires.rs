@@ -9,9 +9,9 @@ use glam::Vec3;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Segment {
-    /// First centre and radius [mm].
+    /// First centre and radius (mm).
     pub a: [f32; 4],
-    /// Second centre and radius [mm].
+    /// Second centre and radius (mm).
     pub b: [f32; 4],
     /// Unit tangent of the wire at `a`, and the kind of this end ([`JOINT`], [`END`], [`CUT`], [`NECK`],
     /// [`BROKEN`]).
@@ -39,19 +39,19 @@ pub const NECK: f32 = 3.0;
 /// The face of a broken end: flat, in the signal colour.
 pub const BROKEN: f32 = 4.0;
 
-/// Length of the tip that a broken end is drawn with, and the radius of its face, both over the wire's radius [-]:
+/// Length of the tip that a broken end is drawn with, and the radius of its face, both over the wire's radius (-):
 /// ductile copper necks before it parts. The particle itself is a sphere, so the tip stays inside what collides.
 const TIP: [f32; 2] = [0.8, 0.55];
 
 /// What is drawn of a snapshot, per particle.
 pub struct Looks {
-    /// Centres [mm]: those of the snapshot, or moved apart.
+    /// Centres (mm): those of the snapshot, or moved apart.
     pub position: Vec<[f32; 3]>,
     /// Colours, sRGB.
     pub colour: Vec<Rgb>,
     /// Occlusion.
     pub occlusion: Vec<[f32; 4]>,
-    /// Shade per wire [-]: 1 outside, less further in, so that what lies below a gap reads as deeper.
+    /// Shade per wire (-): 1 outside, less further in, so that what lies below a gap reads as deeper.
     pub shade: Vec<f32>,
     /// Particles that are left out, so that what lies behind them is seen; empty when none is.
     pub removed: Vec<bool>,
@@ -183,7 +183,7 @@ impl Chain<'_> {
         alone(self.point(i), tangent, colour, self.looks.occlusion[i])
     }
 
-    /// Centre and radius [mm].
+    /// Centre and radius (mm).
     fn point(&self, i: usize) -> [f32; 4] {
         self.position(i).extend(self.snapshot.radius[i]).to_array()
     }

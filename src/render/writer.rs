@@ -17,7 +17,7 @@ use std::time::Instant;
 
 /// Fewest and most snapshots that may wait to be drawn.
 const WAITING: std::ops::RangeInclusive<usize> = 4..=1024;
-/// Memory of a snapshot for each particle [bytes]: five f32, a position and a state, and the other half for vectors
+/// Memory of a snapshot for each particle (bytes): five f32, a position and a state, and the other half for vectors
 /// that grew with room to spare.
 const PARTICLE_BYTES: usize = 48;
 /// Pictures that may wait to be encoded. Encoding is several times faster than drawing, so few ever do.
@@ -29,7 +29,7 @@ pub struct FrameWriter {
     folder: PathBuf,
     options: FrameOptions,
     animation: Option<AnimationOptions>,
-    /// Memory for snapshots that wait to be drawn [bytes].
+    /// Memory for snapshots that wait to be drawn (bytes).
     memory: usize,
     curve: Vec<(f64, f64)>,
     ruptures: Vec<Rupture>,
@@ -78,7 +78,7 @@ impl FrameWriter {
         self
     }
 
-    /// Lets snapshots that are not yet drawn take this much memory [bytes] before whoever brings them has to wait.
+    /// Lets snapshots that are not yet drawn take this much memory (bytes) before whoever brings them has to wait.
     /// Ruptures come in bursts that no adapter keeps up with. Without it, four may wait.
     pub fn with_memory(mut self, bytes: usize) -> Self {
         self.memory = bytes;

@@ -8,7 +8,7 @@ use crate::scene::spec::{BondLawSpec, DriveSpec, Spec};
 use crate::strand;
 use crate::strand::assembly::Assembly;
 
-/// Energy that contacts hold before the first step over what the load stores in bonds, from which it is told [-].
+/// Energy that contacts hold before the first step over what the load stores in bonds, from which it is told (-).
 const STORED: f64 = 0.01;
 
 /// All that is known of a scene and its geometry.
@@ -55,7 +55,7 @@ fn stored(spec: &Spec, assembly: &Assembly) -> Result<Option<String>> {
     }))
 }
 
-/// Greatest strain of the body that is foreseen [-].
+/// Greatest strain of the body that is foreseen (-).
 fn end_strain(spec: &Spec, assembly: &Assembly, foreseen: Option<f64>) -> Option<f64> {
     match spec.grip.as_ref()?.drive {
         DriveSpec::Speed(_) => foreseen.map(f64::abs),
@@ -67,7 +67,7 @@ fn end_strain(spec: &Spec, assembly: &Assembly, foreseen: Option<f64>) -> Option
     }
 }
 
-/// Elastic energy in wires that are all strained as the body is [J]: the most that the load can store.
+/// Elastic energy in wires that are all strained as the body is (J): the most that the load can store.
 fn elastic_energy(spec: &Spec, assembly: &Assembly, strain: f64) -> f64 {
     let young = spec.material.young;
     let elastic = young * strain;

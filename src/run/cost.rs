@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 /// The lock file that this program was built from: it names the version of everything in it.
 const LOCK: &str = include_str!("../../Cargo.lock");
 
-/// Processor time of this process so far, all threads [s]; `None` where the system does not tell.
+/// Processor time of this process so far, all threads (s); `None` where the system does not tell.
 #[cfg(unix)]
 pub fn cpu_time() -> Option<f64> {
     clock(rustix::time::ClockId::ProcessCPUTime)
 }
 
-/// Processor time of this thread alone so far [s]; `None` where the system does not tell.
+/// Processor time of this thread alone so far (s); `None` where the system does not tell.
 #[cfg(unix)]
 pub fn thread_cpu_time() -> Option<f64> {
     clock(rustix::time::ClockId::ThreadCPUTime)
@@ -23,13 +23,13 @@ fn clock(id: rustix::time::ClockId) -> Option<f64> {
     Some(time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9)
 }
 
-/// Processor time of this process so far [s]; `None`, because this system does not tell.
+/// Processor time of this process so far (s); `None`, because this system does not tell.
 #[cfg(not(unix))]
 pub fn cpu_time() -> Option<f64> {
     None
 }
 
-/// Processor time of this thread so far [s]; `None`, because this system does not tell.
+/// Processor time of this thread so far (s); `None`, because this system does not tell.
 #[cfg(not(unix))]
 pub fn thread_cpu_time() -> Option<f64> {
     None

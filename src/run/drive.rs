@@ -27,9 +27,9 @@ pub struct Outcome {
     pub reason: StopReason,
     /// Steps done.
     pub steps: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Strain of the body at the end [-].
+    /// Strain of the body at the end (-).
     pub strain: f64,
     /// How far loading was from quasi-static.
     pub quasi_static: QuasiStatic,

@@ -22,20 +22,20 @@ pub struct Estimate {
     pub particles: usize,
     /// Bonds.
     pub bonds: usize,
-    /// First time step [s].
+    /// First time step (s).
     pub first_time_step: f64,
-    /// Time step after the trial steps [s]: the first one may be short, because the bound does not know yet which
+    /// Time step after the trial steps (s): the first one may be short, because the bound does not know yet which
     /// contacts will close.
     pub time_step: f64,
     /// What limits it.
     pub time_step_limit: StepLimit,
-    /// Simulated time to the expected end [s]; `None` when the scene does not tell.
+    /// Simulated time to the expected end (s); `None` when the scene does not tell.
     pub duration: Option<f64>,
     /// Steps to the expected end at the time step after the trial.
     pub steps: Option<f64>,
-    /// Wall time of a step, measured [s].
+    /// Wall time of a step, measured (s).
     pub step_wall: f64,
-    /// Where it goes, by stage [s].
+    /// Where it goes, by stage (s).
     pub stage_wall: [(&'static str, f64); 5],
     /// Number of steps that it was measured over.
     pub measured: u64,
@@ -79,7 +79,7 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
     })
 }
 
-/// Simulated time to the expected end [s]: `stop.time`, or the expected strain at the pull's speed.
+/// Simulated time to the expected end (s): `stop.time`, or the expected strain at the pull's speed.
 fn duration(spec: &Spec, engine: &Engine) -> Option<f64> {
     let info = engine.info();
     let gauge = info.gauge.map(|[lower, upper]| f64::from(upper - lower) * 1e-3);

@@ -14,7 +14,7 @@ use crate::scene::spec::Spec;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
-/// Memory for snapshots that wait to be drawn [bytes]: some 500 of the main scene's, more than one run has.
+/// Memory for snapshots that wait to be drawn (bytes): some 500 of the main scene's, more than one run has.
 #[cfg(feature = "render")]
 const WAITING_FRAMES: usize = 256 << 20;
 
@@ -53,7 +53,7 @@ pub(super) fn check(options: &RunOptions) -> Result<()> {
 pub struct Animation {
     /// Its file: `.gif`, or `.png` or `.apng` for an animated PNG.
     pub file: PathBuf,
-    /// Width, when it is to be smaller than the frames [px].
+    /// Width, when it is to be smaller than the frames (px).
     pub width: Option<u32>,
 }
 

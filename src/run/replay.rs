@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Which snapshots of a run to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selection {
-    /// Strain of the body, from and to, both included [-].
+    /// Strain of the body, from and to, both included (-).
     pub strain: [f64; 2],
     /// Of those, only the last one before and the first one after each rupture, the first and the last.
     pub events: bool,
@@ -29,7 +29,7 @@ impl Default for Selection {
 /// What a selection needs to know of a snapshot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Moment {
-    /// Strain of the body [-].
+    /// Strain of the body (-).
     strain: f64,
     /// A bond broke since the snapshot before.
     broke: bool,
@@ -64,7 +64,7 @@ pub struct Replay {
     records: usize,
     /// Why the trajectory ends before its run did.
     cut_off: Option<Error>,
-    /// Where the first bond broke, as z before loading [m].
+    /// Where the first bond broke, as z before loading (m).
     first_break: Option<f64>,
 }
 
@@ -111,7 +111,7 @@ impl Replay {
         self.shown.iter().filter(|shown| **shown).count()
     }
 
-    /// Where the first bond of the run broke, as z before loading [m]; `None` when none did.
+    /// Where the first bond of the run broke, as z before loading (m); `None` when none did.
     pub fn first_break(&self) -> Option<f64> {
         self.first_break
     }

@@ -16,14 +16,14 @@ const QUIET: f64 = 0.25;
 /// Spreads rows and snapshots evenly over the planned run, and brings more snapshots around ruptures: the last state
 /// before, the first after, and then a series that thins out until the next rupture.
 ///
-/// Time is the fraction of the planned run that is done [-]
+/// Time is the fraction of the planned run that is done (-)
 /// ([`crate::observe::planned::PlannedEnd::fraction`]). The first and the last state are not its business:
 /// they are always taken.
 #[derive(Debug, Clone)]
 pub struct Schedule {
     rows: Ticks,
     snapshots: Ticks,
-    /// Densest spacing of snapshots [-].
+    /// Densest spacing of snapshots (-).
     spacing: f64,
     /// Snapshots that ruptures may bring in all, and those that are left of them.
     budget: usize,
@@ -46,7 +46,7 @@ pub struct Due {
 /// Evenly spaced fractions.
 #[derive(Debug, Clone, Copy)]
 struct Ticks {
-    /// How many there are per planned run [-].
+    /// How many there are per planned run (-).
     rate: f64,
     /// How many have passed.
     passed: f64,
@@ -113,7 +113,7 @@ impl Schedule {
         self.spacing * self.budget as f64 / self.left.max(1) as f64
     }
 
-    /// What is due at this fraction of the run [-]; asked once after every step.
+    /// What is due at this fraction of the run (-); asked once after every step.
     pub fn due(&mut self, now: f64) -> Due {
         let planned = self.snapshots.due(now);
         let snapshot = planned || self.due_for_ruptures(now);

@@ -6,7 +6,7 @@ use crate::scene::spec::StopSpec;
 use std::collections::VecDeque;
 
 /// Time over which the nominal stress is averaged before it is compared with its peak, in passages of an elastic wave
-/// along the body [-]: the wave that a rupture sends out comes back after two, and is averaged out over them. A fall that
+/// along the body (-): the wave that a rupture sends out comes back after two, and is averaged out over them. A fall that
 /// lasts is not.
 const PASSAGES: f64 = 2.0;
 
@@ -14,9 +14,9 @@ const PASSAGES: f64 = 2.0;
 #[derive(Debug, Clone)]
 pub struct StopRule {
     stop: StopSpec,
-    /// Time over which stress is averaged [s].
+    /// Time over which stress is averaged (s).
     window: f64,
-    /// Length of each step in the window [s], and stress times that.
+    /// Length of each step in the window (s), and stress times that.
     steps: VecDeque<[f64; 2]>,
     /// Their sums.
     sum: [f64; 2],
@@ -25,13 +25,13 @@ pub struct StopRule {
     peak: f64,
     ruptured: bool,
     fallen: bool,
-    /// Strain at which stress dropped, as long as it stays down [-].
+    /// Strain at which stress dropped, as long as it stays down (-).
     dropped_at: Option<f64>,
     passed: bool,
 }
 
 impl StopRule {
-    /// The rule of a scene; `passage` is the time in which an elastic wave runs along its body [s].
+    /// The rule of a scene; `passage` is the time in which an elastic wave runs along its body (s).
     pub fn new(stop: &StopSpec, passage: f64) -> Self {
         Self {
             stop: stop.clone(),
@@ -52,7 +52,7 @@ impl StopRule {
         self.ruptured = true;
     }
 
-    /// A step was done, to this time [s], strain [-] and nominal stress [Pa].
+    /// A step was done, to this time (s), strain (-) and nominal stress (Pa).
     pub fn step(&mut self, time: f64, strain: f64, stress: f64) {
         if self.stop.stress_fraction.is_none() && self.stop.strain_after_drop.is_none() {
             return;

@@ -118,7 +118,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// A quantity at exactly this place [SI].
+    /// A quantity at exactly this place (SI).
     pub fn quantity(&self, raw: &Scalar, dimension: Dimension, range: Range) -> Result<f64> {
         let value = self.read(raw, dimension, range)?;
         if range.holds(value) {
@@ -145,7 +145,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// The quantity under key `name`, if given [SI].
+    /// The quantity under key `name`, if given (SI).
     pub fn optional(
         &self,
         name: &str,
@@ -156,17 +156,17 @@ impl<'a> At<'a> {
         raw.as_ref().map(|raw| self.key(name).quantity(raw, dimension, range)).transpose()
     }
 
-    /// The quantity under key `name`; an error when it is missing [SI].
+    /// The quantity under key `name`; an error when it is missing (SI).
     pub fn required(&self, name: &str, raw: &Option<Scalar>, dimension: Dimension, range: Range) -> Result<f64> {
         self.optional(name, raw, dimension, range)?.ok_or_else(|| self.missing(name, dimension.example()))
     }
 
-    /// The ratio under key `name`, or its default [-].
+    /// The ratio under key `name`, or its default (-).
     pub fn ratio_or(&self, name: &str, raw: &Option<Scalar>, default: f64, range: Range) -> Result<f64> {
         Ok(self.optional(name, raw, Dimension::Ratio, range)?.unwrap_or(default))
     }
 
-    /// The vector under key `name`, zero when absent [SI].
+    /// The vector under key `name`, zero when absent (SI).
     pub fn vector_or_zero(&self, name: &str, raw: &Option<Triple>, dimension: Dimension) -> Result<DVec3> {
         match raw {
             Some(raw) => self.key(name).vector(raw, dimension),
@@ -174,7 +174,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// The vector at exactly this place [SI].
+    /// The vector at exactly this place (SI).
     pub fn vector(&self, raw: &Triple, dimension: Dimension) -> Result<DVec3> {
         let mut value = DVec3::ZERO;
         for (axis, raw) in raw.iter().enumerate() {

@@ -2,11 +2,11 @@
 
 use super::spec::{BondLawSpec, DriveSpec, RuptureCriterion, Shape, Spec};
 
-/// Plastic strain [-] beyond which no wire is followed.
+/// Plastic strain (-) beyond which no wire is followed.
 const FAR: f64 = 1.0;
-/// Wires in a strand are strained more than the strand, by up to this factor [-].
+/// Wires in a strand are strained more than the strand, by up to this factor (-).
 const UNEVEN: f64 = 1.1;
-/// Spacing over diameter from which spheres of a wire leave a gap through which another wire fits crosswise [-].
+/// Spacing over diameter from which spheres of a wire leave a gap through which another wire fits crosswise (-).
 const GAP: f64 = std::f64::consts::SQRT_2;
 
 /// Everything that the user should know before the run; empty when there is nothing.
@@ -15,7 +15,7 @@ pub fn cautions(spec: &Spec) -> Vec<String> {
 }
 
 /// Plastic strain at which the hardening law reaches the maximum load of a bond in tension, dσ/dp ≤ σ (Considère 1885),
-/// if it does so before bonds break and before the body has reached `strain` [-].
+/// if it does so before bonds break and before the body has reached `strain` (-).
 pub fn considere(spec: &Spec, strain: f64) -> Option<f64> {
     let BondLawSpec::ElastoPlastic(hardening) = &spec.bond.law else { return None };
     let breaks = match spec.bond.rupture.as_ref().map(|r| &r.criterion) {
@@ -27,7 +27,7 @@ pub fn considere(spec: &Spec, strain: f64) -> Option<f64> {
     hardening.considere(breaks.min(UNEVEN * strain.ln_1p()))
 }
 
-/// Least plastic strain at which `reached` holds, to a thousandth [-].
+/// Least plastic strain at which `reached` holds, to a thousandth (-).
 fn reaches(reached: impl Fn(f64) -> bool) -> f64 {
     (0..1000).map(|k| FAR * f64::from(k) / 1000.0).find(|p| reached(*p)).unwrap_or(FAR)
 }

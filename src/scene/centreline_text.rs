@@ -23,9 +23,9 @@ const DEFAULT_LAYER: &str = "wire";
 pub struct CentrelineWire {
     /// Name of its layer; "wire" where the text names none.
     pub layer: String,
-    /// Wire diameter [m], where the text gives it.
+    /// Wire diameter (m), where the text gives it.
     pub diameter: Option<f64>,
-    /// Points along it, two at least [m].
+    /// Points along it, two at least (m).
     pub points: Vec<DVec3>,
 }
 
@@ -188,7 +188,7 @@ impl Reader<'_> {
     }
 }
 
-/// A length [m] as decimal text in mm: the point of the shortest decimal text is moved, so that no digit is lost.
+/// A length (m) as decimal text in mm: the point of the shortest decimal text is moved, so that no digit is lost.
 fn in_millimetres(metres: f64) -> String {
     let text = format!("{metres:e}");
     let (digits, exponent) = shifted(&text, 3).expect("a formatted number is a number");

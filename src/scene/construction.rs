@@ -17,10 +17,10 @@ use std::f64::consts::{FRAC_PI_4, PI};
 const MOST_INNERMOST: usize = 5;
 /// Most wires of an automatic construction: a strand, not a typing error.
 const MOST_WIRES: f64 = 5000.0;
-/// How much further out than the ring below leaves it a ring may lie, over the wire diameter [-]: lay must not turn six
+/// How much further out than the ring below leaves it a ring may lie, over the wire diameter (-): lay must not turn six
 /// around one into five, and wires flatten more than that.
 const SLACK: f64 = 0.002;
-/// How far full rings may be from the area before the outermost ring is built with fewer wires than it holds [-].
+/// How far full rings may be from the area before the outermost ring is built with fewer wires than it holds (-).
 const NEAR: f64 = 0.02;
 
 /// The layers of a strand that gives a construction instead of `[[strand.layer]]`.
@@ -126,7 +126,7 @@ fn full_rings(first: usize, target: f64, diameter: f64, pitch: f64) -> Vec<usize
     rings
 }
 
-/// The first `count` wires of full rings, and how full the last of them is [-]; `None` where they hold fewer.
+/// The first `count` wires of full rings, and how full the last of them is (-); `None` where they hold fewer.
 fn cut(full: &[usize], count: usize) -> Option<(Vec<usize>, f64)> {
     let mut left = count;
     let mut rings = Vec::new();

@@ -10,7 +10,7 @@ use crate::base::units::Dimension::{Pressure, Ratio};
 /// elastic strain: people write strains with two or three digits.
 const ELASTIC_LINE_TOLERANCE: f64 = 0.01;
 
-/// Resolves `bond.hardening`; `young` [Pa] serves the engineering curve.
+/// Resolves `bond.hardening`; `young` (Pa) serves the engineering curve.
 pub(super) fn resolve(at: &At, raw: &RawHardening, young: f64) -> Result<HardeningSpec> {
     let form = raw.form.ok_or_else(|| at.missing("form", "\"voce\""))?;
     refuse_other_keys(at, raw, form)?;
@@ -156,7 +156,7 @@ fn engineering_curve(at: &At, raw: &RawHardening, young: f64) -> Result<Hardenin
     Ok(HardeningSpec::Table(plastic))
 }
 
-/// Longest piece [-] of an engineering curve whose true curve is taken as straight: its sagitta is at most
+/// Longest piece (-) of an engineering curve whose true curve is taken as straight: its sagitta is at most
 /// σ″/σ Δp²/8 = 4 × 0.005²/8, 1e-5 of the stress.
 const PIECE: f64 = 0.005;
 
@@ -172,11 +172,11 @@ fn pieces([e0, s0]: [f64; 2], [e1, s1]: [f64; 2]) -> impl Iterator<Item = [f64; 
 /// A true curve in the making.
 struct TrueCurve {
     young: f64,
-    /// True stress of the last point on the elastic line [Pa].
+    /// True stress of the last point on the elastic line (Pa).
     yield_stress: Option<f64>,
-    /// True plastic strain [-] and true stress [Pa] beyond it.
+    /// True plastic strain (-) and true stress (Pa) beyond it.
     plastic: Vec<[f64; 2]>,
-    /// True stress of the last point of any kind [Pa].
+    /// True stress of the last point of any kind (Pa).
     before: f64,
 }
 
@@ -209,8 +209,8 @@ impl TrueCurve {
     }
 }
 
-/// p with p + s e^p/E = ln(1 + e) [-], for engineering strain e `strain` [-] and stress s `stress` [Pa] of a bar of
-/// Young's modulus E `young` [Pa].
+/// p with p + s e^p/E = ln(1 + e) (-), for engineering strain e `strain` (-) and stress s `stress` (Pa) of a bar of
+/// Young's modulus E `young` (Pa).
 ///
 /// The left side rises and curves upwards, so Newton's method comes down to the root from p = ln(1 + e); the elastic
 /// part is so small that it is there, to the last bits, after a few steps.
@@ -222,7 +222,7 @@ fn true_plastic_strain(strain: f64, stress: f64, young: f64) -> f64 {
     })
 }
 
-/// Stress at p = 0 on the line through the first two plastic points [Pa].
+/// Stress at p = 0 on the line through the first two plastic points (Pa).
 fn drawn_back(at: &At, plastic: &[[f64; 2]]) -> Result<f64> {
     let help = "give a point on the elastic line: the end of proportionality";
     let [[p0, s0], [p1, s1], ..] = plastic else {

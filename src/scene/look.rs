@@ -1,13 +1,14 @@
 //! What people choose by one word for pictures: views, theme, colouring. One row here is all that a new word needs in
 //! the scene and on the command line.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// An enum whose values are words, each with its meaning, in the order in which they are listed to people.
 macro_rules! words {
     ($(#[$meta:meta])* $name:ident { $($variant:ident = $word:literal, $about:literal;)+ }) => {
         $(#[$meta])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
         pub enum $name {
             $(#[doc = $about] #[serde(rename = $word)] $variant,)+
         }

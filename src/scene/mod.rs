@@ -9,6 +9,7 @@ pub mod centreline_text;
 mod construction;
 pub mod hardening;
 mod idle;
+pub mod keys;
 pub mod look;
 mod overrides;
 pub mod plan;

@@ -21,7 +21,7 @@ struct Entry {
     key: &'static str,
     /// Unit in which the scene is told.
     unit: &'static str,
-    /// Factors on the scene's own value [-].
+    /// Factors on the scene's own value (-).
     draft: f64,
     fine: f64,
     /// The greatest value that the key allows.

@@ -9,23 +9,23 @@ use crate::base::error::{Error, Result};
 use crate::base::units::Dimension;
 use std::path::Path;
 
-/// Young's modulus of annealed copper where a scene gives none [Pa].
+/// Young's modulus of annealed copper where a scene gives none (Pa).
 const COPPER_YOUNG: f64 = 115e9;
-/// Density of copper where a scene gives none [kg/m³].
+/// Density of copper where a scene gives none (kg/m³).
 const COPPER_DENSITY: f64 = 8960.0;
-/// Poisson's ratio of copper where a scene gives none [-].
+/// Poisson's ratio of copper where a scene gives none (-).
 const COPPER_POISSON: f64 = 0.34;
-/// Friction between bare copper wires where a scene gives none [-] (the reference paper's).
+/// Friction between bare copper wires where a scene gives none (-) (the reference paper's).
 const FRICTION: f64 = 0.2;
-/// Limiting contact pressure over yield stress [-] (Tabor 1951: hardness is 2.8 to 3 times the flow stress).
+/// Limiting contact pressure over yield stress (-) (Tabor 1951: hardness is 2.8 to 3 times the flow stress).
 const HARDNESS_FACTOR: f64 = 2.8;
-/// Neighbour skin over the largest diameter [-].
+/// Neighbour skin over the largest diameter (-).
 const SKIN: f64 = 0.15;
-/// Δt √(k/m*) of a contact [-]: eight steps to a half period.
+/// Δt √(k/m*) of a contact (-): eight steps to a half period.
 const RESOLVED: f64 = 0.4;
-/// Spacing over diameter from which a wire fits between two neighbouring spheres of another [-].
+/// Spacing over diameter from which a wire fits between two neighbouring spheres of another (-).
 const GAP: f64 = 2.0;
-/// Side of a frame, least and greatest [pixels].
+/// Side of a frame, least and greatest (pixels).
 const FRAME_SIDE: std::ops::RangeInclusive<i64> = 16..=8192;
 
 /// Evenly spread snapshots where bonds can break: what they leave of the usual number is for the ruptures.
@@ -224,7 +224,7 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
     }))
 }
 
-/// Thornton's p_y [Pa]: given, or a multiple of the bonds' yield stress.
+/// Thornton's p_y (Pa): given, or a multiple of the bonds' yield stress.
 fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<f64> {
     if let Some(pressure) =
         at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?

@@ -9,7 +9,7 @@ use crate::base::error::Result;
 use crate::base::units::{self, Dimension};
 use std::path::{Path, PathBuf};
 
-/// Relative difference up to which two diameters are one, written with other units [-].
+/// Relative difference up to which two diameters are one, written with other units (-).
 const SAME_DIAMETER: f64 = 1e-9;
 /// Layer of a wire that names none.
 const DEFAULT_LAYER: &str = "wire";
@@ -240,7 +240,7 @@ pub(super) fn count(strand: Option<&StrandSpec>, wires: &[WireSpec], spheres: &[
     in_strand + wires.len() + spheres.len()
 }
 
-/// Length along z of all that grips can hold [m]; `None` without wires.
+/// Length along z of all that grips can hold (m); `None` without wires.
 pub(super) fn extent(strand: Option<&StrandSpec>, wires: &[WireSpec]) -> Option<f64> {
     let ends = strand.map(|strand| [0.0, strand.length]).into_iter().flatten();
     let heights = wires.iter().flat_map(|wire| match &wire.path {

@@ -7,12 +7,12 @@ use crate::base::error::Result;
 use crate::base::units::{self, Dimension};
 use glam::DVec3;
 
-/// Kinetic energy of an adaptive pull over its work, at most [-]: below the limit at which a run warns.
+/// Kinetic energy of an adaptive pull over its work, at most (-): below the limit at which a run warns.
 const KINETIC: f64 = 0.04;
-/// Passages of an elastic wave from grip to grip that an adaptive pull leaves until the next rupture, at least [-].
+/// Passages of an elastic wave from grip to grip that an adaptive pull leaves until the next rupture, at least (-).
 const PASSAGES: f64 = 20.0;
 
-/// Resolves `[grip]`; `extent` is the length along z of what it holds [m].
+/// Resolves `[grip]`; `extent` is the length along z of what it holds (m).
 pub(super) fn grip(at: &At, raw: &RawGrip, extent: Option<f64>) -> Result<GripSpec> {
     let length = at.required("length", &raw.length, Dimension::Length, Range::Positive)?;
     let Some(extent) = extent else {

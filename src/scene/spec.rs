@@ -14,7 +14,7 @@ pub struct Spec {
     pub name: String,
     /// One or more sentences saying what the scene shows.
     pub about: String,
-    /// Seed of the scatter [-].
+    /// Seed of the scatter (-).
     pub seed: u64,
     /// The wire material.
     pub material: Material,
@@ -28,7 +28,7 @@ pub struct Spec {
     pub wires: Vec<WireSpec>,
     /// Free spheres (each its own body, its own mass 4/3 π r³ ρ).
     pub spheres: Vec<SphereSpec>,
-    /// Particle spacing over wire diameter [-]; 1 is touching spheres.
+    /// Particle spacing over wire diameter (-); 1 is touching spheres.
     pub spacing: f64,
     /// The two grips of a strand or of a set of wires along z; `None` for free bodies.
     pub grip: Option<GripSpec>,
@@ -56,16 +56,16 @@ pub enum PlanMode {
 /// Isotropic elastic constants and density.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
-    /// Density [kg/m³].
+    /// Density (kg/m³).
     pub density: f64,
-    /// Young's modulus [Pa].
+    /// Young's modulus (Pa).
     pub young: f64,
-    /// Poisson's ratio [-].
+    /// Poisson's ratio (-).
     pub poisson: f64,
 }
 
 impl Material {
-    /// Shear modulus E / (2 (1 + ν)) [Pa].
+    /// Shear modulus E / (2 (1 + ν)) (Pa).
     pub fn shear(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))
     }
@@ -78,7 +78,7 @@ pub struct BondSpec {
     pub law: BondLawSpec,
     /// Rupture; `None` for bonds that never break.
     pub rupture: Option<RuptureSpec>,
-    /// Viscous damping as a fraction of critical, per mode [-]: axial, shear, bending, torsion.
+    /// Viscous damping as a fraction of critical, per mode (-): axial, shear, bending, torsion.
     pub damping: [f64; 4],
 }
 
@@ -96,7 +96,7 @@ pub enum BondLawSpec {
 pub struct RuptureSpec {
     /// The criterion.
     pub criterion: RuptureCriterion,
-    /// Weibull modulus m of the per-bond factor on the rupture value [-]; infinite means no scatter.
+    /// Weibull modulus m of the per-bond factor on the rupture value (-); infinite means no scatter.
     pub weibull_modulus: f64,
 }
 
@@ -105,21 +105,21 @@ pub struct RuptureSpec {
 pub enum RuptureCriterion {
     /// p ≥ p_f.
     PlasticStrain {
-        /// p_f [-].
+        /// p_f (-).
         strain: f64,
     },
     /// N/A + β_m |M| r/I ≥ σ_c or |V|/A + β_m |T| r/J ≥ τ_c (Potyondy & Cundall 2004).
     BeamStress {
-        /// σ_c [Pa].
+        /// σ_c (Pa).
         tensile: f64,
-        /// τ_c [Pa].
+        /// τ_c (Pa).
         shear: f64,
-        /// β_m, 0 to 1 [-].
+        /// β_m, 0 to 1 (-).
         moment_share: f64,
     },
     /// Axial + bending strain at the outermost fibre ≥ ε_f.
     FibreStrain {
-        /// ε_f [-].
+        /// ε_f (-).
         strain: f64,
     },
 }
@@ -131,13 +131,13 @@ pub struct ContactSpec {
     pub normal: NormalSpec,
     /// Tangential law; `None` means frictionless.
     pub tangential: Option<TangentialSpec>,
-    /// Coulomb friction coefficient [-].
+    /// Coulomb friction coefficient (-).
     pub friction: f64,
     /// Shape of a wire in contact.
     pub shape: Shape,
-    /// Viscous damping of the normal contact motion, fraction of critical [-]; friction damps the tangential one.
+    /// Viscous damping of the normal contact motion, fraction of critical (-); friction damps the tangential one.
     pub damping: f64,
-    /// Skin of the neighbour list over the largest particle diameter [-].
+    /// Skin of the neighbour list over the largest particle diameter (-).
     pub skin: f64,
 }
 
@@ -148,7 +148,7 @@ pub enum NormalSpec {
     Hertz,
     /// Thornton 1997, elastoplastic.
     Thornton {
-        /// Limiting contact pressure p_y [Pa].
+        /// Limiting contact pressure p_y (Pa).
         limiting_pressure: f64,
     },
 }
@@ -174,7 +174,7 @@ pub enum Shape {
 /// A strand: helical layers around the z axis, from z = 0 to z = length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StrandSpec {
-    /// Length L [m].
+    /// Length L (m).
     pub length: f64,
     /// Layers from the inside out.
     pub layers: Vec<LayerSpec>,
@@ -187,15 +187,15 @@ pub struct LayerSpec {
     pub name: String,
     /// Number of wires n_k.
     pub wires: usize,
-    /// Wire diameter d [m].
+    /// Wire diameter d (m).
     pub wire_diameter: f64,
-    /// Lay radius R_k [m]; `None` means `auto`: the least radius without overlap (found by `strand::lay_radius`).
+    /// Lay radius R_k (m); `None` means `auto`: the least radius without overlap (found by `strand::lay_radius`).
     pub lay_radius: Option<f64>,
-    /// Pitch h_k [m]; infinite for straight wires.
+    /// Pitch h_k (m); infinite for straight wires.
     pub pitch: f64,
     /// Lay direction s_k: +1 right (Z), −1 left (S).
     pub lay: f64,
-    /// Phase φ_k [rad].
+    /// Phase φ_k (rad).
     pub phase: f64,
 }
 
@@ -204,24 +204,24 @@ pub struct LayerSpec {
 pub struct WireSpec {
     /// Name of the layer the wire is counted in.
     pub layer: String,
-    /// Wire diameter d [m].
+    /// Wire diameter d (m).
     pub diameter: f64,
     /// Its centre line.
     pub path: PathSpec,
-    /// Initial velocity [m/s].
+    /// Initial velocity (m/s).
     pub velocity: DVec3,
-    /// Initial spin [rad/s].
+    /// Initial spin (rad/s).
     pub spin: DVec3,
 }
 
 /// Centre line of a wire.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PathSpec {
-    /// Straight from → to [m].
+    /// Straight from → to (m).
     Straight {
-        /// First point [m].
+        /// First point (m).
         from: DVec3,
-        /// Last point [m].
+        /// Last point (m).
         to: DVec3,
     },
     /// Wire `index` (from 0) of a centreline text file.
@@ -230,7 +230,7 @@ pub enum PathSpec {
         file: PathBuf,
         /// Which wire of it.
         index: usize,
-        /// Its points [m].
+        /// Its points (m).
         points: Vec<DVec3>,
     },
 }
@@ -238,13 +238,13 @@ pub enum PathSpec {
 /// A free sphere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SphereSpec {
-    /// Diameter [m].
+    /// Diameter (m).
     pub diameter: f64,
-    /// Centre [m].
+    /// Centre (m).
     pub position: DVec3,
-    /// Velocity [m/s].
+    /// Velocity (m/s).
     pub velocity: DVec3,
-    /// Spin [rad/s].
+    /// Spin (rad/s).
     pub spin: DVec3,
 }
 
@@ -253,13 +253,13 @@ pub struct SphereSpec {
 pub struct GripSpec {
     /// How wires are held.
     pub kind: GripKind,
-    /// Length of each grip along z [m]. Gauge length = body length − 2 × this.
+    /// Length of each grip along z (m). Gauge length = body length − 2 × this.
     pub length: f64,
     /// Motion of the upper grip along z.
     pub drive: DriveSpec,
     /// Faster between the start and the first rupture; `None`: as `drive` says throughout.
     pub adaptive: Option<AdaptiveSpec>,
-    /// Rotation rate of the upper grip about z [rad/s].
+    /// Rotation rate of the upper grip about z (rad/s).
     pub rotation_rate: f64,
     /// The upper grip turns freely about z (its torque is zero) instead of being held or driven.
     pub free_rotation: bool,
@@ -272,7 +272,7 @@ pub enum GripKind {
     All,
     /// The outermost layer only, pressed inwards.
     Jaw {
-        /// Radial clamp pressure on the strand's surface [Pa].
+        /// Radial clamp pressure on the strand's surface (Pa).
         pressure: f64,
     },
 }
@@ -280,26 +280,26 @@ pub enum GripKind {
 /// A pull that is faster than [`DriveSpec::Speed`] between its start and the first rupture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdaptiveSpec {
-    /// Strain up to which the speed stays [`DriveSpec::Speed`] [-].
+    /// Strain up to which the speed stays [`DriveSpec::Speed`] (-).
     pub from: f64,
-    /// Greatest speed [m/s].
+    /// Greatest speed (m/s).
     pub fastest: f64,
-    /// Greatest kinetic energy of the pull over the work that it has done [-].
+    /// Greatest kinetic energy of the pull over the work that it has done (-).
     pub kinetic: f64,
-    /// Least time to the next rupture at the speed of any moment, in passages of an elastic wave from grip to grip [-].
+    /// Least time to the next rupture at the speed of any moment, in passages of an elastic wave from grip to grip (-).
     pub passages: f64,
 }
 
 /// Motion of the upper grip along z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DriveSpec {
-    /// Constant speed [m/s], positive pulls; starts from the affine velocity field.
+    /// Constant speed (m/s), positive pulls; starts from the affine velocity field.
     Speed(f64),
     /// Displacement amplitude × sin(2π f t).
     Cyclic {
-        /// Amplitude [m].
+        /// Amplitude (m).
         amplitude: f64,
-        /// Frequency f [Hz].
+        /// Frequency f (Hz).
         frequency: f64,
     },
 }
@@ -313,15 +313,15 @@ pub struct HoldSpec {
     pub part: BodyPart,
     /// Prescribed components: x, y, z, then rotation about x, y, z.
     pub fixed: [bool; 6],
-    /// Velocity of the prescribed translational components [m/s].
+    /// Velocity of the prescribed translational components (m/s).
     pub velocity: DVec3,
-    /// Spin of the prescribed rotational components [rad/s].
+    /// Spin of the prescribed rotational components (rad/s).
     pub spin: DVec3,
-    /// Total force on the part, shared equally by its particles [N].
+    /// Total force on the part, shared equally by its particles (N).
     pub force: DVec3,
-    /// Total moment on the part, shared equally by its particles [N m].
+    /// Total moment on the part, shared equally by its particles (N m).
     pub moment: DVec3,
-    /// Time over which force and moment rise smoothly from zero [s].
+    /// Time over which force and moment rise smoothly from zero (s).
     pub ramp: f64,
 }
 
@@ -339,32 +339,32 @@ pub enum BodyPart {
 /// Time stepping.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeSpec {
-    /// Fraction of the bound on the stable step [-].
+    /// Fraction of the bound on the stable step (-).
     pub safety: f64,
-    /// How finely a contact is stepped at least: Δt √(k/m*) [-], before `safety`.
+    /// How finely a contact is stepped at least: Δt √(k/m*) (-), before `safety`.
     pub contact_resolution: f64,
-    /// Fixed step [s]; `None`: from the bound, recomputed as stiffness changes.
+    /// Fixed step (s); `None`: from the bound, recomputed as stiffness changes.
     pub step: Option<f64>,
-    /// Factor on particle mass [-]; reported when not 1.
+    /// Factor on particle mass (-); reported when not 1.
     pub mass_scale: f64,
-    /// Factor on rotational inertia [-]; reported when not 1.
+    /// Factor on rotational inertia (-); reported when not 1.
     pub inertia_scale: f64,
-    /// Kinetic over internal energy above which the run says that it is not quasi-static [-].
+    /// Kinetic over internal energy above which the run says that it is not quasi-static (-).
     pub kinetic_limit: f64,
-    /// Relative difference of the grip forces above which the run says so [-].
+    /// Relative difference of the grip forces above which the run says so (-).
     pub mismatch_limit: f64,
 }
 
 /// When to stop; the first that holds ends the run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StopSpec {
-    /// Grip displacement over gauge length [-].
+    /// Grip displacement over gauge length (-).
     pub strain: Option<f64>,
-    /// Nominal stress has fallen to this fraction of its peak, after a rupture [-].
+    /// Nominal stress has fallen to this fraction of its peak, after a rupture (-).
     pub stress_fraction: Option<f64>,
-    /// Strain beyond the drop, at which nominal stress had fallen to 80 % of its peak after a rupture [-].
+    /// Strain beyond the drop, at which nominal stress had fallen to 80 % of its peak after a rupture (-).
     pub strain_after_drop: Option<f64>,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: Option<f64>,
     /// Steps.
     pub steps: Option<u64>,
@@ -377,7 +377,7 @@ pub struct OutputSpec {
     pub samples: usize,
     /// Number of snapshots (recording and frames) over the planned run, evenly spaced; ruptures bring more.
     pub snapshots: usize,
-    /// How many times denser than that snapshots are right after a rupture [-].
+    /// How many times denser than that snapshots are right after a rupture (-).
     pub rupture_density: f64,
     /// Frame size in pixels.
     pub frame_size: [u32; 2],
@@ -409,13 +409,13 @@ impl Default for OutputSpec {
 /// Viewpoint of the three-dimensional panels. The strand's axis z points right, y points up, the eye looks along +x.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraSpec {
-    /// Turn of the eye about the vertical [rad].
+    /// Turn of the eye about the vertical (rad).
     pub azimuth: f64,
-    /// Turn of the eye about the horizontal [rad].
+    /// Turn of the eye about the horizontal (rad).
     pub elevation: f64,
-    /// Magnification over what fits a panel [-].
+    /// Magnification over what fits a panel (-).
     pub zoom: f64,
-    /// Section that the close-up follows, as z before loading [m]. `None`: mid-length, then the first rupture.
+    /// Section that the close-up follows, as z before loading (m). `None`: mid-length, then the first rupture.
     pub focus_z: Option<f64>,
 }
 

@@ -15,25 +15,25 @@ pub struct Assembly {
     pub wires: Vec<Wire>,
     /// Number of particles that belong to wires; free spheres follow.
     pub wire_particles: usize,
-    /// Particle centres [m].
+    /// Particle centres (m).
     pub position: Vectors,
-    /// Initial velocities [m/s] (those that the scene gives; the affine field of a pull is added by the engine).
+    /// Initial velocities (m/s) (those that the scene gives; the affine field of a pull is added by the engine).
     pub velocity: Vectors,
-    /// Initial spins [rad/s].
+    /// Initial spins (rad/s).
     pub spin: Vectors,
-    /// Particle radii [m].
+    /// Particle radii (m).
     pub radius: Vec<f64>,
-    /// Particle masses [kg]: ρ A a for wire particles (half of it at wire ends), 4/3 π r³ ρ for free spheres.
+    /// Particle masses (kg): ρ A a for wire particles (half of it at wire ends), 4/3 π r³ ρ for free spheres.
     pub mass: Vec<f64>,
-    /// Rotational inertia [kg m²]: 1/2 m r² in wires, 2/5 m r² for free spheres, scaled if the scene asks.
+    /// Rotational inertia (kg m²): 1/2 m r² in wires, 2/5 m r² for free spheres, scaled if the scene asks.
     pub inertia: Vec<f64>,
-    /// Stress-free length of each bond slot [m]; 0 where no bond is.
+    /// Stress-free length of each bond slot (m); 0 where no bond is.
     pub rest_length: Vec<f64>,
     /// Wire of each particle; `u32::MAX` for free spheres.
     pub wire_of: Vec<u32>,
-    /// Length of the body along z [m] (z from 0 to this when a strand; the extent of the wires otherwise).
+    /// Length of the body along z (m) (z from 0 to this when a strand; the extent of the wires otherwise).
     pub length: f64,
-    /// Total copper area ΣnA₀ over all wires [m²].
+    /// Total copper area ΣnA₀ over all wires (m²).
     pub area: f64,
 }
 
@@ -42,9 +42,9 @@ pub struct Assembly {
 pub struct Layer {
     /// Name.
     pub name: String,
-    /// Lay radius [m]; 0 for straight wires given one by one.
+    /// Lay radius (m); 0 for straight wires given one by one.
     pub lay_radius: f64,
-    /// Pitch [m]; infinite when straight.
+    /// Pitch (m); infinite when straight.
     pub pitch: f64,
     /// Lay direction, ±1; 0 when straight.
     pub lay: f64,
@@ -59,7 +59,7 @@ pub struct Wire {
     pub first: usize,
     /// Number of particles.
     pub len: usize,
-    /// Diameter [m].
+    /// Diameter (m).
     pub diameter: f64,
 }
 
@@ -74,7 +74,7 @@ impl Wire {
         self.first..self.first + self.len.saturating_sub(1)
     }
 
-    /// Cross-section A₀ = π d² / 4 [m²].
+    /// Cross-section A₀ = π d² / 4 (m²).
     pub fn area(&self) -> f64 {
         std::f64::consts::FRAC_PI_4 * self.diameter * self.diameter
     }

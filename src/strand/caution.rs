@@ -9,9 +9,9 @@ use crate::strand::resample::resample;
 use crate::strand::{build, error::mm};
 use glam::DVec3;
 
-/// Deviation of a wire from the points that a file gives, over its radius, from which it is told [-].
+/// Deviation of a wire from the points that a file gives, over its radius, from which it is told (-).
 const FAR: f64 = 0.1;
-/// Spacing over the scene's at which it is asked whether overlaps come from chords that cut curves short [-].
+/// Spacing over the scene's at which it is asked whether overlaps come from chords that cut curves short (-).
 const FINER: f64 = 0.25;
 
 /// Everything about the geometry that the user should know before the run; empty when there is nothing.
@@ -26,11 +26,11 @@ pub fn cautions(spec: &Spec, assembly: &Assembly) -> Vec<String> {
 pub struct Followed {
     /// Number of the wire, from 0, in [`Assembly::wires`].
     pub wire: usize,
-    /// Greatest distance between the particles' polygon and the one through the points [m].
+    /// Greatest distance between the particles' polygon and the one through the points (m).
     pub deviation: f64,
     /// Points that repeat the one before and were left out.
     pub merged: usize,
-    /// Radius of the wire [m].
+    /// Radius of the wire (m).
     pub radius: f64,
 }
 

@@ -11,7 +11,7 @@ use crate::strand::strung::{Strung, lay_up, string_wire};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, PI};
 
-/// Greatest angle by which a wire may turn between neighbouring bonds [rad]: beyond it a chain of straight bonds is no
+/// Greatest angle by which a wire may turn between neighbouring bonds (rad): beyond it a chain of straight bonds is no
 /// picture of the wire, and the small-rotation bending of a bond does not hold.
 const GREATEST_TURN: f64 = FRAC_PI_4;
 
@@ -154,9 +154,9 @@ fn assemble(spec: &Spec, layers: Vec<Layer>, strung: &[Strung]) -> Assembly {
     assembly
 }
 
-/// Inertia over m r² of a particle that stands for a piece of wire: that of a cylinder about its axis [-].
+/// Inertia over m r² of a particle that stands for a piece of wire: that of a cylinder about its axis (-).
 const WIRE_INERTIA: f64 = 0.5;
-/// The same of a solid sphere [-].
+/// The same of a solid sphere (-).
 const SPHERE_INERTIA: f64 = 0.4;
 
 fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &Strung) {
@@ -200,7 +200,7 @@ fn add_spheres(assembly: &mut Assembly, spec: &Spec) {
     }
 }
 
-/// Radius, mass and inertia of a particle of unscaled `mass` [kg]; `inertia` is its inertia over m r² [-].
+/// Radius, mass and inertia of a particle of unscaled `mass` (kg); `inertia` is its inertia over m r² (-).
 fn add_body(assembly: &mut Assembly, spec: &Spec, radius: f64, mass: f64, inertia: f64) {
     let mass = mass * spec.time.mass_scale;
     assembly.radius.push(radius);

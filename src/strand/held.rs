@@ -15,7 +15,7 @@ pub struct Gripped {
     /// Particles in the lower and in the upper grip, wire by wire; empty for wires that do not reach into it, and for all
     /// but the outermost layer under a jaw.
     pub particles: [Vec<Vec<usize>>; 2],
-    /// Mean z of the innermost particle that each grip holds of a wire [m]; NaN where it holds none.
+    /// Mean z of the innermost particle that each grip holds of a wire (m); NaN where it holds none.
     pub faces: [f64; 2],
 }
 
@@ -52,7 +52,7 @@ impl Gripped {
         gripped
     }
 
-    /// Length between the last particles held in one grip and in the other, mean over the held wires [m].
+    /// Length between the last particles held in one grip and in the other, mean over the held wires (m).
     pub fn free_length(&self) -> f64 {
         self.faces[1] - self.faces[0]
     }

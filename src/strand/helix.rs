@@ -7,57 +7,57 @@ use std::f64::consts::TAU;
 /// A helical centre line; straight when the pitch is infinite, on the axis when the radius is 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Helix {
-    /// Lay radius R [m].
+    /// Lay radius R (m).
     pub radius: f64,
-    /// Pitch h [m]; infinite when straight.
+    /// Pitch h (m); infinite when straight.
     pub pitch: f64,
     /// Lay direction s: +1 right (Z), −1 left (S).
     pub lay: f64,
-    /// Angle of the wire at z = 0, 2π i/n + φ [rad].
+    /// Angle of the wire at z = 0, 2π i/n + φ (rad).
     pub phase: f64,
 }
 
 impl Helix {
-    /// Angle per length along the axis, s 2π/h [rad/m]; 0 when straight.
+    /// Angle per length along the axis, s 2π/h (rad/m); 0 when straight.
     pub fn rate(&self) -> f64 {
         self.lay * TAU / self.pitch
     }
 
-    /// Centre at height `z` [m]: (R cos θ, R sin θ, z) with θ = s 2π z/h + phase [m].
+    /// Centre at height `z` (m): (R cos θ, R sin θ, z) with θ = s 2π z/h + phase (m).
     pub fn point(&self, z: f64) -> DVec3 {
         let (sin, cos) = (self.rate() * z + self.phase).sin_cos();
         DVec3::new(self.radius * cos, self.radius * sin, z)
     }
 
-    /// Unit tangent at height `z` [m], pointing up.
+    /// Unit tangent at height `z` (m), pointing up.
     pub fn tangent(&self, z: f64) -> DVec3 {
         let (sin, cos) = (self.rate() * z + self.phase).sin_cos();
         let around = self.radius * self.rate();
         DVec3::new(-around * sin, around * cos, 1.0).normalize()
     }
 
-    /// Rotation of the wire's section about its trajectory at height `z` [m], α₀ + s 2π z/h [rad], from `start`
-    /// α₀ [rad]: the material frame of torsion and of a stripe that makes twist visible.
+    /// Rotation of the wire's section about its trajectory at height `z` (m), α₀ + s 2π z/h (rad), from `start`
+    /// α₀ (rad): the material frame of torsion and of a stripe that makes twist visible.
     pub fn section_rotation(&self, start: f64, z: f64) -> f64 {
         start + self.rate() * z
     }
 
-    /// Lay angle β [rad], tan β = 2π R/h.
+    /// Lay angle β (rad), tan β = 2π R/h.
     pub fn lay_angle(&self) -> f64 {
         closed_form::lay_angle(self.radius, self.pitch)
     }
 
-    /// Length of the wire over `length` of the axis [m], L/cos β.
+    /// Length of the wire over `length` of the axis (m), L/cos β.
     pub fn arc_length(&self, length: f64) -> f64 {
         closed_form::arc_length(self.radius, self.pitch, length)
     }
 
-    /// Curvature sin²β/R [1/m].
+    /// Curvature sin²β/R (1/m).
     pub fn curvature(&self) -> f64 {
         closed_form::curvature(self.radius, self.pitch)
     }
 
-    /// Torsion s sin β cos β/R [1/m].
+    /// Torsion s sin β cos β/R (1/m).
     pub fn torsion(&self) -> f64 {
         closed_form::torsion(self.radius, self.pitch, self.lay)
     }

@@ -6,7 +6,7 @@ use crate::scene::spec::LayerSpec;
 use crate::strand::helix::Helix;
 use std::f64::consts::TAU;
 
-/// Overlap over the wire diameter above which a geometry is refused [-]. Below it, the first steps push the wires
+/// Overlap over the wire diameter above which a geometry is refused (-). Below it, the first steps push the wires
 /// apart; above it they would shoot apart.
 pub const GREATEST_OVERLAP: f64 = 0.1;
 
@@ -24,16 +24,16 @@ pub enum Clash {
 pub struct LayRadiusError {
     /// The layer, from 0.
     pub layer: usize,
-    /// The radius that the scene gives [m]; `None` for `auto`.
+    /// The radius that the scene gives (m); `None` for `auto`.
     pub given: Option<f64>,
-    /// The least radius that works whatever the phases [m]; `None` when the layer's wires overlap at every radius
+    /// The least radius that works whatever the phases (m); `None` when the layer's wires overlap at every radius
     /// (the pitch is not greater than the sum of the diameters).
     pub least: Option<f64>,
     /// What the wires run into.
     pub clash: Clash,
 }
 
-/// Lay radius of every layer [m]: the given one, or for `auto` the least without overlap.
+/// Lay radius of every layer (m): the given one, or for `auto` the least without overlap.
 ///
 /// # Errors
 /// When wires of a layer overlap each other or a layer below by more than [`GREATEST_OVERLAP`] of a diameter.
@@ -54,7 +54,7 @@ pub fn resolve(layers: &[LayerSpec]) -> Result<Vec<f64>, LayRadiusError> {
     Ok(radii)
 }
 
-/// Least radius [m] of layer `k` above layers whose radii [m] are known: its own wires just do not overlap, and
+/// Least radius (m) of layer `k` above layers whose radii (m) are known: its own wires just do not overlap, and
 /// R ≥ R_below + (d_below + d)/2. `None` when its wires overlap at every radius.
 fn least_radius(layers: &[LayerSpec], below: &[f64], k: usize) -> Option<f64> {
     let layer = &layers[k];
@@ -66,7 +66,7 @@ fn least_radius(layers: &[LayerSpec], below: &[f64], k: usize) -> Option<f64> {
     Some(above.fold(own, f64::max))
 }
 
-/// What layer `k` runs into at radius `given` [m], if anything.
+/// What layer `k` runs into at radius `given` (m), if anything.
 fn clash(layers: &[LayerSpec], below: &[f64], k: usize, given: f64) -> Option<Clash> {
     let layer = &layers[k];
     if layer.wires > 1 {
@@ -86,7 +86,7 @@ fn clash(layers: &[LayerSpec], below: &[f64], k: usize, given: f64) -> Option<Cl
         .map(Clash::Below)
 }
 
-/// Least distance [m] between the centre lines of two layers at their radii [m].
+/// Least distance (m) between the centre lines of two layers at their radii (m).
 fn distance_of_layers(upper: (&LayerSpec, f64), lower: (&LayerSpec, f64)) -> f64 {
     let helix = |layer: &LayerSpec, radius: f64, i: usize| Helix {
         radius,
@@ -110,7 +110,7 @@ fn distance_of_layers(upper: (&LayerSpec, f64), lower: (&LayerSpec, f64)) -> f64
     least
 }
 
-/// Outer radius [m] of a strand with these layers and lay radii [m]: the greatest R + d/2.
+/// Outer radius (m) of a strand with these layers and lay radii (m): the greatest R + d/2.
 pub fn outer_radius(layers: &[LayerSpec], radii: &[f64]) -> f64 {
     let reach = layers.iter().zip(radii).map(|(layer, radius)| radius + 0.5 * layer.wire_diameter);
     reach.fold(0.0, f64::max)

@@ -6,9 +6,9 @@ use std::collections::HashMap;
 /// A body for the search.
 #[derive(Debug, Clone, Copy)]
 pub struct Body<'a> {
-    /// Particle centres along the body [m]; a single one for a sphere.
+    /// Particle centres along the body (m); a single one for a sphere.
     pub points: &'a [DVec3],
-    /// Radius [m].
+    /// Radius (m).
     pub radius: f64,
 }
 
@@ -17,11 +17,11 @@ pub struct Body<'a> {
 pub struct Overlap {
     /// The two bodies; the same one twice when a wire runs into itself.
     pub bodies: [usize; 2],
-    /// Overlap over the smaller of the two diameters [-].
+    /// Overlap over the smaller of the two diameters (-).
     pub share: f64,
-    /// Overlap [m].
+    /// Overlap (m).
     pub depth: f64,
-    /// Place between the two centre lines [m].
+    /// Place between the two centre lines (m).
     pub place: DVec3,
 }
 
@@ -33,7 +33,7 @@ struct Segment {
     radius: f64,
 }
 
-/// The deepest overlap of more than `limit` of a diameter [-], if there is one.
+/// The deepest overlap of more than `limit` of a diameter (-), if there is one.
 ///
 /// Parts of one wire closer along it than two diameters are neighbours, not overlaps: a wire bent to its own radius is
 /// back within 0.909 d of itself there.

@@ -15,33 +15,33 @@ pub enum PathTrouble {
     TooFewPoints,
     /// Point `0` (from 0) has a coordinate that is not finite.
     NotFinite(usize),
-    /// The line is shorter than the spacing: its length [m].
+    /// The line is shorter than the spacing: its length (m).
     TooShort(f64),
 }
 
 /// A wire's particles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
-    /// Centres [m].
+    /// Centres (m).
     pub points: Vec<DVec3>,
-    /// Arc length between neighbours [m]: one fewer than points.
+    /// Arc length between neighbours (m): one fewer than points.
     pub arcs: Vec<f64>,
-    /// Greatest distance between the particles' polygon and the one through the points given [m]: of a particle from the
+    /// Greatest distance between the particles' polygon and the one through the points given (m): of a particle from the
     /// line between the two points that it lies between, or of a point from the line between two particles.
     pub deviation: f64,
     /// Number of given points that were left out because they lie upon the one before.
     pub merged: usize,
 }
 
-/// Distance over the spacing within which a point counts as a repetition of the one before it [-]. Between points so close
+/// Distance over the spacing within which a point counts as a repetition of the one before it (-). Between points so close
 /// the direction of a line is noise, and a curve that follows it bulges by a quarter of the distance to the next point.
 const REPEATED: f64 = 0.01;
 
-/// Unevenness over the mean spacing up to which points count as equally spaced [-]. Text files of CAD models carry few
+/// Unevenness over the mean spacing up to which points count as equally spaced (-). Text files of CAD models carry few
 /// digits.
 const EVEN: f64 = 1e-3;
 
-/// Number of equal pieces for a wire of arc length `arc` [m] at about `spacing` [m]: the nearest that covers it exactly;
+/// Number of equal pieces for a wire of arc length `arc` (m) at about `spacing` (m): the nearest that covers it exactly;
 /// `None` when the wire is shorter than one spacing.
 pub fn pieces(arc: f64, spacing: f64) -> Option<usize> {
     // A wire of one spacing has one piece, whatever the last bits of its length.
@@ -67,7 +67,7 @@ pub fn straight(from: DVec3, to: DVec3, spacing: f64) -> Result<Chain, PathTroub
     })
 }
 
-/// Particles along a line through `points` [m], at equal arc spacing nearest to `spacing` [m], ends included.
+/// Particles along a line through `points` (m), at equal arc spacing nearest to `spacing` (m), ends included.
 ///
 /// Points that already have that spacing are taken as they are, so that an exported wire comes back unchanged. A point
 /// nearer to the one before than a hundredth of the spacing repeats it and is left out.
@@ -108,7 +108,7 @@ pub fn resample(points: &[DVec3], spacing: f64) -> Result<Chain, PathTrouble> {
     Ok(Chain { points: resampled, arcs: vec![total / n as f64; n], deviation, merged })
 }
 
-/// Points without those that are nearer than `least` [m] to the one kept before them; both ends stay.
+/// Points without those that are nearer than `least` (m) to the one kept before them; both ends stay.
 fn without_repeated(points: &[DVec3], least: f64) -> Vec<DVec3> {
     let mut kept: Vec<DVec3> = Vec::with_capacity(points.len());
     for point in points {
@@ -125,7 +125,7 @@ fn without_repeated(points: &[DVec3], least: f64) -> Vec<DVec3> {
     kept
 }
 
-/// Greatest distance of `points` from the polygon through `corners`, both in order along one line [m].
+/// Greatest distance of `points` from the polygon through `corners`, both in order along one line (m).
 fn farthest(points: &[DVec3], corners: &[DVec3]) -> f64 {
     let mut at = 0;
     let mut greatest = 0.0_f64;
@@ -140,7 +140,7 @@ fn farthest(points: &[DVec3], corners: &[DVec3]) -> f64 {
     greatest
 }
 
-/// Distance of `p` from the segment from `a` to `b` [m].
+/// Distance of `p` from the segment from `a` to `b` (m).
 fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     let along = b - a;
     let length_squared = along.length_squared();
@@ -171,11 +171,11 @@ fn has_spacing(chords: &[f64], spacing: f64) -> bool {
 /// Cubic pieces between points.
 struct Spline<'a> {
     points: &'a [DVec3],
-    /// Distance between neighbouring points: the parameter of each piece [m].
+    /// Distance between neighbouring points: the parameter of each piece (m).
     chords: Vec<f64>,
-    /// Derivative by the parameter at each point [-].
+    /// Derivative by the parameter at each point (-).
     tangents: Vec<DVec3>,
-    /// Arc length of each piece [m].
+    /// Arc length of each piece (m).
     arcs: Vec<f64>,
 }
 
@@ -196,7 +196,7 @@ impl<'a> Spline<'a> {
         p * (2.0 * u3 - 3.0 * u2 + 1.0) + m * (u3 - 2.0 * u2 + u) + q * (3.0 * u2 - 2.0 * u3) + n * (u3 - u2)
     }
 
-    /// Length of the derivative by u [m].
+    /// Length of the derivative by u (m).
     fn speed(&self, span: usize, u: f64) -> f64 {
         let (p, q, h) = self.piece(span);
         let (m, n) = (self.tangents[span] * h, self.tangents[span + 1] * h);
@@ -209,7 +209,7 @@ impl<'a> Spline<'a> {
         (self.points[span], self.points[span + 1], self.chords[span])
     }
 
-    /// Arc length of a piece from its start to `u` [m], by Gauss–Legendre with five points.
+    /// Arc length of a piece from its start to `u` (m), by Gauss–Legendre with five points.
     fn arc(&self, span: usize, u: f64) -> f64 {
         const NODES: [(f64, f64); 5] = [
             (0.0, 0.568_888_888_888_888_9),
@@ -223,7 +223,7 @@ impl<'a> Spline<'a> {
         half * sum
     }
 
-    /// Point of a piece at `arc` [m] from its start.
+    /// Point of a piece at `arc` (m) from its start.
     fn point_at_arc(&self, span: usize, arc: f64) -> DVec3 {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {

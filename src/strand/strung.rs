@@ -13,13 +13,13 @@ use std::f64::consts::TAU;
 pub(super) struct Strung {
     /// Index into the assembly's layers.
     pub layer: usize,
-    /// Diameter [m].
+    /// Diameter (m).
     pub diameter: f64,
     /// Particle centres and the arcs between them.
     pub chain: Chain,
-    /// Velocity of the centre of mass [m/s].
+    /// Velocity of the centre of mass (m/s).
     pub velocity: DVec3,
-    /// Spin of the whole wire [rad/s].
+    /// Spin of the whole wire (rad/s).
     pub spin: DVec3,
     /// The scene's key that describes it.
     pub key: String,
@@ -72,7 +72,7 @@ pub(super) fn lay_up(
     Ok(())
 }
 
-/// Particles of a helical wire from z = 0 to `length` [m]: equal steps of z are equal steps of arc.
+/// Particles of a helical wire from z = 0 to `length` (m): equal steps of z are equal steps of arc.
 fn string_helix(helix: &Helix, length: f64, spacing: f64) -> Result<Chain, PathTrouble> {
     let arc = helix.arc_length(length);
     let n = resample::pieces(arc, spacing).ok_or(PathTrouble::TooShort(arc))?;

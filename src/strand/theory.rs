@@ -12,9 +12,9 @@ pub struct Theory {
     pub layers: Vec<Layer>,
     /// Axial force and torque over strain, ends held, elastic, each layer resting on the one below.
     pub wrench: Wrench,
-    /// Section of all wires [m²].
+    /// Section of all wires (m²).
     pub area: f64,
-    /// Strain at which loose layers have closed in [-]; 0 where none is loose.
+    /// Strain at which loose layers have closed in (-); 0 where none is loose.
     pub closing_strain: f64,
 }
 
@@ -41,7 +41,7 @@ impl Theory {
         if held && pulled && spec.holds.is_empty() && spec.spheres.is_empty() { Self::of(spec) } else { None }
     }
 
-    /// Nominal modulus: force per strain over the wires' sections [Pa].
+    /// Nominal modulus: force per strain over the wires' sections (Pa).
     pub fn modulus(&self) -> f64 {
         self.wrench.force / self.area
     }
@@ -60,7 +60,7 @@ fn laid(strand: &StrandSpec) -> Option<(Vec<Layer>, Vec<f64>)> {
     Some((strand.layers.iter().zip(&radii).map(layer).collect(), gaps))
 }
 
-/// Radial distance by which layer `k` can move in before its wires touch each other or, crest on crest, those below [m].
+/// Radial distance by which layer `k` can move in before its wires touch each other or, crest on crest, those below (m).
 fn gap(layers: &[LayerSpec], radii: &[f64], k: usize) -> f64 {
     let layer = &layers[k];
     if radii[k] == 0.0 {

@@ -40,11 +40,11 @@ const MOST_SETTINGS: usize = 10;
 /// What the test found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Target {
-    /// Tensile strength [MPa].
+    /// Tensile strength (MPa).
     pub strength: f64,
-    /// Fracture elongation [%].
+    /// Fracture elongation (%).
     pub elongation: f64,
-    /// Allowed relative error of either [-].
+    /// Allowed relative error of either (-).
     pub tolerance: f64,
 }
 
@@ -78,11 +78,11 @@ pub fn default_seeds(scene: &Scene) -> Vec<u64> {
 /// The two numbers that are fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Setting {
-    /// Q of the Voce law [MPa].
+    /// Q of the Voce law (MPa).
     pub saturation: f64,
-    /// H of the Voce law [MPa].
+    /// H of the Voce law (MPa).
     pub linear: f64,
-    /// Plastic strain at rupture p_f [%].
+    /// Plastic strain at rupture p_f (%).
     pub rupture_strain: f64,
 }
 
@@ -102,11 +102,11 @@ impl Setting {
 pub struct Trial {
     /// What was set.
     pub setting: Setting,
-    /// Tensile strength [MPa], over seeds.
+    /// Tensile strength (MPa), over seeds.
     pub strength: Stat,
-    /// Fracture elongation [%], over seeds.
+    /// Fracture elongation (%), over seeds.
     pub elongation: Stat,
-    /// Relative errors of the means of strength and elongation [-].
+    /// Relative errors of the means of strength and elongation (-).
     pub error: [f64; 2],
     /// Runs that were there from before, and of those the ones of another build of the same version.
     pub kept: usize,
@@ -119,7 +119,7 @@ impl Trial {
         self.error.iter().all(|e| e.abs() <= target.tolerance)
     }
 
-    /// How far the means are from the target (strength [MPa], elongation [%]).
+    /// How far the means are from the target (strength (MPa), elongation (%)).
     fn miss(&self, target: &Target) -> DVec2 {
         DVec2::new(self.strength.mean - target.strength, self.elongation.mean - target.elongation)
     }
@@ -157,7 +157,7 @@ impl Start {
         })
     }
 
-    /// Setting for a factor on the hardening and one on the rupture strain [-], to four figures.
+    /// Setting for a factor on the hardening and one on the rupture strain (-), to four figures.
     fn setting(&self, x: DVec2) -> Setting {
         let round = |value: f64, places: i32| (value * 10f64.powi(places)).round() / 10f64.powi(places);
         Setting {
@@ -167,8 +167,8 @@ impl Start {
         }
     }
 
-    /// d(strength [MPa], elongation [%]) / d(factor on the hardening, factor on the rupture strain) at factors `x` of a
-    /// uniformly pulled wire that breaks at plastic strain `p` [-]: where it does go with the rupture strain, and the
+    /// d(strength (MPa), elongation (%)) / d(factor on the hardening, factor on the rupture strain) at factors `x` of a
+    /// uniformly pulled wire that breaks at plastic strain `p` (-): where it does go with the rupture strain, and the
     /// weakest bond of a body with scatter does.
     fn slopes(&self, x: DVec2, p: f64) -> DMat2 {
         let decay = (-self.rate * p).exp();
@@ -224,7 +224,7 @@ pub fn calibrate(calibration: &Calibration, target: &Target, tried: &mut dyn FnM
     ))
 }
 
-/// The next factors on the hardening and on the rupture strain, which is `rupture_strain` [-] at 1.
+/// The next factors on the hardening and on the rupture strain, which is `rupture_strain` (-) at 1.
 ///
 /// # Errors
 /// When one of them would have to be below zero: what the runs give does not follow them any more.

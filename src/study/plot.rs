@@ -21,7 +21,7 @@ pub enum Scale {
 /// One axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What it shows, with its unit: "run time [s]".
+    /// What it shows, with its unit: "run time (s)".
     pub label: String,
     /// How it runs.
     pub scale: Scale,
@@ -107,7 +107,7 @@ impl Series {
 /// A straight line y ∝ x^`order` on two logarithmic axes, to compare slopes with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slope {
-    /// The exponent [-].
+    /// The exponent (-).
     pub order: f64,
     /// A point that it runs through.
     pub through: [f64; 2],
@@ -161,11 +161,11 @@ pub struct Figure {
     pub highlights: Vec<Highlight>,
     /// Where the legend stands.
     pub legend: Legend,
-    /// Width and height [px of an SVG].
+    /// Width and height (px of an SVG).
     pub size: [u32; 2],
 }
 
-/// Size of a figure unless it says otherwise [px of an SVG].
+/// Size of a figure unless it says otherwise (px of an SVG).
 const SIZE: [u32; 2] = [620, 440];
 
 impl Figure {

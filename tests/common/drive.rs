@@ -87,7 +87,7 @@ pub fn run_steps(engine: &mut Engine, steps: u64) {
     run_while(engine, |e| e.steps() < last);
 }
 
-/// Runs to a simulated time [s].
+/// Runs to a simulated time (s).
 pub fn run_to(engine: &mut Engine, time: f64) {
     run_while(engine, |e| e.time() < time);
 }
@@ -139,18 +139,18 @@ impl Outcome {
     }
 }
 
-/// Greatest distance between particles of two outcomes [m].
+/// Greatest distance between particles of two outcomes (m).
 pub fn distance(a: &[DVec3], b: &[DVec3]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
 }
 
-/// Σ m v [N s].
+/// Σ m v (N s).
 pub fn momentum(s: &State) -> DVec3 {
     (0..s.len()).map(|p| s.v.get(p) * s.mass[p]).sum()
 }
 
-/// Σ (x × m v + I ω) [N m s]; x_n with v_{n−1/2}, for which leapfrog conserves it exactly.
+/// Σ (x × m v + I ω) (N m s); x_n with v_{n−1/2}, for which leapfrog conserves it exactly.
 pub fn angular_momentum(s: &State) -> DVec3 {
     (0..s.len()).map(|p| s.x.get(p).cross(s.v.get(p) * s.mass[p]) + s.w.get(p) * s.inertia[p]).sum()
 }
@@ -163,7 +163,7 @@ pub fn add_velocity(a: &mut Assembly, field: impl Fn(DVec3) -> DVec3) {
     }
 }
 
-/// Centre of mass [m].
+/// Centre of mass (m).
 pub fn centre(a: &Assembly) -> DVec3 {
     let mass: f64 = a.mass.iter().sum();
     (0..a.len()).map(|p| a.position.get(p) * a.mass[p]).sum::<DVec3>() / mass

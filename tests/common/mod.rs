@@ -6,9 +6,9 @@
 use std::f32::consts::TAU;
 use strandsnap::engine::view::{BondState, RunInfo, Rupture, RuptureCause, Sample, Snapshot, WireInfo};
 
-/// Wire diameter [mm].
+/// Wire diameter (mm).
 pub const DIAMETER: f32 = 0.39;
-/// Length of the strand [mm].
+/// Length of the strand (mm).
 pub const LENGTH: f32 = 120.0;
 /// Wires per layer, inside out.
 const LAYERS: [(usize, f32); 3] = [(5, 0.332), (11, 0.722), (18, 1.165)];
@@ -16,7 +16,7 @@ const PITCH: f32 = 39.0;
 /// Particles per wire.
 const PARTICLES: usize = 312;
 
-/// What broke: wire from 0, and z before loading [mm], in the order of rupture.
+/// What broke: wire from 0, and z before loading (mm), in the order of rupture.
 pub const BREAKS: [(usize, f32); 7] =
     [(24, 64.0), (25, 62.5), (26, 66.0), (31, 58.0), (17, 70.0), (12, 63.0), (24, 69.0)];
 
@@ -65,7 +65,7 @@ fn strand(name: &str, layers: &[&str], wires: &[(usize, f32)]) -> RunInfo {
     info
 }
 
-/// The strand at a strain [-], whole.
+/// The strand at a strain (-), whole.
 pub fn stretched(info: &RunInfo, strain: f32) -> Snapshot {
     let [low, high] = info.gauge.expect("the strand has grips");
     let thin = (1.0 + strain).powf(-0.5);
@@ -152,7 +152,7 @@ fn broken(info: &RunInfo, strain: f32, breaks: &[(usize, f32)]) -> (Snapshot, Ve
     (s, ruptures)
 }
 
-/// Bond slot of wire `w` nearest to `z` before loading [mm].
+/// Bond slot of wire `w` nearest to `z` before loading (mm).
 pub fn bond_at(info: &RunInfo, w: usize, z: f32) -> usize {
     let wire = &info.wires[w];
     let distance = |i: &usize| (info.rest_position[*i][2] - z).abs();
@@ -178,7 +178,7 @@ fn spring_back(info: &RunInfo, s: &mut Snapshot, w: usize, bond: usize) {
     }
 }
 
-/// A curve up to `strain` [-].
+/// A curve up to `strain` (-).
 pub fn curve(strain: f32) -> Vec<(f64, f64)> {
     (0..=400)
         .map(|k| strain * k as f32 / 400.0)

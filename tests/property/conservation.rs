@@ -83,7 +83,7 @@ fn shaken(set: &[&str], edit: impl FnOnce(&mut Assembly)) -> Engine {
     })
 }
 
-/// Internal energies that a rigid motion must not change [J].
+/// Internal energies that a rigid motion must not change (J).
 fn internal(e: &Engine) -> [f64; 3] {
     let e = e.energy();
     [e.elastic_bonds, e.plastic_bonds, e.damping]

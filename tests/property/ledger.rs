@@ -4,7 +4,7 @@ use crate::drive::*;
 use proptest::prelude::*;
 use strandsnap::engine::Engine;
 
-/// Residual over the greatest of work, kinetic and internal energy [-].
+/// Residual over the greatest of work, kinetic and internal energy (-).
 fn residual(engine: &Engine) -> f64 {
     let e = engine.energy();
     e.residual().abs() / e.work.abs().max(e.internal()).max(e.kinetic)

@@ -7,19 +7,19 @@ use strandsnap::engine::Engine;
 const PULL: [&str; 4] =
     ["strand.length=24 mm", "grip.speed=2 m/s", "bond.rupture.strain=12 %", "stop.stress_fraction=50 %"];
 const ADAPTIVE: &str = "grip.adaptive={ fastest = '20 m/s' }";
-/// Gauge length of the strand [m].
+/// Gauge length of the strand (m).
 const GAUGE: f64 = 20e-3;
 
 /// What a pull found.
 struct Found {
-    /// Greatest nominal stress up to the second rupture [Pa].
+    /// Greatest nominal stress up to the second rupture (Pa).
     strength: f64,
-    /// Strain at the first rupture [-].
+    /// Strain at the first rupture (-).
     first: f64,
     steps: u64,
-    /// Greatest residual of the ledger over the work [-].
+    /// Greatest residual of the ledger over the work (-).
     residual: f64,
-    /// Slowest and fastest [m/s].
+    /// Slowest and fastest (m/s).
     speeds: [f64; 2],
 }
 

@@ -8,7 +8,7 @@ use strandsnap::strand::assembly::Assembly;
 
 const DIAMETER: f64 = 0.39;
 
-/// A wire of the pile: its middle, direction and end-to-end length in its storey [mm, rad], velocity [m/s], spin [rad/s].
+/// A wire of the pile: its middle, direction and end-to-end length in its storey (mm, rad), velocity (m/s), spin (rad/s).
 #[derive(Debug, Clone)]
 struct Body {
     angle: f64,
@@ -116,7 +116,7 @@ impl Pile {
         text
     }
 
-    /// What rounding may do to a result [-]: `smooth`, or more where friction follows Mindlin and Deresiewicz, whose
+    /// What rounding may do to a result (-): `smooth`, or more where friction follows Mindlin and Deresiewicz, whose
     /// stiffness after a reversal goes with the cube root of a difference that rounding decides: (1e-16)^(1/3) = 5e-6 in
     /// every reversal, of which there are hundreds.
     fn tolerance(&self, smooth: f64) -> f64 {
@@ -131,13 +131,13 @@ impl Pile {
 
 const STEPS: u64 = 400;
 
-/// Energies that do not depend on who looks [J]: elastic, plastic, friction, damping.
+/// Energies that do not depend on who looks (J): elastic, plastic, friction, damping.
 fn internal(engine: &Engine) -> [f64; 6] {
     let e = engine.energy();
     [e.elastic_bonds, e.elastic_contacts, e.plastic_bonds, e.plastic_contacts, e.friction, e.damping]
 }
 
-/// Greatest difference of the internal energies of two piles over `thrown`, the energy that was thrown in [-]. Not over
+/// Greatest difference of the internal energies of two piles over `thrown`, the energy that was thrown in (-). Not over
 /// the internal energies themselves: wires that miss each other hold nothing but rounding.
 fn energy_apart(a: &Engine, b: &Engine, thrown: f64) -> f64 {
     let (a, b) = (internal(a), internal(b));

@@ -21,7 +21,7 @@ fix = ["x", "y", "z", "rx", "ry", "rz"]
 time = "1 ms"
 "#;
 
-/// Energy that a swinging wire has left after `time`, over what it had [-].
+/// Energy that a swinging wire has left after `time`, over what it had (-).
 fn left(step: &str, time: f64, damping: &str, axial: bool) -> f64 {
     let (step, damping) = (format!("time.step={step}"), format!("bond.damping={damping}"));
     let mut engine = edited(REED, &[&step, &damping], |a| {

@@ -33,7 +33,7 @@ time = "1 ms"
 step = "1e-7 s"
 "#;
 
-/// Contact force on a wire [N] away from its ends: those are round, and what slides over them is pushed along.
+/// Contact force on a wire (N) away from its ends: those are round, and what slides over them is pushed along.
 fn force_on(engine: &Engine, wire: usize) -> DVec3 {
     let particles = engine.assembly().wires[wire].particles();
     (particles.start + 2..particles.end - 2).map(|p| engine.state().force_from_contacts(p)).sum()

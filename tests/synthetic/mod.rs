@@ -14,9 +14,9 @@ const DIAMETER: f64 = 0.39;
 const PITCH: f64 = 39.0;
 const LENGTH: f64 = 120.0;
 const LAYERS: [(&str, usize, f64); 3] = [("inner", 5, 0.332), ("middle", 11, 0.722), ("outer", 18, 1.165)];
-/// Strain at the end [-].
+/// Strain at the end (-).
 const STRAIN_END: f64 = 0.27;
-/// Wire (from 0), strain at which it breaks [-], place along it [-].
+/// Wire (from 0), strain at which it breaks (-), place along it (-).
 const BREAKS: [(usize, f64, f64); 6] =
     [(23, 0.234, 0.52), (30, 0.239, 0.55), (18, 0.241, 0.49), (26, 0.247, 0.53), (12, 0.251, 0.51), (2, 0.259, 0.5)];
 

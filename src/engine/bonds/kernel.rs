@@ -17,14 +17,14 @@ pub(super) struct Chunk<'a, L: BondLaw, const TURN: bool> {
     pub(super) x: &'a Vectors,
     pub(super) v: &'a Vectors,
     pub(super) w: &'a Vectors,
-    /// Step [s].
+    /// Step (s).
     pub(super) dt: f64,
     pub(super) records: &'a mut [f64],
     /// Where the constants of each block are among `constants`.
     pub(super) kind: &'a [u32],
     pub(super) constants: &'a [f64],
     pub(super) damped: bool,
-    /// Plastic strain at which each slot breaks [-], if that is the criterion.
+    /// Plastic strain at which each slot breaks (-), if that is the criterion.
     pub(super) limit: Option<&'a [f64]>,
     pub(super) actions: &'a mut [f64],
 }

@@ -13,15 +13,15 @@ pub(super) struct Node<R> {
     pub(super) w: Triple<R>,
 }
 
-/// What bonds do: pull on the first particle [N] (the second feels minus this), moments on the first and on the second
-/// [N m].
+/// What bonds do: pull on the first particle (N) (the second feels minus this), moments on the first and on the second
+/// (N m).
 pub(super) struct Acts<R> {
     pub(super) pull: Triple<R>,
     pub(super) near: Triple<R>,
     pub(super) far: Triple<R>,
 }
 
-/// A step of some bonds: what they share, and the energies that they give off [J].
+/// A step of some bonds: what they share, and the energies that they give off (J).
 pub(super) struct Step<'a, L: BondLaw, R: Real> {
     pub(super) law: &'a L,
     pub(super) dt: f64,
@@ -30,7 +30,7 @@ pub(super) struct Step<'a, L: BondLaw, R: Real> {
     pub(super) damping: R,
 }
 
-/// Length of a bond [m] and its direction.
+/// Length of a bond (m) and its direction.
 #[inline(always)]
 fn axis<R: Real>(d: Triple<R>) -> (R, Triple<R>) {
     let square = d.length_squared();
@@ -38,7 +38,7 @@ fn axis<R: Real>(d: Triple<R>) -> (R, Triple<R>) {
     (square * inverse, d * inverse)
 }
 
-/// ln(l/l₀), from the square of the length, which is there before its root [-].
+/// ln(l/l₀), from the square of the length, which is there before its root (-).
 #[inline(always)]
 fn log_strain<R: Real>(d: Triple<R>, shape: &BondShape<R>) -> R {
     (d.length_squared() * (shape.inverse_length * shape.inverse_length)).ln() * 0.5
@@ -70,7 +70,7 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         Acts { pull: n * axial, near: none, far: none }
     }
 
-    /// Force of the axial dashpot at an elongation rate [m/s]; one formula for both kinds of bond, so that they agree
+    /// Force of the axial dashpot at an elongation rate (m/s); one formula for both kinds of bond, so that they agree
     /// to the bit. The first evaluation, before any step (`dt` = 0), has none: its work would go unbooked.
     ///
     /// Work is the mean of `last` and present force over the step between them. The present force alone books too much
@@ -83,7 +83,7 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         force
     }
 
-    /// Adds the force of a dashpot across to `f`; `per` is the inverse of the step [1/s].
+    /// Adds the force of a dashpot across to `f`; `per` is the inverse of the step (1/s).
     #[inline(always)]
     fn dashpot(&mut self, f: &mut R, coefficient: R, increment: R, per: f64) {
         let push = coefficient * increment * per;

@@ -9,8 +9,8 @@ use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
 use pulp::{Simd, WithSimd};
 
-/// Rows of [`BLOCK`] numbers that a block leaves for its second sides: what it takes from their force [N], and where
-/// friction acts their torque [N m].
+/// Rows of [`BLOCK`] numbers that a block leaves for its second sides: what it takes from their force (N), and where
+/// friction acts their torque (N m).
 pub const fn rows<T: TangentialLaw>() -> usize {
     if T::ACTIVE { 6 } else { 3 }
 }
@@ -277,7 +277,7 @@ fn ball<S: Simd>(simd: S, seen: &Seen, p: usize) -> Ball<Lanes<S>> {
     Ball { x: vector(simd, &seen.x, p), radius: load(seen.radius), thinned: load(seen.thinned) }
 }
 
-/// Velocity of the second surfaces relative to the first where they meet [m/s].
+/// Velocity of the second surfaces relative to the first where they meet (m/s).
 #[inline(always)]
 fn velocity<S: Simd, T: TangentialLaw>(
     simd: S,

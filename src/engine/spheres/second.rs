@@ -23,7 +23,7 @@ struct Entry {
 }
 
 impl Places {
-    /// Memory behind it [bytes].
+    /// Memory behind it (bytes).
     pub fn bytes(&self) -> usize {
         behind(&self.start) + behind(&self.entries)
     }

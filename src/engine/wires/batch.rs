@@ -122,7 +122,7 @@ impl Gaps {
         self.rows[GAP_OFFSET][lane] = c.history.offset;
     }
 
-    /// Finds foot [-] and gap [m] of each, with the instructions of the machine.
+    /// Finds foot (-) and gap (m) of each, with the instructions of the machine.
     pub fn find(&self) -> impl WithSimd<Output = [[f64; BLOCK]; 2]> {
         Find { gaps: self }
     }
@@ -319,7 +319,7 @@ impl<N: NormalLaw, T: TangentialLaw> Run<'_, N, T> {
 }
 
 impl Answers {
-    /// The foot of one lane [-].
+    /// The foot of one lane (-).
     pub fn place(&self, lane: usize) -> f64 {
         self.rows[OUT_PLACE][lane]
     }

@@ -19,70 +19,70 @@ use crate::law::tangential::TangentialLaw;
 
 /// Rounds of Newton's method for the foot, from that of the last step.
 pub const ROUNDS: usize = 2;
-/// Share of the square of the tangent below which the denominator of t' does not fall [-]: beside a wire that is bent more
+/// Share of the square of the tangent below which the denominator of t' does not fall (-): beside a wire that is bent more
 /// sharply than it is away, the foot jumps.
 const STIFF: f64 = 0.1;
 
 /// Two wires near a stretch.
 #[derive(Debug, Clone, Copy)]
 pub struct Beside<R> {
-    /// The stretch: point, and first and second derivative by the position in bonds, at the middle of the stretch [m].
+    /// The stretch: point, and first and second derivative by the position in bonds, at the middle of the stretch (m).
     pub near: [Triple<R>; 3],
-    /// Its velocity, in the same way [m/s].
+    /// Its velocity, in the same way (m/s).
     pub near_velocity: [Triple<R>; 3],
-    /// The other wire's bond; see [`Arc`](super::curve::Arc) [m].
+    /// The other wire's bond; see [`Arc`](super::curve::Arc) (m).
     pub far: [Triple<R>; 4],
-    /// Its velocity, in the same way [m/s].
+    /// Its velocity, in the same way (m/s).
     pub far_velocity: [Triple<R>; 4],
-    /// Spin of the stretch's particle, and of the two of the other bond [rad/s].
+    /// Spin of the stretch's particle, and of the two of the other bond (rad/s).
     pub spin: [Triple<R>; 3],
-    /// Radii of the three [m].
+    /// Radii of the three (m).
     pub radius: [R; 3],
-    /// Where on the other bond the foot was at the last step [-].
+    /// Where on the other bond the foot was at the last step (-).
     pub t: R,
     /// 0 where the foot is the end of a wire and stays there, 1 elsewhere.
     pub moves: R,
-    /// Where the first cell begins, and the length of a cell, in bonds from the expansion [-].
+    /// Where the first cell begins, and the length of a cell, in bonds from the expansion (-).
     pub first: R,
     /// See `first`.
     pub width: R,
-    /// Length of a cell along the undeformed wire [m].
+    /// Length of a cell along the undeformed wire (m).
     pub length: R,
-    /// Stiffness per length [Pa].
+    /// Stiffness per length (Pa).
     pub per_length: R,
-    /// Sum of the radii at the last step, less the overlap that does not count [m].
+    /// Sum of the radii at the last step, less the overlap that does not count (m).
     pub reach: R,
-    /// 2ξ√m* [√kg].
+    /// 2ξ√m* (√kg).
     pub viscosity: R,
 }
 
 /// The gap to the second order.
 #[derive(Debug, Clone, Copy)]
 pub struct Expansion<R> {
-    /// The foot [-].
+    /// The foot (-).
     pub t: R,
-    /// Bonds that it moves per bond of the stretch, and how that changes [-].
+    /// Bonds that it moves per bond of the stretch, and how that changes (-).
     pub rate: R,
     /// See `rate`.
     pub bend: R,
-    /// From the foot to the point, and its derivatives [m].
+    /// From the foot to the point, and its derivatives (m).
     pub away: [Triple<R>; 3],
-    /// Unit normal along it, and its derivatives [-].
+    /// Unit normal along it, and its derivatives (-).
     pub normal: [Triple<R>; 3],
-    /// Distance and its derivatives [m].
+    /// Distance and its derivatives (m).
     pub distance: [R; 3],
-    /// Sum of the radii [m].
+    /// Sum of the radii (m).
     pub touching: R,
 }
 
 /// What a stretch does to the two wires: a force per length over u with the moments that `near` and `far` stand for.
 #[derive(Debug, Clone, Copy)]
 pub struct Act<R> {
-    /// On the stretch, per power of u [N].
+    /// On the stretch, per power of u (N).
     pub near: [Triple<R>; 3],
-    /// On the other bond, times 1, t, t² and h(t) [N].
+    /// On the other bond, times 1, t, t² and h(t) (N).
     pub far: [Triple<R>; 4],
-    /// Moments on the stretch's particle, on the first of the other two, and on both [N m].
+    /// Moments on the stretch's particle, on the first of the other two, and on both (N m).
     pub twist: [Triple<R>; 3],
 }
 
@@ -93,19 +93,19 @@ pub struct Answer<R> {
     pub act: Act<R>,
     /// Energies that it gives off.
     pub given: Given<R>,
-    /// Normal force of its cells [N], and where it acts, in bonds from the expansion [-].
+    /// Normal force of its cells (N), and where it acts, in bonds from the expansion (-).
     pub force: R,
     /// See `force`.
     pub mean: R,
-    /// Elastic stiffness [N/m].
+    /// Elastic stiffness (N/m).
     pub stiffness: R,
-    /// Elastic energy [J].
+    /// Elastic energy (J).
     pub energy: R,
-    /// Overlap of the deepest cell, positive or not [m].
+    /// Overlap of the deepest cell, positive or not (m).
     pub deepest: R,
-    /// Sum of the radii less what does not count [m].
+    /// Sum of the radii less what does not count (m).
     pub reach: R,
-    /// Lever arms of the two sides [m].
+    /// Lever arms of the two sides (m).
     pub arms: [R; 2],
 }
 
@@ -155,7 +155,7 @@ impl<R: Real> Beside<R> {
         Expansion { t, rate, bend, away: [e, e1, e2], normal: [n, n1, n2], distance: [distance, r1, r2], touching }
     }
 
-    /// The cells over an expansion, where `offset` of the overlap does not count [m].
+    /// The cells over an expansion, where `offset` of the overlap does not count (m).
     #[inline(always)]
     pub fn gap(&self, at: &Expansion<R>, offset: R, reduced_radius: R) -> CellGap<R> {
         CellGap {
@@ -170,7 +170,7 @@ impl<R: Real> Beside<R> {
         }
     }
 
-    /// Overlap of the deepest of the cells of which `share` counts something [m].
+    /// Overlap of the deepest of the cells of which `share` counts something (m).
     #[inline(always)]
     pub fn deepest(gap: &CellGap<R>, share: &[R; CELLS]) -> R {
         let mut deepest = gap.overlap.like(f64::NEG_INFINITY);
@@ -181,7 +181,7 @@ impl<R: Real> Beside<R> {
         deepest
     }
 
-    /// What the stretch does at this step of `dt` [s].
+    /// What the stretch does at this step of `dt` (s).
     #[inline(always)]
     pub fn respond<N: NormalLaw, T: TangentialLaw>(
         &self,
@@ -264,7 +264,7 @@ impl<R: Real> Beside<R> {
         slide - (self.spin[0] * arms[0] + spin * arms[1]).cross(normal)
     }
 
-    /// Velocity of the other wire relative to the stretch along a force that is spread as [`Self::act`] does [m/s], per
+    /// Velocity of the other wire relative to the stretch along a force that is spread as [`Self::act`] does (m/s), per
     /// force.
     #[inline(always)]
     fn power(&self, at: &Expansion<R>, [a, b, c]: &[Triple<R>; 3]) -> R {

@@ -44,7 +44,7 @@ impl Chains {
         between.len() < apart && state.whole[between].iter().all(|w| *w)
     }
 
-    /// Memory that it keeps [bytes].
+    /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
         behind(&self.wire_of) + behind(&self.apart) + behind(&self.bonded)
     }
@@ -71,7 +71,7 @@ impl Chains {
             || !holds(j - MARGIN, j + MARGIN + 1)
     }
 
-    /// How far the length that particle `p` stands for reaches to either side, in bonds [-]: half a bond, also where it
+    /// How far the length that particle `p` stands for reaches to either side, in bonds (-): half a bond, also where it
     /// broke, and nothing beyond the ends that the wire has had from the start.
     pub fn reach(&self, p: usize) -> [f64; 2] {
         let half = |bonded: bool| if bonded { 0.5 } else { 0.0 };

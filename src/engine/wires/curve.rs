@@ -23,15 +23,15 @@ const HOPS: usize = 8;
 /// Steps of Newton's method from the foot on the chord to that on the curve: chord and curve are within per cents, which
 /// two steps take to rounding.
 const STEPS: usize = 3;
-/// A foot that is cut off by an end lies further than this beyond it [-].
+/// A foot that is cut off by an end lies further than this beyond it (-).
 const CLOSE: f64 = 1e-5;
 
 /// A point of the centreline nearest to another point.
 #[derive(Debug, Clone, Copy)]
 pub struct Foot {
-    /// The point [m].
+    /// The point (m).
     pub point: DVec3,
-    /// First and second derivative by the position along the bond [m].
+    /// First and second derivative by the position along the bond (m).
     pub along: DVec3,
     /// See `along`.
     pub bend: DVec3,
@@ -63,7 +63,7 @@ impl<const N: usize> Weights<N> {
         (0..N).fold(DVec3::ZERO, |sum, k| sum + value(self.nodes[k] as usize) * self.shares[k])
     }
 
-    /// Σ |weight| [-].
+    /// Σ |weight| (-).
     pub fn sum(&self) -> f64 {
         self.shares.iter().map(|s| s.abs()).sum()
     }
@@ -75,9 +75,9 @@ pub struct Around {
     /// The first of the particles that it goes through, and their number.
     first: u32,
     count: u32,
-    /// Place of the particle, from the middle one of these [-].
+    /// Place of the particle, from the middle one of these (-).
     shift: f64,
-    /// Coefficients of its powers [m].
+    /// Coefficients of its powers (m).
     powers: [DVec3; 5],
 }
 
@@ -131,7 +131,7 @@ impl Around {
         Self { first: first as u32, count: 2 * half as u32 + 1, shift, powers }
     }
 
-    /// The point at `u` bonds from the particle, and the first and second derivative there [m].
+    /// The point at `u` bonds from the particle, and the first and second derivative there (m).
     #[inline(always)]
     pub fn at(&self, u: f64) -> [DVec3; 3] {
         let u = u + self.shift;
@@ -221,7 +221,7 @@ pub fn shifted(moments: &[DVec3; 5], shift: f64) -> [DVec3; 5] {
 /// The curve of one bond, a + b t + c t² + d h(t); see [`blend`].
 #[derive(Clone, Copy)]
 pub struct Arc {
-    /// The coefficients [m].
+    /// The coefficients (m).
     pub coefficients: [DVec3; 4],
 }
 
@@ -248,7 +248,7 @@ impl Arc {
         Self { coefficients }
     }
 
-    /// Where the foot of `p` on the chord lies [-].
+    /// Where the foot of `p` on the chord lies (-).
     #[inline(always)]
     fn on_chord(&self, state: &State, slot: usize, p: DVec3) -> f64 {
         let chord = state.x.get(slot + 1) - self.coefficients[0];
@@ -336,7 +336,7 @@ pub fn spread_arc(state: &State, slot: usize, moments: &[DVec3; 4], add: &mut im
 pub struct Place {
     /// First particle of the bond.
     pub j: u32,
-    /// Position along it, 0 at `j`, 1 at the next [-].
+    /// Position along it, 0 at `j`, 1 at the next (-).
     pub t: f64,
     /// Whether there is a bond.
     pub joined: bool,
@@ -387,7 +387,7 @@ impl Other<'_> {
         self.state.whole[slot] && !(self.own && self.chains.beside(self.i, slot, self.state))
     }
 
-    /// Where a place may go on its bond [-]: a break leaves half a bond on either side.
+    /// Where a place may go on its bond (-): a break leaves half a bond on either side.
     #[inline(always)]
     fn range(&self, slot: usize) -> [f64; 2] {
         // A bond that holds ends the range even where it is out of bounds for a wire that looks at itself.
@@ -413,7 +413,7 @@ impl Other<'_> {
         place.t = place.t.clamp(low, high);
     }
 
-    /// How far the piece of wire goes from a place, in bonds [-]; what lies beyond the next bond is not looked at.
+    /// How far the piece of wire goes from a place, in bonds (-); what lies beyond the next bond is not looked at.
     #[inline(always)]
     pub fn left(&self, place: &Place) -> [f64; 2] {
         let slot = place.j as usize;

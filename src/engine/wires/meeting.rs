@@ -15,11 +15,11 @@ use crate::law::tangential::TangentialLaw;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Bonds along the other wire per bond along this one, below which the end of the other wire cuts nothing off [-]: the
+/// Bonds along the other wire per bond along this one, below which the end of the other wire cuts nothing off (-): the
 /// two cross.
 const STEEP: f64 = 1e-3;
 
-/// Bonds from the end of a piece of wire within which a place is at that end [-].
+/// Bonds from the end of a piece of wire within which a place is at that end (-).
 const EDGE: f64 = 0.05;
 
 /// What one contact does to its two sides.
@@ -42,12 +42,12 @@ pub struct Meets<'a, N: NormalLaw, T: TangentialLaw> {
 
 /// Half the square of the distance between a point of the stretch and the other curve, along the stretch.
 struct Gap {
-    /// From the foot to the point [m].
+    /// From the foot to the point (m).
     away: DVec3,
-    /// First and second derivative of ½e² by the position along the bond [m²].
+    /// First and second derivative of ½e² by the position along the bond (m²).
     first: f64,
     second: f64,
-    /// Bonds that the foot moves per bond of the stretch [-].
+    /// Bonds that the foot moves per bond of the stretch (-).
     rate: f64,
 }
 
@@ -84,20 +84,20 @@ struct Lie {
     stretch: Stretch,
     /// The wire around the particle.
     around: Around,
-    /// Where the gap was expanded, in bonds from the particle, and the deepest place from there [m].
+    /// Where the gap was expanded, in bonds from the particle, and the deepest place from there (m).
     u: f64,
     deepest: f64,
-    /// Length of a bond there [m].
+    /// Length of a bond there (m).
     bond: f64,
-    /// Bonds that the foot moves per bond of the stretch [-].
+    /// Bonds that the foot moves per bond of the stretch (-).
     rate: f64,
-    /// Sum of the radii [m].
+    /// Sum of the radii (m).
     touching: f64,
     /// Whether the deepest place is at the end of one of the two pieces.
     at_end: bool,
 }
 
-/// Whether going forward along the stretch leads over the other wire, for a stretch with the tangent `along` [m] that
+/// Whether going forward along the stretch leads over the other wire, for a stretch with the tangent `along` (m) that
 /// runs beside the other wire's end and whose foot lies beyond it; `None` for any other.
 #[inline(always)]
 fn along_the_end(foot: &Foot, along: DVec3) -> Option<bool> {
@@ -129,7 +129,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         Other { chains: self.chains, state: self.state, i: c.i as usize, own: self.chains.one_wire(c.i, c.place.j) }
     }
 
-    /// Overlap at the deepest place, counted in full [m]; negative where the bodies are apart.
+    /// Overlap at the deepest place, counted in full (m); negative where the bodies are apart.
     pub fn overlap(&self, c: &mut Contact<N, T>) -> f64 {
         match c.kind {
             Kind::Stretch if c.mode == Mode::Line => self.beside(c).map_or(0.0, |(beside, shares, _)| {
@@ -304,7 +304,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         Partial { released, ..partial }
     }
 
-    /// Stiffness per length [Pa] where the gap has this curvature [1/m].
+    /// Stiffness per length (Pa) where the gap has this curvature (1/m).
     #[inline(always)]
     pub fn per_length(&self, reduced_radius: f64, curvature: f64) -> f64 {
         self.laws.normal.effective_modulus() * self.line.at(reduced_radius, curvature)
@@ -409,7 +409,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         }
     }
 
-    /// Books that the bodies are apart by `gap` [m], and tells whether there is nothing more to do.
+    /// Books that the bodies are apart by `gap` (m), and tells whether there is nothing more to do.
     #[inline(always)]
     pub fn apart(&self, c: &mut Contact<N, T>, gap: f64) -> bool {
         if gap < 0.0 {

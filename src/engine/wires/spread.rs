@@ -19,9 +19,9 @@ const FAR: usize = 2;
 /// What contacts do to the stretch of one particle.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NearSum {
-    /// Force times each power of u [N].
+    /// Force times each power of u (N).
     pub force: [DVec3; 5],
-    /// Moment on the particle [N m].
+    /// Moment on the particle (N m).
     pub moment: DVec3,
     /// Whether there is any.
     pub acts: bool,
@@ -30,9 +30,9 @@ pub struct NearSum {
 /// What one contact, or all, do to a bond of the other wire, or to its first particle where there is no bond.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FarSum {
-    /// Force times 1, t, t² and h(t) [N]; see [`blend`](super::curve::blend).
+    /// Force times 1, t, t² and h(t) (N); see [`blend`](super::curve::blend).
     pub force: [DVec3; 4],
-    /// Moments on the bond's two particles [N m].
+    /// Moments on the bond's two particles (N m).
     pub moment: [DVec3; 2],
     /// The bond.
     pub bond: u32,
@@ -57,7 +57,7 @@ impl Spread {
         self.far.resize(particles, FarSum::default());
     }
 
-    /// Memory that it keeps [bytes].
+    /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
         behind(&self.near) + behind(&self.far) + behind(&self.order) + behind(&self.starts)
     }

@@ -28,17 +28,17 @@ pub struct ElastoPlastic {
 /// and changes only in plastic ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlasticState<R = f64> {
-    /// Plastic log strain along the axis ε_p [-].
+    /// Plastic log strain along the axis ε_p (-).
     pub axial: R,
-    /// Equivalent plastic strain p [-].
+    /// Equivalent plastic strain p (-).
     pub equivalent: R,
-    /// e^(−ε_p/2), factor on the radius [-].
+    /// e^(−ε_p/2), factor on the radius (-).
     pub thinning: R,
-    /// e^(ε_p/2) [-].
+    /// e^(ε_p/2) (-).
     pub inverse_thinning: R,
-    /// σ_y(p) [Pa].
+    /// σ_y(p) (Pa).
     pub yield_stress: R,
-    /// dσ_y/dp [Pa].
+    /// dσ_y/dp (Pa).
     pub slope: R,
 }
 
@@ -126,7 +126,7 @@ impl ElastoPlastic {
         }
     }
 
-    /// σ = E(ε − ε_p) on the section that plastic stretch leaves [N].
+    /// σ = E(ε − ε_p) on the section that plastic stretch leaves (N).
     #[inline(always)]
     fn axial_force<R: Real>(&self, shape: &BondShape<R>, state: &PlasticState<R>, log_strain: R) -> R {
         (log_strain - state.axial) * self.moduli.young * self.section(shape, state).area
@@ -267,7 +267,7 @@ impl BondLaw for ElastoPlastic {
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
-/// Inverse of the stress-free length, e^(−ε_p)/l₀ [1/m].
+/// Inverse of the stress-free length, e^(−ε_p)/l₀ (1/m).
 #[inline(always)]
 fn natural_length<R: Real>(shape: &BondShape<R>, state: &PlasticState<R>) -> R {
     shape.inverse_length * (state.thinning * state.thinning)
@@ -303,7 +303,7 @@ impl<R: Real> Compliance<R> {
     }
 }
 
-/// Mean force times plastic displacement over shear, bending and torsion [J]; the plastic displacement is what the
+/// Mean force times plastic displacement over shear, bending and torsion (J); the plastic displacement is what the
 /// elastic change of force does not explain.
 #[inline(always)]
 fn transverse_plastic_work<R: Real>(
@@ -326,7 +326,7 @@ fn mode<R: Real>(f0: R, f1: R, compliance: R, total: R) -> R {
 }
 
 /// Elastic shear, bending and torsion stay what they were while the section thins: forces follow the stiffness, and the
-/// energy that goes counts as plastic work [J], which is returned. `thinner` is the ratio of the radii [-].
+/// energy that goes counts as plastic work (J), which is returned. `thinner` is the ratio of the radii (-).
 #[inline(always)]
 fn soften<R: Real>(force: &mut BondForce<R>, c: &Compliance<R>, now: &BondStiffness<R>, thinner: R) -> R {
     // I/l goes with r⁴ and the length with r⁻².

@@ -14,39 +14,39 @@ use crate::base::lanes::Real;
 pub enum Hardening {
     /// σ₀ + Q(1 − e^(−bp)) + Hp.
     Voce {
-        /// σ₀ [Pa].
+        /// σ₀ (Pa).
         yield_stress: f64,
-        /// Q [Pa].
+        /// Q (Pa).
         saturation: f64,
-        /// b [-].
+        /// b (-).
         rate: f64,
-        /// H [Pa].
+        /// H (Pa).
         linear: f64,
     },
     /// K(ε₀ + p)^n.
     Swift {
-        /// K [Pa].
+        /// K (Pa).
         strength: f64,
-        /// ε₀ [-].
+        /// ε₀ (-).
         prestrain: f64,
-        /// n [-].
+        /// n (-).
         exponent: f64,
     },
     /// σ₀ + K p^n.
     Ludwik {
-        /// σ₀ [Pa].
+        /// σ₀ (Pa).
         yield_stress: f64,
-        /// K [Pa].
+        /// K (Pa).
         strength: f64,
-        /// n [-].
+        /// n (-).
         exponent: f64,
     },
-    /// Points of (true plastic strain [-], true stress [Pa]), strain increasing from 0.
+    /// Points of (true plastic strain (-), true stress (Pa)), strain increasing from 0.
     Table(Vec<[f64; 2]>),
 }
 
 impl Hardening {
-    /// (σ_y [Pa], dσ_y/dp [Pa]) at equivalent plastic strain `p` [-].
+    /// (σ_y (Pa), dσ_y/dp (Pa)) at equivalent plastic strain `p` (-).
     #[inline(always)]
     pub fn evaluate<R: Real>(&self, p: R) -> (R, R) {
         match self {
@@ -73,12 +73,12 @@ impl Hardening {
         }
     }
 
-    /// σ_y [Pa] at `p` [-].
+    /// σ_y (Pa) at `p` (-).
     pub fn stress(&self, p: f64) -> f64 {
         self.evaluate(p).0
     }
 
-    /// The least plastic strain below `limit` [-] at which uniform straining stops being stable, dσ_y/dp ≤ σ_y
+    /// The least plastic strain below `limit` (-) at which uniform straining stops being stable, dσ_y/dp ≤ σ_y
     /// (Considère 1885), or `None`.
     pub fn considere(&self, limit: f64) -> Option<f64> {
         const STEPS: usize = 2000;

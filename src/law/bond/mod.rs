@@ -19,20 +19,20 @@ use std::f64::consts::PI;
 /// What a bond law knows of the material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moduli {
-    /// Young's modulus E [Pa].
+    /// Young's modulus E (Pa).
     pub young: f64,
-    /// Shear modulus G [Pa].
+    /// Shear modulus G (Pa).
     pub shear: f64,
-    /// Timoshenko shear coefficient of a round section κ = 6(1+ν)/(7+6ν) [-] (Cowper 1966).
+    /// Timoshenko shear coefficient of a round section κ = 6(1+ν)/(7+6ν) (-) (Cowper 1966).
     pub kappa: f64,
-    /// 1/E [1/Pa].
+    /// 1/E (1/Pa).
     pub compliance: f64,
-    /// EI over GJ of a round section, E/(2G) [-].
+    /// EI over GJ of a round section, E/(2G) (-).
     pub bend_over_twist: f64,
 }
 
 impl Moduli {
-    /// From Young's modulus [Pa] and Poisson's ratio [-].
+    /// From Young's modulus (Pa) and Poisson's ratio (-).
     pub fn new(young: f64, poisson: f64) -> Self {
         let shear = young / (2.0 * (1.0 + poisson));
         Self {
@@ -48,18 +48,18 @@ impl Moduli {
 /// Undeformed shape of a bond, or of several.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BondShape<R = f64> {
-    /// Stress-free length l₀ [m].
+    /// Stress-free length l₀ (m).
     pub rest_length: R,
-    /// Radius of the section r₀ [m].
+    /// Radius of the section r₀ (m).
     pub radius: R,
-    /// 1/l₀ [1/m] and 1/r₀ [1/m]: divisions are what a bond spends its time on.
+    /// 1/l₀ (1/m) and 1/r₀ (1/m): divisions are what a bond spends its time on.
     pub inverse_length: R,
     /// See `inverse_length`.
     pub inverse_radius: R,
 }
 
 impl BondShape {
-    /// A bond of stress-free length [m] and radius [m].
+    /// A bond of stress-free length (m) and radius (m).
     pub fn new(rest_length: f64, radius: f64) -> Self {
         Self { rest_length, radius, inverse_length: 1.0 / rest_length, inverse_radius: 1.0 / radius }
     }
@@ -68,28 +68,28 @@ impl BondShape {
 /// Deformation of a bond over one step, in its co-rotating frame (n, e₁, e₂).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BondIncrement<R = f64> {
-    /// Total log strain ln(l/l₀) at the end of the step [-].
+    /// Total log strain ln(l/l₀) at the end of the step (-).
     pub log_strain: R,
-    /// Length l at the end of the step [m].
+    /// Length l at the end of the step (m).
     pub length: R,
-    /// Increment of the relative shear displacement along e₁, e₂ [m].
+    /// Increment of the relative shear displacement along e₁, e₂ (m).
     pub shear: [R; 2],
-    /// Increment of the relative rotation about e₁, e₂ [rad].
+    /// Increment of the relative rotation about e₁, e₂ (rad).
     pub bend: [R; 2],
-    /// Increment of the relative rotation about n [rad].
+    /// Increment of the relative rotation about n (rad).
     pub twist: R,
 }
 
 /// Internal forces of a bond in its co-rotating frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BondForce<R = f64> {
-    /// Axial force N, tension positive [N].
+    /// Axial force N, tension positive (N).
     pub axial: R,
-    /// Shear force V along e₁, e₂ [N].
+    /// Shear force V along e₁, e₂ (N).
     pub shear: [R; 2],
-    /// Bending moment M about e₁, e₂ [N m].
+    /// Bending moment M about e₁, e₂ (N m).
     pub bend: [R; 2],
-    /// Torque T about n [N m].
+    /// Torque T about n (N m).
     pub twist: R,
 }
 
@@ -112,13 +112,13 @@ fn choose_both<R: Real>(mask: R::Mask, yes: [R; 2], no: [R; 2]) -> [R; 2] {
 }
 
 impl<R: Real> BondForce<R> {
-    /// |V| [N].
+    /// |V| (N).
     #[inline(always)]
     pub fn shear_size(&self) -> R {
         size(self.shear)
     }
 
-    /// |M| [N m].
+    /// |M| (N m).
     #[inline(always)]
     pub fn bend_size(&self) -> R {
         size(self.bend)
@@ -139,13 +139,13 @@ impl<R: Real> BondForce<R> {
 /// Stiffness of a bond per mode.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BondStiffness<R = f64> {
-    /// Axial EA/l [N/m].
+    /// Axial EA/l (N/m).
     pub axial: R,
-    /// Timoshenko shear 12EI/(l³(1+Φ)) [N/m].
+    /// Timoshenko shear 12EI/(l³(1+Φ)) (N/m).
     pub shear: R,
-    /// Bending EI/l [N m/rad].
+    /// Bending EI/l (N m/rad).
     pub bend: R,
-    /// Torsion GJ/l [N m/rad].
+    /// Torsion GJ/l (N m/rad).
     pub twist: R,
 }
 
@@ -166,7 +166,7 @@ pub trait BondLaw: Clone + Send + Sync + 'static {
     /// History of a bond that was never loaded.
     fn initial(&self) -> Self::State<f64>;
 
-    /// Advances forces and history over one step; returns the plastic work of the step [J]. Bonds outside `live` are
+    /// Advances forces and history over one step; returns the plastic work of the step (J). Bonds outside `live` are
     /// not there: what becomes of them does not matter.
     fn response<R: Real>(
         &self,
@@ -190,45 +190,45 @@ pub trait BondLaw: Clone + Send + Sync + 'static {
     /// Elastic stiffness now.
     fn stiffness<R: Real>(&self, shape: &BondShape<R>, state: &Self::State<R>) -> BondStiffness<R>;
 
-    /// Stored elastic energy [J].
+    /// Stored elastic energy (J).
     fn elastic_energy(&self, shape: &BondShape, force: &BondForce, state: &Self::State<f64>) -> f64;
 
     /// Section now, thinned by plastic stretch.
     fn section<R: Real>(&self, shape: &BondShape<R>, state: &Self::State<R>) -> Section<R>;
 
-    /// Equivalent plastic strain p [-]; 0 for elastic laws.
+    /// Equivalent plastic strain p (-); 0 for elastic laws.
     fn plastic_strain<R: Real>(&self, shape: &BondShape<R>, state: &Self::State<R>) -> R;
 
-    /// Factor on the undeformed radius, e^(−ε_p/2) [-].
+    /// Factor on the undeformed radius, e^(−ε_p/2) (-).
     fn thinning<R: Real>(&self, shape: &BondShape<R>, state: &Self::State<R>) -> R;
 }
 
 /// A round section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Section<R = f64> {
-    /// Radius r [m].
+    /// Radius r (m).
     pub radius: R,
-    /// Area A = πr² [m²].
+    /// Area A = πr² (m²).
     pub area: R,
-    /// Second moment I = πr⁴/4 [m⁴].
+    /// Second moment I = πr⁴/4 (m⁴).
     pub inertia: R,
 }
 
 impl<R: Real> Section<R> {
-    /// Round section of radius `radius` [m].
+    /// Round section of radius `radius` (m).
     #[inline(always)]
     pub fn round(radius: R) -> Self {
         let r2 = radius * radius;
         Self { radius, area: r2 * PI, inertia: r2 * r2 * (0.25 * PI) }
     }
 
-    /// Polar moment J = 2I [m⁴].
+    /// Polar moment J = 2I (m⁴).
     #[inline(always)]
     pub fn polar(&self) -> R {
         self.inertia * 2.0
     }
 
-    /// Beam stiffnesses over a length given by its inverse [1/m] (Timoshenko).
+    /// Beam stiffnesses over a length given by its inverse (1/m) (Timoshenko).
     #[inline(always)]
     pub fn stiffness(&self, moduli: &Moduli, inverse_length: R) -> BondStiffness<R> {
         let bend = self.inertia * moduli.young * inverse_length;
@@ -244,7 +244,7 @@ impl<R: Real> Section<R> {
     }
 }
 
-/// Half the sum of squares over stiffness: elastic energy of the linear modes [J].
+/// Half the sum of squares over stiffness: elastic energy of the linear modes (J).
 #[inline(always)]
 pub(crate) fn transverse_energy(force: &BondForce, k: &BondStiffness) -> f64 {
     0.5 * (square(force.shear) / k.shear + square(force.bend) / k.bend + force.twist * force.twist / k.twist)

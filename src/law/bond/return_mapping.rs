@@ -6,13 +6,13 @@ use crate::base::lanes::{Mask, Real};
 /// Where a return ends: factors on the trial values, and the plastic multiplier.
 #[derive(Clone, Copy)]
 pub(super) struct Return<R> {
-    /// σ/σ* [-].
+    /// σ/σ* (-).
     pub axial: R,
-    /// M/M*, T/T*, V/V* [-].
+    /// M/M*, T/T*, V/V* (-).
     pub bend: R,
     pub twist: R,
     pub shear: R,
-    /// Increment of p [-].
+    /// Increment of p (-).
     pub equivalent: R,
 }
 
@@ -24,9 +24,9 @@ fn fall_of<R: Real>(value: R, rate: R, soft: R, h: R) -> R {
 
 /// A stress point on the way back, relative to the yield values there.
 struct Point<R> {
-    /// σ_y₀/σ_y [-].
+    /// σ_y₀/σ_y (-).
     shrink: R,
-    /// What plastic flow leaves of σ*, T*, V* [-].
+    /// What plastic flow leaves of σ*, T*, V* (-).
     soft: [R; 3],
     axial: R,
     bend: R,
@@ -36,19 +36,19 @@ struct Point<R> {
 
 /// Trial point and compliances of the return, all relative to the yield values at the start of the step.
 pub(super) struct Trial<R> {
-    /// σ*/σ_y, |M*|/M_p, T*/T_p, |V*|/V_p [-].
+    /// σ*/σ_y, |M*|/M_p, T*/T_p, |V*|/V_p (-).
     pub axial: R,
     pub bend: R,
     pub twist: R,
     pub shear: R,
-    /// What one unit of x takes off each of them [1/Pa].
+    /// What one unit of x takes off each of them (1/Pa).
     pub axial_rate: R,
     pub bend_rate: R,
     pub twist_rate: R,
     pub shear_rate: R,
-    /// Growth of σ_y/σ_y₀ with x at unit plastic work [1/Pa].
+    /// Growth of σ_y/σ_y₀ with x at unit plastic work (1/Pa).
     pub hardening_rate: R,
-    /// 1/σ_y at the start [1/Pa].
+    /// 1/σ_y at the start (1/Pa).
     pub inverse_yield: R,
 }
 

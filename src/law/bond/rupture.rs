@@ -12,16 +12,16 @@ use std::f64::consts::LN_2;
 /// Beam-stress criterion of Potyondy & Cundall 2004; compression never breaks a bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeamStress {
-    /// σ_c [Pa].
+    /// σ_c (Pa).
     pub tensile: f64,
-    /// τ_c [Pa].
+    /// τ_c (Pa).
     pub shear: f64,
-    /// β, share of moments and torque that counts [-].
+    /// β, share of moments and torque that counts (-).
     pub moment_share: f64,
 }
 
 impl BeamStress {
-    /// (tensile stress over σ_c, shear stress over τ_c) at the outermost fibre [-]; breaks at 1.
+    /// (tensile stress over σ_c, shear stress over τ_c) at the outermost fibre (-); breaks at 1.
     pub fn utilisation(&self, force: &BondForce, section: &Section) -> [f64; 2] {
         let tension = if force.axial > 0.0 {
             (force.axial / section.area + self.moment_share * force.bend_size() * section.radius / section.inertia)
@@ -36,14 +36,14 @@ impl BeamStress {
     }
 }
 
-/// Strain of the outermost fibre: axial strain plus r times the whole curvature [-].
+/// Strain of the outermost fibre: axial strain plus r times the whole curvature (-).
 ///
-/// `axial` is engineering strain l/l₀ − 1, `curvature` counts from a straight wire [1/m], `radius` in m.
+/// `axial` is engineering strain l/l₀ − 1, `curvature` counts from a straight wire (1/m), `radius` in m.
 pub fn fibre_strain(axial: f64, curvature: f64, radius: f64) -> f64 {
     axial + radius * curvature
 }
 
-/// Weibull factor on the rupture value of one bond [-] (Weibull 1951, weakest link).
+/// Weibull factor on the rupture value of one bond (-) (Weibull 1951, weakest link).
 ///
 /// `uniform` is in (0, 1); `modulus` m may be infinite (factor 1); `bonds_per_100_mm` is how many bonds of this length
 /// make 100 mm. Normalised so that the weakest of those has median factor 1: the median 100 mm wire breaks at the

@@ -1,25 +1,25 @@
 //! Elastic and inertial constants of a pair, from the constants of its two bodies.
 
-/// Effective modulus E* = [(1 − ν₁²)/E₁ + (1 − ν₂²)/E₂]⁻¹ [Pa] (Hertz 1882; Johnson, Contact Mechanics, eq. 4.21).
+/// Effective modulus E* = [(1 − ν₁²)/E₁ + (1 − ν₂²)/E₂]⁻¹ (Pa) (Hertz 1882; Johnson, Contact Mechanics, eq. 4.21).
 ///
-/// `e1`, `e2`: Young's moduli [Pa]; `nu1`, `nu2`: Poisson's ratios [-].
+/// `e1`, `e2`: Young's moduli (Pa); `nu1`, `nu2`: Poisson's ratios (-).
 pub fn effective_modulus(e1: f64, nu1: f64, e2: f64, nu2: f64) -> f64 {
     1.0 / ((1.0 - nu1 * nu1) / e1 + (1.0 - nu2 * nu2) / e2)
 }
 
-/// Effective shear modulus G* = [(2 − ν₁)/G₁ + (2 − ν₂)/G₂]⁻¹ [Pa] (Mindlin 1949).
+/// Effective shear modulus G* = [(2 − ν₁)/G₁ + (2 − ν₂)/G₂]⁻¹ (Pa) (Mindlin 1949).
 ///
-/// `g1`, `g2`: shear moduli [Pa]; `nu1`, `nu2`: Poisson's ratios [-].
+/// `g1`, `g2`: shear moduli (Pa); `nu1`, `nu2`: Poisson's ratios (-).
 pub fn effective_shear_modulus(g1: f64, nu1: f64, g2: f64, nu2: f64) -> f64 {
     1.0 / ((2.0 - nu1) / g1 + (2.0 - nu2) / g2)
 }
 
-/// Reduced radius R* = [1/R₁ + 1/R₂]⁻¹ [m]; a flat body has the radius infinity.
+/// Reduced radius R* = [1/R₁ + 1/R₂]⁻¹ (m); a flat body has the radius infinity.
 pub fn reduced_radius(r1: f64, r2: f64) -> f64 {
     1.0 / (1.0 / r1 + 1.0 / r2)
 }
 
-/// Reduced mass m* = [1/m₁ + 1/m₂]⁻¹ [kg]; a body that is held has the mass infinity.
+/// Reduced mass m* = [1/m₁ + 1/m₂]⁻¹ (kg); a body that is held has the mass infinity.
 pub fn reduced_mass(m1: f64, m2: f64) -> f64 {
     1.0 / (1.0 / m1 + 1.0 / m2)
 }

@@ -5,12 +5,12 @@ use glam::DVec3;
 /// The point of a segment nearest to another point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosestOnSegment {
-    /// Parameter of the foot of the perpendicular on the endless line, before clamping [-]: below 0 or above 1 where
+    /// Parameter of the foot of the perpendicular on the endless line, before clamping (-): below 0 or above 1 where
     /// the foot lies beyond an end.
     pub raw: f64,
-    /// `raw` clamped to [0, 1] [-].
+    /// `raw` clamped to [0, 1] (-).
     pub t: f64,
-    /// The nearest point a + t (b − a) [m].
+    /// The nearest point a + t (b − a) (m).
     pub point: DVec3,
 }
 

@@ -6,12 +6,12 @@ use crate::base::lanes::Real;
 /// Hertz's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hertz {
-    /// Effective modulus E* of the pair [Pa].
+    /// Effective modulus E* of the pair (Pa).
     pub effective_modulus: f64,
 }
 
-/// Response on a Hertzian curve of effective modulus E* [Pa] at overlap δ ≥ 0 [m], from the square of the contact radius
-/// a² = R δ [m²]: F = (4/3) E* a δ, dF/dδ = 2 E* a. Thornton's unloading curves have this form too.
+/// Response on a Hertzian curve of effective modulus E* (Pa) at overlap δ ≥ 0 (m), from the square of the contact radius
+/// a² = R δ (m²): F = (4/3) E* a δ, dF/dδ = 2 E* a. Thornton's unloading curves have this form too.
 #[inline(always)]
 pub(super) fn hertzian<R: Real>(effective_modulus: f64, radius_squared: R, overlap: R) -> NormalResponse<R> {
     let inverse_radius = radius_squared.inverse_sqrt();
@@ -25,7 +25,7 @@ pub(super) fn hertzian<R: Real>(effective_modulus: f64, radius_squared: R, overl
     }
 }
 
-/// Energy under a Hertzian curve: (8/15) E* √R δ^(5/2) = (2/5) F δ [J].
+/// Energy under a Hertzian curve: (8/15) E* √R δ^(5/2) = (2/5) F δ (J).
 #[inline(always)]
 pub(super) fn hertzian_energy(effective_modulus: f64, radius: f64, overlap: f64) -> f64 {
     0.4 * overlap * hertzian(effective_modulus, radius * overlap, overlap).force

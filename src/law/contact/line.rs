@@ -27,15 +27,15 @@
 use crate::base::lanes::{Mask, Real};
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
 
-/// Stiffness per length of a line contact over E* [-]; see the convention above.
+/// Stiffness per length of a line contact over E* (-); see the convention above.
 pub const LINE: f64 = 0.3;
-/// sin τ below which two wires are parallel, and above which Hertz's ellipse holds [-]: 1° and 2°.
+/// sin τ below which two wires are parallel, and above which Hertz's ellipse holds (-): 1° and 2°.
 const PARALLEL: [f64; 2] = [0.017_452_406, 0.034_899_497];
 
 /// k/E* over sin τ; tabulated once, because it takes elliptic integrals.
 #[derive(Debug, Clone)]
 pub struct LineStiffness {
-    /// At sin τ = i/(len − 1) [-].
+    /// At sin τ = i/(len − 1) (-).
     table: Vec<f64>,
 }
 
@@ -48,7 +48,7 @@ impl Default for LineStiffness {
 }
 
 impl LineStiffness {
-    /// k/E* [-] for reduced radius R* [m] where the gap has the curvature κ [1/m].
+    /// k/E* (-) for reduced radius R* (m) where the gap has the curvature κ (1/m).
     #[inline(always)]
     pub fn at(&self, reduced_radius: f64, curvature: f64) -> f64 {
         let sine = (4.0 * reduced_radius * curvature).clamp(0.0, 1.0).sqrt();
@@ -63,7 +63,7 @@ impl LineStiffness {
     }
 }
 
-/// ½ √(sin τ) F₂^(−3/2) [-].
+/// ½ √(sin τ) F₂^(−3/2) (-).
 fn hertz_stiffness(sine: f64) -> f64 {
     // F₂ = (2/π) √(b/a) K/F₁ and F₁³ = 4/(πe²) (b/a)^(3/2) √{[(a/b)²E − K][K − E]}.
     let parts = |slim: f64| {
@@ -108,34 +108,34 @@ fn complete_elliptic(slim: f64) -> [f64; 2] {
 /// How a stretch of one wire lies against the other: overlap δ(x) = δ₀ + m x − κ x²/2 around its deepest place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
-    /// Reduced radius R* of the two circular sections [m].
+    /// Reduced radius R* of the two circular sections (m).
     pub reduced_radius: f64,
-    /// Stiffness per length k [Pa].
+    /// Stiffness per length k (Pa).
     pub stiffness: f64,
-    /// Overlap at the deepest place δ₀ [m].
+    /// Overlap at the deepest place δ₀ (m).
     pub overlap: f64,
-    /// Slope m of the overlap there [-]; not 0 at an end only.
+    /// Slope m of the overlap there (-); not 0 at an end only.
     pub slope: f64,
-    /// Curvature κ of the gap [1/m].
+    /// Curvature κ of the gap (1/m).
     pub curvature: f64,
-    /// Where the stretch begins and ends, from the deepest place [m].
+    /// Where the stretch begins and ends, from the deepest place (m).
     pub ends: [f64; 2],
 }
 
 /// What a law answers for a stretch.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LineResponse {
-    /// Repulsive force, never negative [N].
+    /// Repulsive force, never negative (N).
     pub force: f64,
-    /// Elastic stiffness: k times the length that pushes [N/m].
+    /// Elastic stiffness: k times the length that pushes (N/m).
     pub stiffness: f64,
-    /// Where the force acts, from the deepest place [m].
+    /// Where the force acts, from the deepest place (m).
     pub centre: f64,
-    /// Area over which it acts [m²], in the geometric sense of Thornton's law: Σ √(2R*δ) ds.
+    /// Area over which it acts (m²), in the geometric sense of Thornton's law: Σ √(2R*δ) ds.
     pub area: f64,
-    /// Elastic energy [J].
+    /// Elastic energy (J).
     pub energy: f64,
-    /// Plastic work since the last call [J].
+    /// Plastic work since the last call (J).
     pub plastic_work: f64,
 }
 
@@ -152,7 +152,7 @@ const GAUSS: [[f64; 2]; 4] = [
 /// closed form everywhere.
 const BEYOND: [f64; 2] = [-0.061_356_565_352_632_15, 0.107_226_905_224_402_29];
 
-/// Force per length over k δ_y at overlap x δ_y on the limit [-].
+/// Force per length over k δ_y at overlap x δ_y on the limit (-).
 #[inline(always)]
 fn limit<R: Real>(x: R) -> R {
     let one = x.like(1.0);
@@ -163,7 +163,7 @@ fn limit<R: Real>(x: R) -> R {
     R::choose(x.above(one), root * FRAC_2_PI * (y.like(2.0) - series), x)
 }
 
-/// Plastic work per length over k δ_y² done on the way to x along the limit [-]: ∫ f dδ − f²/(2k).
+/// Plastic work per length over k δ_y² done on the way to x along the limit (-): ∫ f dδ − f²/(2k).
 #[inline(always)]
 fn plastic_work(x: f64) -> f64 {
     if x <= 1.0 {
@@ -178,7 +178,7 @@ fn plastic_work(x: f64) -> f64 {
     0.5 + integral(x) - integral(1.0) - 0.5 * force * force
 }
 
-/// The overlap over δ_y at which the limit is `force` k δ_y [-], a little below it: from f ≈ (2/π)(2√x − 1/(3√x)).
+/// The overlap over δ_y at which the limit is `force` k δ_y (-), a little below it: from f ≈ (2/π)(2√x − 1/(3√x)).
 #[inline(always)]
 fn limit_reached(force: f64) -> f64 {
     if force <= 1.0 {
@@ -189,8 +189,8 @@ fn limit_reached(force: f64) -> f64 {
     (root * root).max(1.0)
 }
 
-/// Response of a stretch whose deepest place has been as deep as `greatest` [m] (updated) under a limiting pressure
-/// `pressure` [Pa], infinite for elastic wires.
+/// Response of a stretch whose deepest place has been as deep as `greatest` (m) (updated) under a limiting pressure
+/// `pressure` (Pa), infinite for elastic wires.
 #[inline(always)]
 pub fn respond(stretch: &Stretch, pressure: f64, greatest: &mut f64) -> LineResponse {
     let Stretch { reduced_radius, stiffness: k, overlap, slope, curvature, ends } = *stretch;
@@ -262,38 +262,38 @@ pub const CELLS: usize = 8;
 /// How the cells of a stretch lie: overlap δ(u) = δ₀ − a u − ½ b u² at u bonds from where the gap was expanded.
 #[derive(Debug, Clone, Copy)]
 pub struct CellGap<R> {
-    /// Reduced radius R* [m].
+    /// Reduced radius R* (m).
     pub reduced_radius: R,
-    /// Stiffness per length k [Pa].
+    /// Stiffness per length k (Pa).
     pub stiffness: R,
-    /// δ₀ [m].
+    /// δ₀ (m).
     pub overlap: R,
-    /// a [m].
+    /// a (m).
     pub rise: R,
-    /// b [m].
+    /// b (m).
     pub bend: R,
-    /// Where the first cell begins, and the length of a cell, in bonds [-].
+    /// Where the first cell begins, and the length of a cell, in bonds (-).
     pub first: R,
     /// See `first`.
     pub width: R,
-    /// Length of a cell along the undeformed wire [m]; force is counted per this length.
+    /// Length of a cell along the undeformed wire (m); force is counted per this length.
     pub length: R,
 }
 
 impl<R: Real> CellGap<R> {
-    /// Where the middle of cell `q` lies, in bonds [-].
+    /// Where the middle of cell `q` lies, in bonds (-).
     #[inline(always)]
     pub fn place(&self, q: usize) -> R {
         self.width.mul_add(self.width.like(q as f64 + 0.5), self.first)
     }
 
-    /// Overlap there [m].
+    /// Overlap there (m).
     #[inline(always)]
     pub fn depth(&self, u: R) -> R {
         self.overlap - u * (self.bend * 0.5).mul_add(u, self.rise)
     }
 
-    /// Overlap at first yield δ_y [m] under a limiting pressure [Pa].
+    /// Overlap at first yield δ_y (m) under a limiting pressure (Pa).
     #[inline(always)]
     fn yield_overlap(&self, pressure: f64) -> R {
         let ratio = self.stiffness.inverse() * (PI * pressure);
@@ -304,17 +304,17 @@ impl<R: Real> CellGap<R> {
 /// What the cells of a stretch answer.
 #[derive(Debug, Clone, Copy)]
 pub struct CellResponse<R> {
-    /// Moments ∫ f uⁿ ds of the force per length, n = 0, 1, 2 [N]; the first is the force.
+    /// Moments ∫ f uⁿ ds of the force per length, n = 0, 1, 2 (N); the first is the force.
     pub moments: [R; 3],
-    /// Elastic stiffness: k times the length that pushes [N/m].
+    /// Elastic stiffness: k times the length that pushes (N/m).
     pub stiffness: R,
-    /// Elastic energy [J].
+    /// Elastic energy (J).
     pub energy: R,
-    /// Plastic work since the last call [J].
+    /// Plastic work since the last call (J).
     pub plastic_work: R,
 }
 
-/// Response of the cells of a stretch that have been as deep as `greatest` [m] (updated); `share` says what part of each
+/// Response of the cells of a stretch that have been as deep as `greatest` (m) (updated); `share` says what part of each
 /// counts.
 ///
 /// On the way back from δ_m the force per length is f_m − k (δ_m − δ), so that the dent δ_p = δ_m − f_m/k does not push;
@@ -364,8 +364,8 @@ pub fn respond_cells<R: Real>(
     sum
 }
 
-/// Greatest length of a patch of depth `overlap` [m] within a stretch of `length` [m], where the gap has the curvature
-/// `curvature` [1/m].
+/// Greatest length of a patch of depth `overlap` (m) within a stretch of `length` (m), where the gap has the curvature
+/// `curvature` (1/m).
 pub fn patch_length(overlap: f64, curvature: f64, length: f64) -> f64 {
     if curvature > 0.0 { length.min(2.0 * (2.0 * overlap.max(0.0) / curvature).sqrt()) } else { length }
 }
@@ -389,7 +389,7 @@ mod tests {
 
     static TABLE: LazyLock<LineStiffness> = LazyLock::new(LineStiffness::default);
 
-    /// A patch of wires that cross at `angle` [rad], wholly within the stretch.
+    /// A patch of wires that cross at `angle` (rad), wholly within the stretch.
     fn crossing(angle: f64, overlap: f64) -> Stretch {
         let curvature = angle.sin().powi(2) / (4.0 * RADIUS);
         let stiffness = MODULUS * TABLE.at(RADIUS, curvature);

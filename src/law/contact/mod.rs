@@ -5,7 +5,7 @@
 //! | `hertz` | F = 4/3 E* √R* δ^(3/2) | Hertz 1882 |
 //! | `thornton` | Hertz to p_y, then F_y + π p_y R* (δ − δ_y); unloading with R_p | Thornton 1997 |
 //!
-//! Both also hold for smooth wires, as force per length: [`line`].
+//! Both also hold for smooth wires, as force per length: [`mod@line`].
 
 pub mod constants;
 pub mod geometry;
@@ -18,15 +18,15 @@ use crate::base::lanes::Real;
 /// What a normal law answers for one contact, or for several.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NormalResponse<R = f64> {
-    /// Repulsive force, never negative [N].
+    /// Repulsive force, never negative (N).
     pub force: R,
-    /// dF/dδ on the branch that the contact is on [N/m].
+    /// dF/dδ on the branch that the contact is on (N/m).
     pub stiffness: R,
-    /// Contact radius a = √(R δ) with the R of the branch (R* or R_p, δ counted from δ_p) [m].
+    /// Contact radius a = √(R δ) with the R of the branch (R* or R_p, δ counted from δ_p) (m).
     pub radius: R,
-    /// 1/a [1/m]; any number where a is 0.
+    /// 1/a (1/m); any number where a is 0.
     pub inverse_radius: R,
-    /// Plastic work done since the last call [J]; 0 on elastic branches.
+    /// Plastic work done since the last call (J); 0 on elastic branches.
     pub plastic_work: R,
 }
 
@@ -45,19 +45,19 @@ pub trait NormalLaw: Copy + Send + Sync + 'static {
     /// The numbers of a history, each with its index.
     fn each_number<R: Real>(state: &Self::State<R>, put: impl FnMut(usize, R));
 
-    /// Response at overlap `overlap` [m] (> 0 or not: no force at ≤ 0) for reduced radius `reduced_radius` R* [m].
+    /// Response at overlap `overlap` (m) (> 0 or not: no force at ≤ 0) for reduced radius `reduced_radius` R* (m).
     fn response<R: Real>(&self, state: &mut Self::State<R>, reduced_radius: R, overlap: R) -> NormalResponse<R>;
 
-    /// Limiting contact pressure [Pa], infinite for elastic bodies; what [`line`] needs to know of a law besides E*.
+    /// Limiting contact pressure (Pa), infinite for elastic bodies; what [`mod@line`] needs to know of a law besides E*.
     fn limiting_pressure(&self) -> f64;
 
-    /// Effective modulus E* of the pair [Pa].
+    /// Effective modulus E* of the pair (Pa).
     fn effective_modulus(&self) -> f64;
 
-    /// Energy that would come back on unloading from `overlap` [J].
+    /// Energy that would come back on unloading from `overlap` (J).
     fn elastic_energy(&self, state: &Self::State<f64>, reduced_radius: f64, overlap: f64) -> f64;
 
-    /// Greatest dF/dδ that the contact can show at this state when it unloads or loads further [N/m]; for the bound
+    /// Greatest dF/dδ that the contact can show at this state when it unloads or loads further (N/m); for the bound
     /// on the time step.
     fn greatest_stiffness(&self, state: &Self::State<f64>, reduced_radius: f64, overlap: f64) -> f64;
 }

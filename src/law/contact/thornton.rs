@@ -18,9 +18,9 @@ use crate::base::lanes::{Mask, Real};
 /// Thornton's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thornton {
-    /// Effective modulus E* of the pair [Pa].
+    /// Effective modulus E* of the pair (Pa).
     pub effective_modulus: f64,
-    /// Limiting contact pressure p_y: hardness factor times yield stress [Pa].
+    /// Limiting contact pressure p_y: hardness factor times yield stress (Pa).
     pub limiting_pressure: f64,
 }
 
@@ -29,11 +29,11 @@ pub struct Thornton {
 /// It lasts as long as the contact's history: the dent stays when the bodies part.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ThorntonState<R = f64> {
-    /// Greatest overlap δ_m so far [m].
+    /// Greatest overlap δ_m so far (m).
     pub greatest_overlap: R,
-    /// Radius R_p of the dent, in which it unloads [m].
+    /// Radius R_p of the dent, in which it unloads (m).
     pub dent_radius: R,
-    /// Overlap δ_p that remains when the force is gone [m].
+    /// Overlap δ_p that remains when the force is gone (m).
     pub residual_overlap: R,
 }
 
@@ -49,27 +49,27 @@ impl<R: Real> ThorntonState<R> {
 }
 
 impl Thornton {
-    /// Overlap at first yield δ_y = (π p_y/2E*)² R* [m].
+    /// Overlap at first yield δ_y = (π p_y/2E*)² R* (m).
     #[inline(always)]
     pub fn yield_overlap<R: Real>(&self, reduced_radius: R) -> R {
         let strain = PI * self.limiting_pressure / (2.0 * self.effective_modulus);
         reduced_radius * (strain * strain)
     }
 
-    /// Slope of the plastic line π p_y R* [N/m].
+    /// Slope of the plastic line π p_y R* (N/m).
     #[inline(always)]
     fn slope<R: Real>(&self, reduced_radius: R) -> R {
         reduced_radius * (PI * self.limiting_pressure)
     }
 
-    /// Force on the plastic line [N].
+    /// Force on the plastic line (N).
     #[inline(always)]
     fn plastic_force<R: Real>(&self, reduced_radius: R, overlap: R) -> R {
         self.slope(reduced_radius) * (overlap - self.yield_overlap(reduced_radius) * (1.0 / 3.0))
     }
 
-    /// The unloading curve from a point of the plastic line at `overlap` > δ_y with its force [N]; the square of the
-    /// contact radius there is `a2` [m²], its inverse `inverse_a` [1/m].
+    /// The unloading curve from a point of the plastic line at `overlap` > δ_y with its force (N); the square of the
+    /// contact radius there is `a2` (m²), its inverse `inverse_a` (1/m).
     #[inline(always)]
     fn curve_from<R: Real>(&self, overlap: R, force: R, a2: R, inverse_a: R) -> ThorntonState<R> {
         let recovery = force * inverse_a * (0.75 / self.effective_modulus);
@@ -80,14 +80,14 @@ impl Thornton {
         }
     }
 
-    /// Energy that unloading from δ_m, with the force F_m there, gives back: (2/5) F_m (δ_m − δ_p) [J].
+    /// Energy that unloading from δ_m, with the force F_m there, gives back: (2/5) F_m (δ_m − δ_p) (J).
     #[inline(always)]
     fn recoverable<R: Real>(state: &ThorntonState<R>, force: R) -> R {
         force * 0.4 * (state.greatest_overlap - state.residual_overlap)
     }
 
     /// Work that is not stored while a contact loads from `before` to `after` along the plastic line, where the force is
-    /// `force` [N]; through Hertz's curve if `before` has not yielded [J].
+    /// `force` (N); through Hertz's curve if `before` has not yielded (J).
     #[inline(always)]
     fn lost<R: Real>(&self, before: &ThorntonState<R>, after: &ThorntonState<R>, force: R, reduced_radius: R) -> R {
         let zero = reduced_radius.like(0.0);

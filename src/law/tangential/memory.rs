@@ -12,14 +12,14 @@ pub enum Branch {
     Loading,
     /// Unloading.
     Unloading {
-        /// Pull F* at which loading ended [N].
+        /// Pull F* at which loading ended (N).
         peak: DVec3,
     },
     /// Reloading.
     Reloading {
-        /// Pull F* at which loading ended [N].
+        /// Pull F* at which loading ended (N).
         peak: DVec3,
-        /// Pull F** at which unloading ended [N].
+        /// Pull F** at which unloading ended (N).
         valley: DVec3,
     },
 }
@@ -27,17 +27,17 @@ pub enum Branch {
 /// History of one contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MindlinDeresiewiczState {
-    /// Pull at the last step [N].
+    /// Pull at the last step (N).
     pub pull: DVec3,
     /// Branch and memory.
     pub branch: Branch,
-    /// Cap μ F_n at the last step [N].
+    /// Cap μ F_n at the last step (N).
     pub cap: f64,
-    /// Contact radius at the last step [m].
+    /// Contact radius at the last step (m).
     pub radius: f64,
     /// Unit normal at the last step: pull and memory turn as one body, or their energy would change.
     pub normal: DVec3,
-    /// Stored energy at the last step [J].
+    /// Stored energy at the last step (J).
     pub energy: f64,
 }
 
@@ -47,7 +47,7 @@ pub(super) fn held_to(vector: DVec3, cap: f64) -> DVec3 {
     super::held_to(vector.into(), cap).into()
 }
 
-/// `vector` without its last `by` [m].
+/// `vector` without its last `by` (m).
 #[inline(always)]
 fn shorter(vector: DVec3, by: f64) -> DVec3 {
     let length = vector.length();
@@ -55,7 +55,7 @@ fn shorter(vector: DVec3, by: f64) -> DVec3 {
 }
 
 impl MindlinDeresiewiczState {
-    /// Stored energy [J] on the curve of the present load.
+    /// Stored energy (J) on the curve of the present load.
     pub(super) fn stored(&self, curve: &Curve) -> f64 {
         match self.branch {
             Branch::Loading => curve.stored(self.pull.length()),
@@ -93,7 +93,7 @@ impl MindlinDeresiewiczState {
         }
     }
 
-    /// A turned branch after the load has fallen from the curve `old` to `new`, δ_c by `fall` [m].
+    /// A turned branch after the load has fallen from the curve `old` to `new`, δ_c by `fall` (m).
     pub(super) fn shed(&mut self, old: &Curve, new: &Curve, mut fall: f64) {
         let since = |from: DVec3, to: DVec3| 2.0 * old.displacement_of(0.5 * (to - from));
         let (peak, down, up) = match self.branch {

@@ -19,23 +19,23 @@ use crate::base::triple::Triple;
 /// Mindlin's spring with Coulomb's cap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mindlin {
-    /// Effective shear modulus G* of the pair [Pa].
+    /// Effective shear modulus G* of the pair (Pa).
     pub shear_modulus_star: f64,
-    /// Coefficient of friction μ [-].
+    /// Coefficient of friction μ (-).
     pub friction: f64,
 }
 
 /// History of one contact, or of several.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MindlinState<R = f64> {
-    /// Pull at the last step [N].
+    /// Pull at the last step (N).
     pub pull: Triple<R>,
-    /// 1/a at the last step [1/m]; 0 where nothing touched.
+    /// 1/a at the last step (1/m); 0 where nothing touched.
     pub inverse_radius: R,
 }
 
 impl Mindlin {
-    /// F²/(2 k_t) [J].
+    /// F²/(2 k_t) (J).
     #[inline(always)]
     fn stored<R: Real>(&self, state: &MindlinState<R>) -> R {
         state.pull.length_squared() * state.inverse_radius * (1.0 / (16.0 * self.shear_modulus_star))

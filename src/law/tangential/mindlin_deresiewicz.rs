@@ -56,9 +56,9 @@ use glam::DVec3;
 /// Mindlin and Deresiewicz's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MindlinDeresiewicz {
-    /// Effective shear modulus G* of the pair [Pa].
+    /// Effective shear modulus G* of the pair (Pa).
     pub shear_modulus_star: f64,
-    /// Coefficient of friction μ [-].
+    /// Coefficient of friction μ (-).
     pub friction: f64,
 }
 
@@ -78,7 +78,7 @@ fn turn(vector: DVec3, normal: DVec3) -> DVec3 {
 
 impl MindlinDeresiewicz {
     /// Brings the state to the present normal load at no slip, and answers how far the pull may change before the new
-    /// annulus slips [N].
+    /// annulus slips (N).
     #[inline(always)]
     fn change_load(&self, state: &mut MindlinDeresiewiczState, curve: &Curve, radius: f64) -> f64 {
         let grown = curve.cap - state.cap;

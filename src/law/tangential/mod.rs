@@ -22,18 +22,18 @@ use crate::base::triple::Triple;
 pub struct TangentialInput<R = f64> {
     /// Unit normal now.
     pub normal: Triple<R>,
-    /// Increment of the relative tangential displacement since the last step, in the tangent plane [m].
+    /// Increment of the relative tangential displacement since the last step, in the tangent plane (m).
     pub slip: Triple<R>,
-    /// Normal force now [N].
+    /// Normal force now (N).
     pub normal_force: R,
-    /// Contact radius a now [m].
+    /// Contact radius a now (m).
     pub radius: R,
-    /// 1/a [1/m]; any number where a is 0.
+    /// 1/a (1/m); any number where a is 0.
     pub inverse_radius: R,
 }
 
 impl TangentialInput {
-    /// Under a normal force [N] on a contact radius [m], without slip.
+    /// Under a normal force (N) on a contact radius (m), without slip.
     pub fn at_rest(normal_force: f64, radius: f64) -> Self {
         let (normal, slip) = (Triple { x: 0.0, y: 0.0, z: 1.0 }, Triple::default());
         Self { normal, slip, normal_force, radius, inverse_radius: 1.0 / radius }
@@ -43,12 +43,12 @@ impl TangentialInput {
 /// What a tangential law answers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TangentialResponse<R = f64> {
-    /// The pull that resists further displacement, in the tangent plane [N]: it grows along `slip`, so the body whose
+    /// The pull that resists further displacement, in the tangent plane (N): it grows along `slip`, so the body whose
     /// displacement is counted positive feels minus this.
     pub pull: Triple<R>,
-    /// Tangent stiffness k_t = 8 G* a [N/m].
+    /// Tangent stiffness k_t = 8 G* a (N/m).
     pub stiffness: R,
-    /// Energy dissipated since the last call [J]: mean pull · slip − change of elastic energy.
+    /// Energy dissipated since the last call (J): mean pull · slip − change of elastic energy.
     pub friction_work: R,
 }
 
@@ -73,7 +73,7 @@ pub trait TangentialLaw: Copy + Send + Sync + 'static {
     /// returns the energy that was stored as friction work.
     fn response<R: Real>(&self, state: &mut Self::State<R>, input: &TangentialInput<R>) -> TangentialResponse<R>;
 
-    /// Elastic energy stored in the tangential spring [J].
+    /// Elastic energy stored in the tangential spring (J).
     fn elastic_energy(&self, state: &Self::State<f64>) -> f64;
 }
 

@@ -10,7 +10,7 @@ use crate::law::contact::{NormalLaw, NormalResponse};
 const EFFECTIVE_MODULUS: f64 = 65e9;
 const RADIUS: f64 = 0.1e-3;
 
-/// A Hertzian contact under `normal_force` [N] without slip.
+/// A Hertzian contact under `normal_force` (N) without slip.
 pub fn ball_on_ball(normal_force: f64) -> TangentialInput {
     let radius = (0.75 * normal_force * RADIUS / EFFECTIVE_MODULUS).cbrt();
     TangentialInput::at_rest(normal_force, radius)
@@ -19,11 +19,11 @@ pub fn ball_on_ball(normal_force: f64) -> TangentialInput {
 /// One step of a walk.
 #[derive(Debug, Clone, Copy)]
 pub struct Step {
-    /// Overlap in units of the greatest one [-].
+    /// Overlap in units of the greatest one (-).
     overlap: f64,
-    /// Slip in units of the slip that would slide a fully loaded contact [-].
+    /// Slip in units of the slip that would slide a fully loaded contact (-).
     slip: [f64; 2],
-    /// Turn of the normal [rad].
+    /// Turn of the normal (rad).
     tilt: [f64; 2],
 }
 

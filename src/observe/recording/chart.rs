@@ -15,16 +15,16 @@ use rerun::{Color, EntityPath, LineStrips2D, Points2D, Radius};
 const SIZE: [f32; 2] = [190.0, 100.0];
 /// Margins left, right, above and below, in the drawing's units.
 pub(super) const MARGINS: [f32; 4] = [30.0, 8.0, 8.0, 16.0];
-/// Room over the highest expected stress [-].
+/// Room over the highest expected stress (-).
 const HEADROOM: f64 = 1.06;
 const WHITE: u32 = 0xFFFFFFFF;
 const GRID: u32 = 0x2C333DFF;
 
 /// Scales of the drawing.
 pub(super) struct Chart {
-    /// Strain at the right end [%].
+    /// Strain at the right end (%).
     strain: f64,
-    /// Stress at the upper end [MPa].
+    /// Stress at the upper end (MPa).
     stress: f64,
     /// Last point of each curve: the strand, then layers.
     last: Option<Vec<[f32; 2]>>,

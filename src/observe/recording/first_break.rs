@@ -9,9 +9,9 @@ use crate::engine::view::{RunInfo, Rupture, Snapshot};
 use crate::observe::wording::wire_number;
 use rerun::{Color, LineStrips3D, Points3D, Radius};
 
-/// Distance of the label from the axis in the close view, in thicknesses of the body [-].
+/// Distance of the label from the axis in the close view, in thicknesses of the body (-).
 const NEAR: f32 = 0.72;
-/// The same in the view of the whole strand, in its lengths [-].
+/// The same in the view of the whole strand, in its lengths (-).
 const FAR: f32 = 0.06;
 
 /// How the close view looks at the body: from `eye` (a unit vector across z) with `up` upwards and z to the right.
@@ -25,7 +25,7 @@ impl Gaze {
     /// From the side of −x, before anything is known.
     pub const START: Self = Self { eye: [-1.0, 0.0, 0.0], up: [0.0, 1.0, 0.0] };
 
-    /// So that `place` is on the side of the eye; `axis` is the middle of its section [mm].
+    /// So that `place` is on the side of the eye; `axis` is the middle of its section (mm).
     pub fn towards(place: [f32; 3], axis: [f32; 3]) -> Self {
         let [x, y] = [place[0] - axis[0], place[1] - axis[1]];
         let distance = x.hypot(y);
@@ -41,7 +41,7 @@ impl Gaze {
 /// The first break of a run.
 pub(super) struct FirstBreak {
     pub rupture: Rupture,
-    /// Middle between the two ends [mm], from the rupture on.
+    /// Middle between the two ends (mm), from the rupture on.
     places: Vec<(Instant, [f32; 3])>,
 }
 
@@ -58,12 +58,12 @@ impl FirstBreak {
         self.places.push((curve::instant(&snapshot.sample), middle));
     }
 
-    /// z of the place before loading [mm].
+    /// z of the place before loading (mm).
     pub fn rest_z(&self) -> f32 {
         (self.rupture.rest_z * 1e3) as f32
     }
 
-    /// Where it was last [mm].
+    /// Where it was last (mm).
     pub fn last(&self) -> [f32; 3] {
         self.places[self.places.len() - 1].1
     }

@@ -44,7 +44,7 @@ fn held(info: &RunInfo, beyond: impl Fn(f32) -> bool) -> Vec<usize> {
     wires.flat_map(|wire| wire.first..wire.first + wire.len).filter(|i| beyond(info.rest_position[*i][2])).collect()
 }
 
-/// Centre and half size of the box around particles [mm].
+/// Centre and half size of the box around particles (mm).
 fn bounds(snapshot: &Snapshot, particles: &[usize]) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for &i in particles {

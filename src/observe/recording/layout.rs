@@ -27,9 +27,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 const BACKGROUND: [u8; 3] = [17, 20, 26];
 /// Background of the strand's views: light enough to see the dark end of the colour map on it, shaded.
 const SPACE: [u8; 3] = [62, 68, 78];
-/// Width over height that the view of the whole strand has in a window of usual shape [-].
+/// Width over height that the view of the whole strand has in a window of usual shape (-).
 const ASPECT: f32 = 6.5;
-/// Rerun's vertical field of view [rad].
+/// Rerun's vertical field of view (rad).
 const FIELD_OF_VIEW: f32 = 0.96;
 
 /// What a layout shows.
@@ -37,7 +37,7 @@ pub(super) struct Scenery<'a> {
     pub info: &'a RunInfo,
     pub map: &'a Map,
     pub chart: Option<&'a Chart>,
-    /// How the close view looks at the body, about `target` [mm].
+    /// How the close view looks at the body, about `target` (mm).
     pub gaze: Gaze,
     pub target: [f32; 3],
     /// Layer of the first break, when there was one.

@@ -9,7 +9,7 @@ use crate::engine::view::{RunInfo, Rupture, WireInfo};
 use crate::observe::wording::wire_number;
 use rerun::{Color, LineStrips2D, Points2D, Radius};
 
-/// Height of the map over its width [-]: wires are far thinner than they are long.
+/// Height of the map over its width (-): wires are far thinner than they are long.
 const ASPECT: f32 = 0.5;
 /// Gap between layers, in rows.
 const LAYER_GAP: f32 = 1.5;
@@ -21,7 +21,7 @@ pub(super) fn wires_of(info: &RunInfo, layer: usize) -> impl Iterator<Item = (us
 
 /// Columns in which neighbours write their place in the order of break.
 const ORDER_COLUMNS: usize = 2;
-/// Width of such a column over the length of the map [-].
+/// Width of such a column over the length of the map (-).
 const ORDER_WIDTH: f32 = 0.115;
 
 /// Where a wire's place in the order of break is written, and the line that leads there.
@@ -32,7 +32,7 @@ pub(super) struct Order {
 
 /// Where things are on the map.
 pub(super) struct Map {
-    /// Extent along z before loading [mm].
+    /// Extent along z before loading (mm).
     pub z: [f32; 2],
     /// Row height, in the map's own units (those of z).
     pub row: f32,
@@ -181,7 +181,7 @@ impl Map {
     }
 }
 
-/// Round positions along z [mm], about six of them.
+/// Round positions along z (mm), about six of them.
 fn ticks([low, high]: [f32; 2]) -> Vec<f32> {
     let step = round_step((high - low) / 6.0);
     let first = (low / step).ceil() as i64;
@@ -195,7 +195,7 @@ pub(super) fn round_step(rough: f32) -> f32 {
     [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(rough)
 }
 
-/// Extent of the particles along z before loading [mm].
+/// Extent of the particles along z before loading (mm).
 pub(super) fn extent(info: &RunInfo) -> [f32; 2] {
     let z = info.rest_position.iter().zip(&info.radius).map(|(p, r)| [p[2] - r, p[2] + r]);
     let [low, high] = z.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)]);

@@ -144,7 +144,7 @@ fn label(rupture: &Rupture) -> String {
     format!("{order}: wire {}", wire_number(rupture.wire))
 }
 
-/// Place of the bond when it broke [mm].
+/// Place of the bond when it broke (mm).
 fn place(rupture: &Rupture) -> [f32; 3] {
     rupture.position.map(|x| (x * 1e3) as f32)
 }

@@ -11,15 +11,15 @@ pub const STRAND: &str = "strand";
 pub const SPHERES: &str = "spheres";
 /// Grips.
 pub const GRIPS: &str = "grips";
-/// Nominal stress of the body [MPa].
+/// Nominal stress of the body (MPa).
 pub const BODY_STRESS: &str = "stress/body";
-/// Nominal stress of the layers [MPa].
+/// Nominal stress of the layers (MPa).
 pub const LAYER_STRESS: &str = "stress/layers";
-/// Nominal stress of the wires [MPa], an entity per layer.
+/// Nominal stress of the wires (MPa), an entity per layer.
 pub const WIRE_STRESS: &str = "stress/wires";
 /// Wires and bonds broken so far.
 pub const BROKEN: &str = "broken";
-/// Energy ledger [J].
+/// Energy ledger (J).
 pub const ENERGY: &str = "energy";
 /// Unrolled map, by layer.
 pub const MAP: &str = "map";

@@ -10,17 +10,17 @@ use rerun::components::FillMode;
 use rerun::{Capsules3D, Points2D, Points3D, SerializedComponentBatch};
 use std::sync::Arc;
 
-/// Field of a particle: true axial stress of its bond [MPa].
+/// Field of a particle: true axial stress of its bond (MPa).
 pub const STRESS: &str = "Bond:true_axial_stress_MPa";
-/// Field of a particle: equivalent plastic strain of its bond [-].
+/// Field of a particle: equivalent plastic strain of its bond (-).
 pub const PLASTIC_STRAIN: &str = "Bond:equivalent_plastic_strain";
-/// Field of a particle: share of the rupture limit that its bond has reached [-].
+/// Field of a particle: share of the rupture limit that its bond has reached (-).
 pub const UTILISATION: &str = "Bond:utilisation_to_rupture";
-/// Field of a particle: contact pressure [MPa].
+/// Field of a particle: contact pressure (MPa).
 pub const CONTACT_PRESSURE: &str = "Bond:contact_pressure_MPa";
 /// Field of a particle: state of its bond, named by the annotation context.
 pub const STATE: &str = "Bond:state";
-/// Field of a particle, recorded when speed gives the colour [m/s].
+/// Field of a particle, recorded when speed gives the colour (m/s).
 pub const SPEED: &str = "Bond:speed_m_per_s";
 
 /// Names of the bond states, in the order of [`BondState`].
@@ -120,7 +120,7 @@ pub(super) fn send_styles(stream: &Stream, info: &RunInfo) -> Result<()> {
     (0..info.wires.len()).try_for_each(|w| stream.fixed(names::tube(names::STRAND, info, w), &solid))
 }
 
-/// Mean radius of a wire now [mm]. One value per wire and snapshot: a wire thins as a whole, and a radius per
+/// Mean radius of a wire now (mm). One value per wire and snapshot: a wire thins as a whole, and a radius per
 /// particle would cost as much as its stress.
 fn mean_radius(snapshot: &Snapshot, wire: &WireInfo) -> f32 {
     let radii = &snapshot.radius[wire.first..wire.first + wire.len];

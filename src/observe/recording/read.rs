@@ -70,9 +70,9 @@ pub struct RecordingContents {
     pub id: String,
     /// Entities by path.
     pub entities: BTreeMap<String, Entity>,
-    /// Lines of the rupture log with their strain [10⁻⁶], in the order of the file.
+    /// Lines of the rupture log with their strain (10⁻⁶), in the order of the file.
     pub log: Vec<(i64, String)>,
-    /// Positions of points in space [mm] by entity: those of the last row.
+    /// Positions of points in space (mm) by entity: those of the last row.
     pub last_positions: BTreeMap<String, Vec<[f32; 3]>>,
     /// Level of each line of the log.
     pub levels: Vec<String>,
@@ -80,7 +80,7 @@ pub struct RecordingContents {
     pub last_fields: BTreeMap<String, BTreeMap<String, Vec<f32>>>,
     /// What the headline says in the end.
     pub headline: String,
-    /// Strain [10⁻⁶] and nominal stress of the body [MPa], in the order of the file.
+    /// Strain (10⁻⁶) and nominal stress of the body (MPa), in the order of the file.
     pub nominal_stress: Vec<(i64, f64)>,
     /// Scalars by entity: step and values of each row, in the order of the file.
     pub series: BTreeMap<String, Vec<(i64, Vec<f64>)>>,

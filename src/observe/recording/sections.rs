@@ -10,10 +10,10 @@ use rerun::{Points3D, Radius};
 
 /// Sections at most: two millimetres of a strand of 120 mm, less than the close view shows.
 const SECTIONS: usize = 64;
-/// Height that the viewer's tracking eye shows over the height of what it tracks [-]; seen in the viewer, which does
+/// Height that the viewer's tracking eye shows over the height of what it tracks (-); seen in the viewer, which does
 /// not document it.
 const SHOWN: f32 = 1.5;
-/// Height of the close view over the thickness of the body [-]: the body, and room above for a label.
+/// Height of the close view over the thickness of the body (-): the body, and room above for a label.
 const HEIGHT: f32 = 1.9;
 
 /// Mean position of the particles of each section in each snapshot.
@@ -51,7 +51,7 @@ impl Sections {
         self.history.push((curve::instant(&snapshot.sample), sum));
     }
 
-    /// Makes the eye follow the section at `rest_z` [mm] before loading; `from` counts snapshots.
+    /// Makes the eye follow the section at `rest_z` (mm) before loading; `from` counts snapshots.
     ///
     /// # Errors
     /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
@@ -83,12 +83,12 @@ impl Sections {
         self.history.len()
     }
 
-    /// z of mid-length before loading [mm].
+    /// z of mid-length before loading (mm).
     pub fn middle(&self) -> f32 {
         0.5 * (self.z[0] + self.z[1])
     }
 
-    /// Where the section at `rest_z` was in the last snapshot [mm].
+    /// Where the section at `rest_z` was in the last snapshot (mm).
     pub fn last(&self, rest_z: f32) -> Option<[f32; 3]> {
         self.history.last().map(|(_, places)| self.at(places, rest_z))
     }
@@ -106,7 +106,7 @@ impl Sections {
     }
 }
 
-/// Largest distance of a wire's surface from the z axis before loading, twice [mm].
+/// Largest distance of a wire's surface from the z axis before loading, twice (mm).
 pub(super) fn thickness(info: &RunInfo) -> f32 {
     let wires = info.rest_position[..info.wire_particles].iter().zip(&info.radius);
     2.0 * wires.map(|([x, y, _], r)| x.hypot(*y) + r).fold(0.0, f32::max)

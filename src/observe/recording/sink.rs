@@ -18,7 +18,7 @@ use std::time::Duration;
 /// Address at which a viewer started with `rerun` listens.
 pub const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
 
-/// How long to wait for the viewer's answer [s].
+/// How long to wait for the viewer's answer (s).
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(2);
 
 type Encoder = re_log_encoding::Encoder<BufWriter<File>>;

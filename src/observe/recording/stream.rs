@@ -25,9 +25,9 @@ pub const STRAIN: &str = "microstrain";
 pub(super) struct Instant {
     /// Step.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Strain [-].
+    /// Strain (-).
     pub strain: f64,
 }
 

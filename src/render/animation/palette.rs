@@ -51,7 +51,7 @@ impl Census {
         }
     }
 
-    /// Width and height of the pictures [px].
+    /// Width and height of the pictures (px).
     pub fn size(&self) -> [u32; 2] {
         self.size
     }

@@ -32,7 +32,7 @@ pub(super) enum Row<'a> {
     Comment(&'a str),
     /// `x y z`, in any case, each perhaps with its unit mm.
     ColumnNames,
-    /// Coordinates [m].
+    /// Coordinates (m).
     Point([f64; 3]),
     /// None of these.
     Other,
@@ -92,7 +92,7 @@ fn is_format(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{200c}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2069}')
 }
 
-/// Three finite numbers [m].
+/// Three finite numbers (m).
 fn point(data: &str, commas: Commas) -> Option<[f64; 3]> {
     let parts = |c: char| is_blank(c) || c == ';' || (c == ',' && commas == Commas::Separate);
     let mut words = data.split(parts).filter(|word| !word.is_empty());

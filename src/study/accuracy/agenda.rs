@@ -36,7 +36,7 @@ pub struct Item {
     pub name: String,
     /// Options beyond those of the scene.
     pub set: Vec<String>,
-    /// What it will cost over the scene as it stands [-].
+    /// What it will cost over the scene as it stands (-).
     pub work: f64,
     /// Whether it is written to disk.
     pub writes: bool,

@@ -65,7 +65,7 @@ pub fn truth(scene: &Scene) -> Result<Truth, String> {
 pub const WORDS: &str = "closed form: one wire strains evenly along its hardening law until its weakest bond's plastic \
                          strain at rupture is reached (each run against the strengths that it draws)";
 
-/// The curve up to plastic strain `last` [-] of a wire of this free `volume` [m³].
+/// The curve up to plastic strain `last` (-) of a wire of this free `volume` (m³).
 fn curve(stress: impl Fn(f64) -> f64, young: f64, last: f64, volume: f64) -> Curve {
     let mut curve = Curve { layer_stress_mpa: vec![Vec::new()], ..Curve::default() };
     let mut push = |point: TensionPoint, work: f64| {
@@ -126,11 +126,11 @@ fn is_pulled(spec: &Spec) -> bool {
 
 /// The bond that breaks first.
 struct Weakest {
-    /// Plastic strain at which it does [-].
+    /// Plastic strain at which it does (-).
     strain: f64,
-    /// Where it is before loading [m].
+    /// Where it is before loading (m).
     rest_z: f64,
-    /// Length of all bonds between the grips [m].
+    /// Length of all bonds between the grips (m).
     free_length: f64,
 }
 

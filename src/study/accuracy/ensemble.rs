@@ -31,7 +31,7 @@ impl Quantity {
         }
     }
 
-    /// Strength [MPa] or elongation [%] of a run.
+    /// Strength (MPa) or elongation (%) of a run.
     pub fn of(self, run: &Measured) -> f64 {
         match self {
             Quantity::Strength => run.strength_mpa,
@@ -39,7 +39,7 @@ impl Quantity {
         }
     }
 
-    /// Its error against the reference [%].
+    /// Its error against the reference (%).
     pub fn error(self, errors: &Errors) -> f64 {
         match self {
             Quantity::Strength => errors.strength_percent,
@@ -59,9 +59,9 @@ pub fn mean_is_told(row: &Row, quantity: Quantity) -> Option<bool> {
 /// How the spread over seeds changes against the scene as it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
-    /// Standard deviation over its mean [%].
+    /// Standard deviation over its mean (%).
     pub percent: f64,
-    /// Change of the standard deviation over that of the same seeds at the scene as it stands [%].
+    /// Change of the standard deviation over that of the same seeds at the scene as it stands (%).
     pub change_percent: Option<f64>,
     /// Whether that is told from chance (95 %); `None` with fewer than three pairs, or where nothing changed.
     pub told: Option<bool>,

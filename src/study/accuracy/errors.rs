@@ -7,9 +7,9 @@ use serde::Serialize;
 /// What a run ought to have given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
-    /// Peak nominal stress [MPa].
+    /// Peak nominal stress (MPa).
     pub strength_mpa: f64,
-    /// Strain at the peak [%].
+    /// Strain at the peak (%).
     pub elongation_percent: f64,
     /// Histories up to the peak.
     pub curve: Curve,
@@ -21,22 +21,22 @@ pub struct Truth {
 /// strains.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Errors {
-    /// Of strength, signed, over the reference [%].
+    /// Of strength, signed, over the reference (%).
     pub strength_percent: f64,
-    /// Of elongation, signed, over the reference [%].
+    /// Of elongation, signed, over the reference (%).
     pub elongation_percent: f64,
-    /// Of the curve: √(∫(σ − σ_ref)²dε / ∫σ_ref²dε) [%].
+    /// Of the curve: √(∫(σ − σ_ref)²dε / ∫σ_ref²dε) (%).
     pub curve_percent: Option<f64>,
-    /// Of plastic work at the end of the comparison, signed, over the reference [%].
+    /// Of plastic work at the end of the comparison, signed, over the reference (%).
     pub plastic_work_percent: Option<f64>,
-    /// Of the mean stress of each layer, as for the curve [%], inside out.
+    /// Of the mean stress of each layer, as for the curve (%), inside out.
     pub layers_percent: Vec<Option<f64>>,
     /// Whether the same wire breaks first; `None` where nothing broke.
     pub same_first_wire: Option<bool>,
-    /// How far from the reference's the first break lies along the strand before loading [mm].
+    /// How far from the reference's the first break lies along the strand before loading (mm).
     pub first_break_off_mm: Option<f64>,
     /// Kendall's τ_b between the orders of first breaks over all wires, those that stayed whole last: 1 the same, 0
-    /// unrelated, −1 reversed [-]. `None` where there is nothing to order.
+    /// unrelated, −1 reversed (-). `None` where there is nothing to order.
     pub order_tau: Option<f64>,
 }
 
@@ -65,7 +65,7 @@ impl Errors {
         }
     }
 
-    /// The layer that is furthest off, and by how much [%].
+    /// The layer that is furthest off, and by how much (%).
     pub fn worst_layer(&self) -> Option<(usize, f64)> {
         let known = self.layers_percent.iter().enumerate().filter_map(|(layer, error)| Some((layer, (*error)?)));
         known.max_by(|a, b| a.1.total_cmp(&b.1))
@@ -76,7 +76,7 @@ fn percent(share: f64) -> f64 {
     100.0 * share
 }
 
-/// Difference of two histories over the size of the second, both up to strain `end` [-]; `None` where there is nothing
+/// Difference of two histories over the size of the second, both up to strain `end` (-); `None` where there is nothing
 /// to compare.
 fn relative_l2([mine, theirs]: [&Curve; 2], [my_history, their_history]: [&[f64]; 2], end: f64) -> Option<f64> {
     let mut strains: Vec<f64> = theirs.strain.iter().copied().filter(|e| *e < end).collect();

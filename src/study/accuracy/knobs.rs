@@ -73,7 +73,7 @@ pub struct Level {
     pub value: Value,
     /// The `--set` options that make it.
     pub set: Vec<String>,
-    /// Steps times particles over those of the scene as it stands, roughly [-].
+    /// Steps times particles over those of the scene as it stands, roughly (-).
     pub work: f64,
     /// Whether the run is written to disk as `strandsnap run` would, frames apart.
     pub writes: bool,

@@ -1,7 +1,7 @@
 //! Error against run time: what each second buys.
 //!
 //! A study turns one knob at a time ([`knobs`]) away from the scene as it stands, runs every value, and
-//! measures how far each run is from a reference ([`reference`], [`closed_form`]). The runs are made and kept by
+//! measures how far each run is from a reference ([`mod@reference`], [`closed_form`]). The runs are made and kept by
 //! [`crate::study::cases`].
 
 pub mod agenda;
@@ -52,7 +52,7 @@ pub struct Options {
     pub seeds: Vec<u64>,
     /// Knobs to turn.
     pub vary: Vec<&'static Knob>,
-    /// Wall time that it may take [s].
+    /// Wall time that it may take (s).
     pub budget: Option<f64>,
     /// Runs side by side.
     pub jobs: usize,
@@ -98,13 +98,13 @@ pub struct Reference {
     pub closed_form: bool,
     /// What it is, in a sentence.
     pub words: String,
-    /// Strength [MPa] and elongation [%], mean over seeds.
+    /// Strength (MPa) and elongation (%), mean over seeds.
     pub value: [f64; 2],
     /// What refinement alone gives for them: the same, but beside a closed form.
     pub refined: [f64; 2],
-    /// How sure refinement is of that [%]: of the limit, and with several seeds of what scatter leaves open of it (95 %).
+    /// How sure refinement is of that (%): of the limit, and with several seeds of what scatter leaves open of it (95 %).
     pub uncertainty_percent: [f64; 2],
-    /// Strength [MPa] and elongation [%] over seeds: what strands of other seeds may have.
+    /// Strength (MPa) and elongation (%) over seeds: what strands of other seeds may have.
     pub over_seeds: [Option<Stat>; 2],
     /// What refinement along each knob adds, by seed.
     pub along: Vec<(u64, Along)>,
@@ -391,7 +391,7 @@ fn describe(subject: &Subject, references: &BTreeMap<u64, Against>) -> Reference
     }
 }
 
-/// Half the 95 % interval of what refinement adds to the mean of strength or elongation, from seed to seed [%]; 0 with one
+/// Half the 95 % interval of what refinement adds to the mean of strength or elongation, from seed to seed (%); 0 with one
 /// seed. The seeds themselves are given: what differs is how each of them is refined.
 fn left_open(references: &BTreeMap<u64, Against>, k: usize) -> f64 {
     let added = |against: &Against| against.refined.along.iter().map(|along| along.correction_percent[k]).sum();

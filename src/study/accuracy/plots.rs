@@ -10,7 +10,7 @@ use crate::study::cases::stat::Stat;
 use crate::study::plot::{self, Axis, Figure, Highlight, Legend, Limit, Mark, Series};
 use std::path::{Path, PathBuf};
 
-/// Of each figure [px of an SVG].
+/// Of each figure (px of an SVG).
 const SIZE: [u32; 2] = [900, 520];
 
 /// Writes `accuracy.svg` and `accuracy.png` into `folder`. Gives the files.
@@ -27,7 +27,7 @@ pub fn write(study: &Study, folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// A row as it is drawn: time [s], size of the error and half the height of its bar [%].
+/// A row as it is drawn: time (s), size of the error and half the height of its bar (%).
 fn point(study: &Study, row: &Row, error: fn(&Errors) -> f64) -> Option<([f64; 2], f64)> {
     let time = row.of_runs(|run| if on_one_core(study) { run.cpu_s } else { Some(run.wall_s) })?;
     let Stat { mean, interval_95, .. } = row.of_errors(|errors| Some(error(errors)))?;

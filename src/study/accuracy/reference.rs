@@ -31,11 +31,11 @@ pub struct Along {
     pub knob: &'static str,
     /// Runs that were used.
     pub levels: usize,
-    /// Observed order of convergence of strength and of elongation [-].
+    /// Observed order of convergence of strength and of elongation (-).
     pub order: [Option<f64>; 2],
-    /// Limit less the scene as it stands, over the latter: of strength and of elongation [%].
+    /// Limit less the scene as it stands, over the latter: of strength and of elongation (%).
     pub correction_percent: [f64; 2],
-    /// How sure that is [%].
+    /// How sure that is (%).
     pub uncertainty_percent: [f64; 2],
 }
 
@@ -43,7 +43,7 @@ pub struct Along {
 pub struct Refined {
     /// The reference.
     pub truth: Truth,
-    /// Uncertainty of strength and elongation over the reference [%].
+    /// Uncertainty of strength and elongation over the reference (%).
     pub uncertainty_percent: [f64; 2],
     /// What each knob adds.
     pub along: Vec<Along>,
@@ -65,11 +65,11 @@ struct Leg<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
     knob: &'static str,
-    /// Limits of the means of strength [MPa] and elongation [%].
+    /// Limits of the means of strength (MPa) and elongation (%).
     limits: [Limit; 2],
     /// The two finest values.
     values: [f64; 2],
-    /// Mean of each less the mean of the scene as it stands: strength [MPa], elongation [%].
+    /// Mean of each less the mean of the scene as it stands: strength (MPa), elongation (%).
     corrections: [f64; 2],
     levels: usize,
 }

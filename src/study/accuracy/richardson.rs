@@ -4,10 +4,10 @@
 //! Fluids Eng. 116 (1994) 405, with the observed order for levels of any ratio after Celik et al., J. Fluids Eng. 130
 //! (2008) 078001.
 
-/// Orders that are believed [-]. Three levels that say anything else are not in the range where one term of the error
+/// Orders that are believed (-). Three levels that say anything else are not in the range where one term of the error
 /// rules.
 const ORDERS: [f64; 2] = [0.5, 4.0];
-/// Safety factors of the grid convergence index [-]: with an order that was observed, and with one that is assumed.
+/// Safety factors of the grid convergence index (-): with an order that was observed, and with one that is assumed.
 const OBSERVED: f64 = 1.25;
 const ASSUMED: f64 = 3.0;
 
@@ -18,10 +18,10 @@ pub struct Limit {
     pub value: f64,
     /// Half the width of the interval that holds the limit with some confidence.
     pub uncertainty: f64,
-    /// The order of convergence that three levels show [-]; `None` when they show none, and then `value` is that of the
+    /// The order of convergence that three levels show (-); `None` when they show none, and then `value` is that of the
     /// finest level.
     pub order: Option<f64>,
-    /// Of the two finest levels, how far to go on from the second through the first [-].
+    /// Of the two finest levels, how far to go on from the second through the first (-).
     pub weight: f64,
 }
 
@@ -48,7 +48,7 @@ pub fn limit(points: &[[f64; 2]]) -> Option<Limit> {
     Some(Limit { value: fine[1] + correction, uncertainty: OBSERVED * correction.abs(), order: Some(order), weight })
 }
 
-/// Share of the difference of two levels that the finer one still lacks: 1/((h₂/h₁)^p − 1) [-].
+/// Share of the difference of two levels that the finer one still lacks: 1/((h₂/h₁)^p − 1) (-).
 fn weight_of(fine: f64, next: f64, order: f64) -> f64 {
     1.0 / ((next / fine).powf(order) - 1.0)
 }

@@ -52,7 +52,7 @@ pub enum Outcome {
     },
     /// It was refused or had to stop: why.
     Failed(String),
-    /// The budget had no room for it: what it would have taken [s].
+    /// The budget had no room for it: what it would have taken (s).
     LeftOut(f64),
     /// The study was interrupted before.
     NotReached,

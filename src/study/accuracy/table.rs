@@ -322,7 +322,7 @@ pub fn caution(study: &Study) -> Option<String> {
     })
 }
 
-/// Processor time over run time on one thread below which the machine was busy with something else [-].
+/// Processor time over run time on one thread below which the machine was busy with something else (-).
 const LEAST_SHARE: f64 = 0.9;
 
 impl Study {

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Folder of the records within that of the study.
 const FOLDER: &str = "cases";
-/// Width and height of each figure [px of an SVG].
+/// Width and height of each figure (px of an SVG).
 const SIZE: [u32; 2] = [760, 480];
 
 /// The verification cases that a name means: `hertz`, `verify/hertz`, or the beginning of several, `cantilever`.
@@ -38,17 +38,17 @@ pub struct Level {
     pub quantity: String,
     /// What the resolution is, such as "a/L"; `None` where nothing was varied.
     pub axis: Option<String>,
-    /// Spacing, step or load per particle over what it is measured by [-].
+    /// Spacing, step or load per particle over what it is measured by (-).
     pub resolution: Option<f64>,
-    /// Relative error, signed [%]; `None` where it is not a number.
+    /// Relative error, signed (%); `None` where it is not a number.
     pub error_percent: Option<f64>,
-    /// Order of convergence from the next coarser level to this one [-].
+    /// Order of convergence from the next coarser level to this one (-).
     pub order: Option<f64>,
-    /// The one that theory knows [-].
+    /// The one that theory knows (-).
     pub order_theory: Option<f64>,
     /// Steps.
     pub steps: u64,
-    /// Wall time [s].
+    /// Wall time (s).
     pub wall_s: f64,
 }
 

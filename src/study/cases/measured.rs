@@ -12,23 +12,23 @@ use std::sync::Arc;
 /// Histories over strain, one entry per row of the curve.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Curve {
-    /// Strain of the body [-], rising.
+    /// Strain of the body (-), rising.
     pub strain: Vec<f64>,
-    /// Nominal stress [MPa].
+    /// Nominal stress (MPa).
     pub stress_mpa: Vec<f64>,
-    /// Plastic work so far, bonds and contacts [J].
+    /// Plastic work so far, bonds and contacts (J).
     pub plastic_work_j: Vec<f64>,
-    /// Mean nominal stress of each layer at mid-gauge [MPa], layer by layer: the force on the layer over its copper.
+    /// Mean nominal stress of each layer at mid-gauge (MPa), layer by layer: the force on the layer over its copper.
     pub layer_stress_mpa: Vec<Vec<f64>>,
 }
 
 impl Curve {
-    /// Strain up to which there are rows [-].
+    /// Strain up to which there are rows (-).
     pub fn end(&self) -> f64 {
         self.strain.last().copied().unwrap_or(0.0)
     }
 
-    /// A history at `strain` [-], linear between rows; its end beyond them. `history` must belong to this curve.
+    /// A history at `strain` (-), linear between rows; its end beyond them. `history` must belong to this curve.
     pub fn at(&self, history: &[f64], strain: f64) -> f64 {
         let upper = self.strain.partition_point(|e| *e <= strain);
         match upper {
@@ -57,7 +57,7 @@ impl Curve {
     }
 }
 
-/// All plastic work in bonds and contacts [J].
+/// All plastic work in bonds and contacts (J).
 fn plastic_work(sample: &Sample) -> f64 {
     let energy = &sample.energy;
     energy.plastic_bonds + energy.plastic_contacts + energy.plastic_thinning
@@ -66,27 +66,27 @@ fn plastic_work(sample: &Sample) -> f64 {
 /// One run as a study sees it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Measured {
-    /// From reading the geometry to the last row [s].
+    /// From reading the geometry to the last row (s).
     pub wall_s: f64,
-    /// Processor time of the same [s]; `None` where the system does not tell.
+    /// Processor time of the same (s); `None` where the system does not tell.
     pub cpu_s: Option<f64>,
     /// Steps.
     pub steps: u64,
-    /// Wall time in the engine over steps [ms].
+    /// Wall time in the engine over steps (ms).
     pub ms_per_step: Option<f64>,
     /// Particles.
     pub particles: usize,
-    /// Greatest nominal stress of a body that failed [MPa].
+    /// Greatest nominal stress of a body that failed (MPa).
     pub strength_mpa: f64,
-    /// Strain at the peak [%].
+    /// Strain at the peak (%).
     pub elongation_percent: f64,
-    /// Strain at which stress has fallen 20 % below its peak [%]; `None` when it never did.
+    /// Strain at which stress has fallen 20 % below its peak (%); `None` when it never did.
     pub drop_percent: Option<f64>,
-    /// Greatest share of the energy that the ledger does not account for [%].
+    /// Greatest share of the energy that the ledger does not account for (%).
     pub energy_residual_percent: Option<f64>,
-    /// Greatest kinetic over internal energy before the first rupture [-].
+    /// Greatest kinetic over internal energy before the first rupture (-).
     pub kinetic_over_internal: Option<f64>,
-    /// Greatest difference of the two grip forces before the first rupture, over the peak force [%].
+    /// Greatest difference of the two grip forces before the first rupture, over the peak force (%).
     pub grip_mismatch_percent: Option<f64>,
     /// Wires.
     pub wires: usize,
@@ -94,7 +94,7 @@ pub struct Measured {
     pub layers: Vec<String>,
     /// Wires of each layer.
     pub layer_wires: Vec<usize>,
-    /// Where the gauge begins and ends along z before loading [mm]; `None` without grips.
+    /// Where the gauge begins and ends along z before loading (mm); `None` without grips.
     pub gauge_mm: Option<[f64; 2]>,
     /// First rupture of each wire that broke, in order.
     pub breaks: Vec<Break>,
@@ -137,9 +137,9 @@ pub struct Watcher {
     layers: Vec<String>,
     layer_wires: Vec<usize>,
     gauge_mm: Option<[f64; 2]>,
-    /// By how much the strain of a row is older than its energies [s].
+    /// By how much the strain of a row is older than its energies (s).
     lag: f64,
-    /// Time [s] and plastic work [J] of the row before.
+    /// Time (s) and plastic work (J) of the row before.
     before: Option<[f64; 2]>,
 }
 

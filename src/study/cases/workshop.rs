@@ -37,7 +37,7 @@ pub struct Workshop<'a> {
     pub threads: Option<usize>,
     /// Whether the cost of runs is what is studied: then a run on another number of threads is another run.
     pub costs: bool,
-    /// Wall time that the study may take [s].
+    /// Wall time that the study may take (s).
     pub budget: Option<f64>,
     /// When it began.
     pub began: Instant,
@@ -56,9 +56,9 @@ pub struct Progress {
     pub finished: usize,
     /// Runs in all.
     pub of: usize,
-    /// Share of the work done [-].
+    /// Share of the work done (-).
     pub share: f64,
-    /// Time left [s]; `None` before any run says how fast the machine is.
+    /// Time left (s); `None` before any run says how fast the machine is.
     pub left: Option<f64>,
 }
 
@@ -74,7 +74,7 @@ pub enum Became {
     },
     /// The scene refused the values: why.
     Refused(String),
-    /// The budget has no room for it: what it would take [s].
+    /// The budget has no room for it: what it would take (s).
     LeftOut(f64),
     /// The study was interrupted before.
     NotReached,
@@ -84,7 +84,7 @@ pub enum Became {
 struct Shared {
     next: usize,
     became: Vec<Became>,
-    /// Wall time [s] and work of the runs that estimates go by: those made now, and before there are any, the kept ones
+    /// Wall time (s) and work of the runs that estimates go by: those made now, and before there are any, the kept ones
     /// that lead.
     pace: (f64, f64),
     /// Runs made now.
@@ -97,7 +97,7 @@ struct Shared {
 }
 
 impl Shared {
-    /// Wall time of a run of one unit of work [s].
+    /// Wall time of a run of one unit of work (s).
     fn wall_per_work(&self) -> Option<f64> {
         (self.pace.1 > 0.0).then(|| self.pace.0 / self.pace.1)
     }

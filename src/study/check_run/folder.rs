@@ -108,11 +108,11 @@ pub struct Told {
 pub struct Snapshots {
     /// Their rows against the curve's of the same step; 1 where they differ.
     pub rows: Search,
-    /// Stress of broken bonds [MPa].
+    /// Stress of broken bonds (MPa).
     pub silent: Search,
-    /// Stress of whole bonds over what their law allows, less 1 [-].
+    /// Stress of whole bonds over what their law allows, less 1 (-).
     pub law: Search,
-    /// Plastic strain of whole bonds over that at which they break, less 1 [-].
+    /// Plastic strain of whole bonds over that at which they break, less 1 (-).
     pub rupture: Search,
 }
 
@@ -157,7 +157,7 @@ impl Folder {
         self.trajectory.ruptures.first().map_or(u64::MAX, |r| r.step)
     }
 
-    /// Section of all wires before loading [m²].
+    /// Section of all wires before loading (m²).
     pub fn area(&self) -> f64 {
         // The scene has the diameters in double precision.
         let laid = self.spec.strand.iter().flat_map(|s| &s.layers).map(|l| l.wires as f64 * l.wire_diameter.powi(2));
@@ -269,7 +269,7 @@ impl Snapshots {
     }
 }
 
-/// Log strain of a bond by the positions of its particles, and its rest length [mm].
+/// Log strain of a bond by the positions of its particles, and its rest length (mm).
 fn stretch(now: &Snapshot, info: &RunInfo, slot: usize) -> [f64; 2] {
     let length = |x: &[[f32; 3]]| {
         let [a, b] = [x[slot], x[slot + 1]];

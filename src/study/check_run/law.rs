@@ -27,7 +27,7 @@ pub const RUPTURES: Invariant = Invariant {
     check: ruptures,
 };
 
-/// Rise of stress or strain over its limit that a bond can have when its break is noticed [-], where that limit is one of
+/// Rise of stress or strain over its limit that a bond can have when its break is noticed (-), where that limit is one of
 /// stress or strain: a wave of the limit's own stress passes a bond in no less than a stable step, so that it doubles at most.
 const NOTICED: f64 = 2.0;
 
@@ -36,9 +36,9 @@ pub struct Limits {
     law: BondLawSpec,
     young: f64,
     criterion: Option<RuptureCriterion>,
-    /// Factor on the rupture value of each slot [-]; empty without scatter.
+    /// Factor on the rupture value of each slot (-); empty without scatter.
     factor: Vec<f64>,
-    /// Error of a position in a snapshot [mm].
+    /// Error of a position in a snapshot (mm).
     rounding: f64,
 }
 
@@ -72,8 +72,8 @@ impl Limits {
         self.factor.get(slot).copied().unwrap_or(1.0)
     }
 
-    /// True stress that a whole bond can have [MPa]: the hardening law's at its plastic strain `p`, the elastic law's at its
-    /// log strain and rest length [mm], positions being rounded.
+    /// True stress that a whole bond can have (MPa): the hardening law's at its plastic strain `p`, the elastic law's at its
+    /// log strain and rest length (mm), positions being rounded.
     pub fn bond(&self, p: f64, [strain, rest]: [f64; 2]) -> Option<f64> {
         Some(match &self.law {
             BondLawSpec::Elastic => self.young * (strain.abs() + self.rounding / rest) * 1e-6,
@@ -81,7 +81,7 @@ impl Limits {
         })
     }
 
-    /// Plastic strain at which a bond breaks [-], if it breaks by that.
+    /// Plastic strain at which a bond breaks (-), if it breaks by that.
     pub fn plastic(&self, slot: usize) -> Option<f64> {
         match self.criterion {
             Some(RuptureCriterion::PlasticStrain { strain }) => Some(strain * self.factor(slot)),
@@ -89,7 +89,7 @@ impl Limits {
         }
     }
 
-    /// True stress that a bond can have when it breaks [MPa]; `None` when only its history tells. Stress hardly changes while
+    /// True stress that a bond can have when it breaks (MPa); `None` when only its history tells. Stress hardly changes while
     /// plastic strain goes past its limit, for which a hundredth is plenty; see [`NOTICED`] for other limits.
     fn breaking(&self, slot: usize) -> Option<f64> {
         let factor = self.factor(slot);
@@ -109,7 +109,7 @@ impl Limits {
         Some(limit * 1e-6)
     }
 
-    /// Nominal stress that any wire can have [MPa]; `None` when nothing limits it.
+    /// Nominal stress that any wire can have (MPa); `None` when nothing limits it.
     fn wire(&self, slots: usize) -> Option<f64> {
         let most = (0..slots.max(1)).map(|slot| self.factor(slot)).fold(0.0, f64::max);
         let top = |hardening: &crate::law::bond::hardening::Hardening, end: f64| {

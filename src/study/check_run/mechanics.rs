@@ -33,10 +33,10 @@ pub const STIFFNESS: Invariant = Invariant {
 pub const STRAND_THEORY: Invariant =
     Invariant { name: "strand-theory", about: "the initial stiffness is that of strand theory", check: strand_theory };
 
-/// Passages of an elastic wave after which a pull has settled [-].
+/// Passages of an elastic wave after which a pull has settled (-).
 const SETTLED: f64 = 2.0;
 
-/// A little more than forces are smoothed over, in passages of an elastic wave [-].
+/// A little more than forces are smoothed over, in passages of an elastic wave (-).
 const SMOOTHED: f64 = 0.3;
 
 /// Σ N cos β′ over the wires against the mean of the two grips' forces, β′ the lay angle of a strand that keeps its volume.
@@ -142,7 +142,7 @@ fn work(run: &Folder) -> Outcome {
     search.end(0.01, "of the work", "there are fewer than three rows")
 }
 
-/// Energy that is nothing [J]: an elastic strain of 1e-9 everywhere.
+/// Energy that is nothing (J): an elastic strain of 1e-9 everywhere.
 fn negligible(run: &Folder) -> f64 {
     let info = &run.trajectory.info;
     let volume: f64 = info

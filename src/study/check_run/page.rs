@@ -54,7 +54,7 @@ impl<'a> Rows<'a> {
         Self(rows)
     }
 
-    /// Looks whether a row at `x` [%] has the value `y`; `of` tells a row's.
+    /// Looks whether a row at `x` (%) has the value `y`; `of` tells a row's.
     fn look(&self, [x, y]: [f32; 2], of: impl Fn(&Sample) -> Option<f64>, what: &str, search: &mut Search) {
         let values: Vec<f32> =
             self.0.get(&x.to_bits()).into_iter().flatten().map(|row| of(row).map_or(f32::NAN, |v| v as f32)).collect();

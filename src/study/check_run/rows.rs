@@ -85,7 +85,7 @@ fn time_step(run: &Folder) -> Outcome {
     search.end(1e-6, "-", "there is one row")
 }
 
-/// Speed of the grip at the start [m/s], where it is prescribed.
+/// Speed of the grip at the start (m/s), where it is prescribed.
 fn speed(run: &Folder) -> Option<f64> {
     match run.spec.grip.as_ref()?.drive {
         DriveSpec::Speed(speed) => Some(speed),
@@ -106,7 +106,7 @@ fn strain(run: &Folder) -> Outcome {
     search.end(0.0, "%", "there is one row")
 }
 
-/// Length that is free between the grips, by the rows of a pull at constant speed [m]: way over strain, both of the instant
+/// Length that is free between the grips, by the rows of a pull at constant speed (m): way over strain, both of the instant
 /// that the row's mean stands for.
 pub fn free_length(run: &Folder) -> Option<f64> {
     let grip = run.spec.grip.as_ref()?;

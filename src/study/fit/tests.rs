@@ -199,7 +199,7 @@ fn a_curve_beyond_the_range_of_numbers_is_refused() {
     assert!(found.models.iter().flat_map(|one| &one.cross_validation).all(|one| one.mean.is_finite()));
 }
 
-/// Strength [MPa] of a wire over the Weibull modulus of its bonds (tests/studies/fit-log-axis). Right values by
+/// Strength (MPa) of a wire over the Weibull modulus of its bonds (tests/studies/fit-log-axis). Right values by
 /// scipy.optimize.curve_fit 1.x, and by a search in B alone with A and C by linear least squares: 161.62298, −0.28022553,
 /// 200.96152, standard errors 16.39133, 0.03896311, 2.61414647, rms 3.53212072.
 #[test]

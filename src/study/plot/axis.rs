@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// Major ticks that an axis aims at.
 const TICKS: usize = 6;
-/// Share of the range left free on either side [-].
+/// Share of the range left free on either side (-).
 const PADDING: f64 = 0.06;
 
 /// An axis whose range is known.

@@ -7,7 +7,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::sync::Once;
 
-/// Pixels of a PNG per pixel of an SVG [-].
+/// Pixels of a PNG per pixel of an SVG (-).
 const PNG_SCALE: u32 = 2;
 /// Family of all text.
 pub const FONT: &str = "Inter";

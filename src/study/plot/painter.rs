@@ -8,21 +8,21 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Text: axes, ticks and legend; titles [px].
+/// Text: axes, ticks and legend; titles (px).
 const TEXT: f64 = 14.0;
 const TITLE: f64 = 17.0;
-/// Radius of a marker, width of a line, gap beside text [px].
+/// Radius of a marker, width of a line, gap beside text (px).
 const MARKER: f64 = 4.5;
 const LINE: f64 = 1.8;
 const GAP: f64 = 5.0;
-/// Widths of a line behind everything and of an error bar, radius of the ring around a point that stands out [px].
+/// Widths of a line behind everything and of an error bar, radius of the ring around a point that stands out (px).
 const BROAD: f64 = 7.0;
 const BAR: f64 = 1.0;
 const RING: f64 = 9.0;
-/// Height of a line of the legend, and width of its sample of a line [px].
+/// Height of a line of the legend, and width of its sample of a line (px).
 const ROW: f64 = 19.0;
 const SAMPLE: f64 = 28.0;
-/// Dash and gap of reference lines [px].
+/// Dash and gap of reference lines (px).
 const DASH: [f64; 2] = [7.0, 5.0];
 
 const INK: RGBColor = RGBColor(40, 40, 40);
@@ -49,7 +49,7 @@ type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType
 pub struct Painter<'a, B: DrawingBackend> {
     figure: &'a Figure,
     area: &'a DrawingArea<B, Shift>,
-    /// Pixels per pixel of an SVG [-].
+    /// Pixels per pixel of an SVG (-).
     scale: f64,
     x: Span,
     y: Span,
@@ -329,7 +329,7 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
     }
 }
 
-/// Dash and gap of reference slopes [px].
+/// Dash and gap of reference slopes (px).
 const SHORT_DASH: [f64; 2] = [3.0, 4.0];
 
 fn has_markers(mark: Mark) -> bool {
@@ -346,7 +346,7 @@ fn colour(index: usize, series: &Series) -> RGBColor {
     series.shade.map_or(PALETTE[index % PALETTE.len()], ramp)
 }
 
-/// Greatest place on the colour map that is used for lines on white [-].
+/// Greatest place on the colour map that is used for lines on white (-).
 const LIGHTEST: f64 = 0.9;
 
 /// Ranges of both axes, which hold series, error bars and limits.

@@ -9,7 +9,7 @@ const MOST_CANDIDATES: usize = 100_000;
 const STARTS: u64 = 20;
 /// Added to the diagonal, so that a start that does not tell all parameters apart can be improved, too.
 const RIDGE: f64 = 1e-6;
-/// Least gain of an exchange, over the determinant [-].
+/// Least gain of an exchange, over the determinant (-).
 const GAIN: f64 = 1e-9;
 
 /// Why there is no design.
@@ -61,7 +61,7 @@ pub fn d_optimal(model: &Model, points: usize) -> Result<Vec<Vec<usize>>, Design
     Ok(chosen.into_iter().map(|k| grid[k].clone()).collect())
 }
 
-/// det(XᵀX/n)^(1/p) of a design over that of the full grid [-]: 1 is as good per run as the grid; 0 does not tell all
+/// det(XᵀX/n)^(1/p) of a design over that of the full grid (-): 1 is as good per run as the grid; 0 does not tell all
 /// parameters apart.
 pub fn efficiency(model: &Model, design: &[Vec<usize>]) -> f64 {
     let (of_design, of_grid) = (information(model, design), information(model, &model.grid()));

@@ -99,11 +99,11 @@ pub struct Term {
     pub freedom: usize,
     /// What the model loses without it: extra sum of squares.
     pub squares: f64,
-    /// The same over the total about the mean [%]; terms that overlap need not add up.
+    /// The same over the total about the mean (%); terms that overlap need not add up.
     pub share_percent: f64,
     /// F against the residual.
     pub f: f64,
-    /// Probability of so great an F by scatter alone [-].
+    /// Probability of so great an F by scatter alone (-).
     pub p: f64,
 }
 
@@ -118,7 +118,7 @@ pub struct Effects {
     pub freedom: usize,
     /// Residual standard deviation, in the unit of the response.
     pub residual: f64,
-    /// Share of the variance that the model explains, R² [-].
+    /// Share of the variance that the model explains, R² (-).
     pub explained: f64,
     /// Factor by factor.
     pub factors: Vec<Factor>,

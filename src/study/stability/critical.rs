@@ -11,17 +11,17 @@ use super::run::{Leash, watch};
 use crate::base::error::{Error, Result};
 use crate::engine::view::Sample;
 
-/// Bisection ends when the step that holds and the one that does not are this near [-].
+/// Bisection ends when the step that holds and the one that does not are this near (-).
 const SHARP: f64 = 0.005;
-/// Greatest step tried, over the bound [-].
+/// Greatest step tried, over the bound (-).
 const WIDEST: f64 = 64.0;
 
 /// How the critical step of a case is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Critical {
-    /// The energy of a run may be this many times that of one with half of the bound [-].
+    /// The energy of a run may be this many times that of one with half of the bound (-).
     pub growth: f64,
-    /// The bound must come within this share of the critical step [-]; `None`: it only has to lie below.
+    /// The bound must come within this share of the critical step (-); `None`: it only has to lie below.
     pub within: Option<f64>,
 }
 
@@ -79,12 +79,12 @@ pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> R
     Ok(Ended::Ran { answer: Some(answer), residual: None, wrong, notices: Vec::new() })
 }
 
-/// The least bound on the step during a run that follows it [s].
+/// The least bound on the step during a run that follows it (s).
 fn least_bound(case: &Case, quick: bool, leash: &Leash) -> Result<f64> {
     watch(&case.scene(quick, &[])?, leash).map(|seen| seen.least_bound)
 }
 
-/// Greatest energy stored, moving or swallowed over the run [J].
+/// Greatest energy stored, moving or swallowed over the run (J).
 fn energy(seen: &Seen) -> f64 {
     let of = |row: &Sample| row.energy.internal().abs().max(row.energy.kinetic.abs());
     seen.rows.iter().map(of).fold(0.0, f64::max)

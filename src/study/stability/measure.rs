@@ -24,11 +24,11 @@ pub type Check = fn(&Seen) -> Answer;
 /// How near a number must come.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Accept {
-    /// Within this share of the exact one [-].
+    /// Within this share of the exact one (-).
     Within(f64),
     /// Within this much of it, in its unit.
     Absolute(f64),
-    /// Below it; within this share when one is given [-].
+    /// Below it; within this share when one is given (-).
     Below(Option<f64>),
 }
 
@@ -48,7 +48,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// 100 × (computed/exact − 1) [%]; `None` where the exact value is zero.
+    /// 100 × (computed/exact − 1) (%); `None` where the exact value is zero.
     pub fn error_percent(&self) -> Option<f64> {
         (self.exact != 0.0).then(|| 100.0 * (self.computed / self.exact - 1.0))
     }
@@ -86,15 +86,15 @@ pub struct Seen {
     pub ruptures: Vec<Rupture>,
     /// What it found.
     pub notices: Vec<Notice>,
-    /// Energy below which nothing happened [J].
+    /// Energy below which nothing happened (J).
     pub negligible: f64,
-    /// Positions at each row [m], of small bodies only.
+    /// Positions at each row (m), of small bodies only.
     pub track: Vec<Vec<DVec3>>,
-    /// Least bound on the time step at any row [s].
+    /// Least bound on the time step at any row (s).
     pub least_bound: f64,
-    /// Positions [m] and velocities [m/s] at the end.
+    /// Positions (m) and velocities (m/s) at the end.
     pub end: [Vec<DVec3>; 2],
-    /// Radii at the end [m].
+    /// Radii at the end (m).
     pub radius: Vec<f64>,
 }
 
@@ -154,7 +154,7 @@ impl Seen {
         Some(format!("wires {a} and {b} are in each other by {:.0} % of the diameter", 100.0 * worst.share))
     }
 
-    /// Longest bond at the end over the diameter there [-].
+    /// Longest bond at the end over the diameter there (-).
     fn widest(&self) -> f64 {
         let at = &self.end[0];
         let over = |slot: usize| at[slot].distance(at[slot + 1]) / (self.radius[slot] + self.radius[slot + 1]);
@@ -169,7 +169,7 @@ impl Seen {
         2.0 * self.assembly.radius[0]
     }
 
-    /// Nominal stress of a wire at engineering strain `strain` [Pa].
+    /// Nominal stress of a wire at engineering strain `strain` (Pa).
     fn wire_stress(&self, strain: f64) -> f64 {
         let young = self.spec.material.young;
         match &self.spec.bond.law {
@@ -178,7 +178,7 @@ impl Seen {
         }
     }
 
-    /// σ_y before any plastic strain [Pa].
+    /// σ_y before any plastic strain (Pa).
     fn first_yield(&self) -> f64 {
         match &self.spec.bond.law {
             BondLawSpec::Elastic => f64::INFINITY,
@@ -187,7 +187,7 @@ impl Seen {
     }
 }
 
-/// Nominal stress of a strand or wire at `strain`, ends not turning [Pa]: every wire at the strain that its helix gives
+/// Nominal stress of a strand or wire at `strain`, ends not turning (Pa): every wire at the strain that its helix gives
 /// it, with the lay radius that its layer has at the end (Costello 1997, chapter 3, at finite strain).
 fn nominal_stress(seen: &Seen, strain: f64) -> f64 {
     let (mut force, mut area) = (0.0, 0.0);
@@ -204,7 +204,7 @@ fn nominal_stress(seen: &Seen, strain: f64) -> f64 {
     force / area
 }
 
-/// Mean distance of a layer's particles from the axis at the end, between the grips [m].
+/// Mean distance of a layer's particles from the axis at the end, between the grips (m).
 fn lay_radius_now(seen: &Seen, layer: usize) -> f64 {
     let grip = seen.spec.grip.as_ref().map_or(0.0, |grip| grip.length);
     let gauge = grip..seen.assembly.length - grip;
@@ -214,7 +214,7 @@ fn lay_radius_now(seen: &Seen, layer: usize) -> f64 {
     radii.iter().sum::<f64>() / radii.len() as f64
 }
 
-/// Stress of the axial dashpots in a steady pull [Pa]: 2ξ√(k m*) × strain rate × length of a bond with k = EA/a and
+/// Stress of the axial dashpots in a steady pull (Pa): 2ξ√(k m*) × strain rate × length of a bond with k = EA/a and
 /// m* = ρAa/2, over A: √2 ξ ρ c a ε̇.
 fn viscous_stress(seen: &Seen) -> f64 {
     let material = &seen.spec.material;

@@ -40,11 +40,11 @@ pub struct Report {
     pub outcome: Outcome,
     /// The number asked of it, when one is known.
     pub answer: Option<Answer>,
-    /// Greatest energy residual over the greatest work done [-].
+    /// Greatest energy residual over the greatest work done (-).
     pub residual: Option<f64>,
     /// Steps done, over all runs.
     pub steps: u64,
-    /// Wall time [s].
+    /// Wall time (s).
     pub wall_s: f64,
     /// What the program said: cause and remedy, or what it found; what is wrong where it failed.
     pub message: String,

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-/// Time that a run which was asked to end gets to do so [s].
+/// Time that a run which was asked to end gets to do so (s).
 const GRACE: Duration = Duration::from_secs(10);
 
 /// What a run reports while it goes: its steps, and whether it must end.
@@ -179,19 +179,19 @@ impl Watched {
     }
 }
 
-/// The energy that a run had to do with [J]; rounding alone does not count.
+/// The energy that a run had to do with (J); rounding alone does not count.
 fn scale(seen: &Seen) -> f64 {
     let of = |e: &Energy| e.work.abs().max(e.internal().abs()).max(e.kinetic.abs());
     seen.rows.iter().map(|row| of(&row.energy)).fold(seen.negligible, f64::max)
 }
 
-/// Greatest residual of the ledger over the greatest work done [-].
+/// Greatest residual of the ledger over the greatest work done (-).
 fn residual(seen: &Seen) -> f64 {
     let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
     seen.rows.iter().map(|row| row.energy.residual().abs()).fold(0.0, larger) / scale(seen)
 }
 
-/// One term of the ledger [J].
+/// One term of the ledger (J).
 type Term = fn(&Energy) -> f64;
 
 /// Terms of the ledger that no closed balance would betray: dissipation that falls, energy stored that is negative.

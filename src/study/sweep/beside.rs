@@ -18,10 +18,10 @@ use crate::strand::lay_radius;
 use crate::study::cases::stat::Stat;
 use serde::Serialize;
 
-/// Strength [MPa] and elongation [%], in this order; also what they are called.
+/// Strength (MPa) and elongation (%), in this order; also what they are called.
 pub const QUANTITIES: [&str; 2] = ["strength", "elongation"];
 
-/// Lengths that agree so well are the same [mm].
+/// Lengths that agree so well are the same (mm).
 const SAME_MM: f64 = 1e-6;
 
 /// A point of a study beside the paper and theory.
@@ -29,7 +29,7 @@ const SAME_MM: f64 = 1e-6;
 pub struct PointBeside {
     /// Number of the point.
     pub point: usize,
-    /// Ours, over seeds: strength [MPa] and elongation [%].
+    /// Ours, over seeds: strength (MPa) and elongation (%).
     pub ours: [Option<Stat>; 2],
     /// The paper's simulation of the same strand.
     pub paper: Option<[f64; 2]>,
@@ -40,7 +40,7 @@ pub struct PointBeside {
 }
 
 impl PointBeside {
-    /// How far ours is from another value [%].
+    /// How far ours is from another value (%).
     pub fn error(&self, k: usize, other: Option<[f64; 2]>) -> Option<f64> {
         Some(100.0 * (self.ours[k]?.mean / other?[k] - 1.0))
     }
@@ -123,9 +123,9 @@ pub fn trends(definition: &Definition, points: &[PointBeside]) -> Vec<Trend> {
 
 /// What a wire must bear and how far it must stretch for the experiment to come out.
 struct Wire {
-    /// Nominal strength [MPa].
+    /// Nominal strength (MPa).
     strength_mpa: f64,
-    /// Elongation at fracture [-].
+    /// Elongation at fracture (-).
     elongation: f64,
 }
 
@@ -143,7 +143,7 @@ impl Wire {
         })
     }
 
-    /// Strength [MPa] and elongation [%] of a strand of such wires.
+    /// Strength (MPa) and elongation (%) of a strand of such wires.
     fn strand(&self, layers: &[Layer]) -> [f64; 2] {
         [self.strength_mpa * strand::strength_factor(layers), percent(strand::elongation(layers, self.elongation))]
     }

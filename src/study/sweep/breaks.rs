@@ -17,11 +17,11 @@ pub struct LayerBreaks {
     pub places: Vec<usize>,
     /// Runs in which it did not break.
     pub never: usize,
-    /// Its wires that broke [%].
+    /// Its wires that broke (%).
     pub broken_percent: Option<Stat>,
     /// Runs in which its first break lay in the middle third of the gauge.
     pub middle_third: usize,
-    /// Distance of its first break from mid-gauge, before loading [mm].
+    /// Distance of its first break from mid-gauge, before loading (mm).
     pub off_middle_mm: Option<Stat>,
 }
 

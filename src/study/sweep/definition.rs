@@ -81,7 +81,7 @@ pub struct Definition {
     pub points: Vec<Vec<usize>>,
     /// The model of effects that the points were picked for, when the study has a design.
     pub model: Option<Model>,
-    /// How well the design tells the model's terms apart, over the full grid [-].
+    /// How well the design tells the model's terms apart, over the full grid (-).
     pub efficiency: Option<f64>,
     /// Seeds; a point whose scene has no scatter is run with the first only, since the others give the same run.
     pub seeds: Vec<u64>,

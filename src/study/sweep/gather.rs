@@ -153,7 +153,7 @@ pub fn construction(spec: &Spec) -> String {
     format!("{} wires of {}, {:.3} mm²", wires.join(" + "), diameters.join(", "), area * 1e6)
 }
 
-/// Section of a layer's wires [m²].
+/// Section of a layer's wires (m²).
 fn copper(layer: &LayerSpec) -> f64 {
     layer.wires as f64 * std::f64::consts::FRAC_PI_4 * layer.wire_diameter.powi(2)
 }

@@ -43,7 +43,7 @@ pub struct Making<'a> {
 pub enum Cost {
     /// It is done.
     Done,
-    /// Wall time on one thread [s].
+    /// Wall time on one thread (s).
     Takes(f64),
     /// Its scene is refused, or does not say when it ends.
     Unknown,
@@ -53,12 +53,12 @@ pub enum Cost {
 pub struct Costs {
     /// Case by case, in their order.
     pub cases: Vec<Cost>,
-    /// What finished cases took over what their first steps said [-]; `None` when none is finished. It is in the costs.
+    /// What finished cases took over what their first steps said (-); `None` when none is finished. It is in the costs.
     pub ratio: Option<f64>,
 }
 
 impl Costs {
-    /// Wall time of what is left, on one thread [s].
+    /// Wall time of what is left, on one thread (s).
     pub fn left(&self) -> f64 {
         self.cases.iter().map(|cost| if let Cost::Takes(seconds) = cost { *seconds } else { 0.0 }).sum()
     }

@@ -3,7 +3,7 @@
 use crate::study::cases::measured::Measured;
 
 /// Strain beyond the drop at which the residual stress is read, and half the window it is averaged over, because elastic
-/// waves run then [-].
+/// waves run then (-).
 const AFTER_DROP: f64 = 0.01;
 const HALF_WINDOW: f64 = 0.001;
 
@@ -108,13 +108,13 @@ pub fn first_layer(measured: &Measured) -> Option<usize> {
     measured.layers.iter().position(|layer| *layer == first.layer)
 }
 
-/// Distance of a place from mid-gauge, before loading [mm].
+/// Distance of a place from mid-gauge, before loading (mm).
 pub fn off_middle(measured: &Measured, rest_z_mm: f64) -> Option<f64> {
     let [lower, upper] = measured.gauge_mm?;
     Some(rest_z_mm - 0.5 * (lower + upper))
 }
 
-/// Wires of the layers in `range` that broke [%].
+/// Wires of the layers in `range` that broke (%).
 fn broken(measured: &Measured, range: std::ops::Range<usize>) -> Option<f64> {
     let wires: usize = measured.layer_wires.get(range.clone())?.iter().sum();
     let names = &measured.layers[range];
@@ -131,7 +131,7 @@ fn below_broken(measured: &Measured) -> Option<f64> {
     broken(measured, 0..measured.layers.len().checked_sub(1)?)
 }
 
-/// Mean nominal stress [MPa] around [`AFTER_DROP`] beyond the drop; `None` without a drop, or when the run ended before.
+/// Mean nominal stress (MPa) around [`AFTER_DROP`] beyond the drop; `None` without a drop, or when the run ended before.
 fn residual_stress(measured: &Measured) -> Option<f64> {
     let curve = &measured.curve;
     let middle = 0.01 * measured.drop_percent? + AFTER_DROP;

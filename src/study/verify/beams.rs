@@ -35,9 +35,9 @@ pub const TORSION: Case = Case {
     run: torsion_bar,
 };
 
-/// Diameters over the length of the wires in these scenes [-].
+/// Diameters over the length of the wires in these scenes (-).
 const LENGTH: f64 = 20.0;
-/// Load of the scenes [N].
+/// Load of the scenes (N).
 const LOAD: f64 = 6e-3;
 
 fn tip(engine: &Engine) -> f64 {
@@ -46,7 +46,7 @@ fn tip(engine: &Engine) -> f64 {
     engine.state().x.x[end] - a.position.x[end]
 }
 
-/// Tip deflection [m] after the ramp; the window holds several periods of the first mode.
+/// Tip deflection (m) after the ramp; the window holds several periods of the first mode.
 fn settled_tip(lab: &Lab, scene: &str, options: &[String]) -> Result<(RoundBar, f64, Spent)> {
     let mut trial = lab.trial(scene, options)?;
     let from = trial.spec.holds.iter().map(|h| h.ramp).fold(0.0, f64::max);

@@ -25,9 +25,9 @@ struct Slide {
     /// Tension after over before.
     ratio: f64,
     wire: Wrapped,
-    /// Length in between [m].
+    /// Length in between (m).
     length: f64,
-    /// Angle from bond to bond [rad].
+    /// Angle from bond to bond (rad).
     corner: f64,
     spent: Spent,
 }

@@ -38,7 +38,7 @@ pub const ENERGY: Case = Case {
     run: energy_drift,
 };
 
-/// What rounding may change of momenta [-].
+/// What rounding may change of momenta (-).
 const ROUNDING: f64 = 1e-11;
 
 /// Momentum and angular momentum about the origin. Positions and velocities half a step apart give the same angular
@@ -157,9 +157,9 @@ fn throw(a: &mut Assembly) {
 
 /// How the energy of one undamped run moves, over its start.
 struct Drift {
-    /// Greatest change [-].
+    /// Greatest change (-).
     worst: f64,
-    /// Rise of a straight line through the means of [`WINDOWS`] windows over the run, and its standard error [-].
+    /// Rise of a straight line through the means of [`WINDOWS`] windows over the run, and its standard error (-).
     trend: (f64, f64),
     point: Point,
 }

@@ -51,7 +51,7 @@ fn overlap(engine: &Engine) -> f64 {
     s.radius[0] + s.radius[1] - (s.x.get(1) - s.x.get(0)).length()
 }
 
-/// Duration from touch to parting [s], interpolated (NaN when they do not part), and the greatest overlap [m].
+/// Duration from touch to parting (s), interpolated (NaN when they do not part), and the greatest overlap (m).
 fn collide(trial: &mut Trial) -> Result<(f64, f64)> {
     let (mut deepest, mut end, mut before) = (0.0f64, f64::NAN, 0.0);
     let dt = trial.engine.time_step();

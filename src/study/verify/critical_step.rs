@@ -47,7 +47,7 @@ struct Edge {
 }
 
 impl Edge {
-    /// The bound against the edge: below it by at most `share` [-].
+    /// The bound against the edge: below it by at most `share` (-).
     fn bound_below(&self, what: impl Into<String>, share: f64) -> Finding {
         Finding::new(what, "s", self.bound, self.step, self.spent).between(-share, 0.0)
     }

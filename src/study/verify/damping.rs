@@ -25,7 +25,7 @@ pub const BENDING: Case = Case {
     run: bending,
 };
 
-/// Speed that a mode starts with where its shape is 1 [m/s].
+/// Speed that a mode starts with where its shape is 1 (m/s).
 const SPEED: f64 = 0.01;
 
 /// One mode of one wire.
@@ -38,7 +38,7 @@ struct Mode {
     direction: DVec3,
     axis: fn(&Vectors) -> &Vec<f64>,
     shape: fn(f64) -> f64,
-    /// Damping ratio ζ and angular frequency ω [rad/s] of the model.
+    /// Damping ratio ζ and angular frequency ω (rad/s) of the model.
     theory: fn(&Trial) -> [f64; 2],
 }
 

@@ -8,7 +8,7 @@ use std::ops::Add;
 pub struct Spent {
     /// Steps.
     pub steps: u64,
-    /// Wall time [s].
+    /// Wall time (s).
     pub wall_s: f64,
 }
 
@@ -28,9 +28,9 @@ impl Sum for Spent {
 /// One run of a case that is repeated at several resolutions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Spacing, step or load per particle over what it is measured by [-].
+    /// Spacing, step or load per particle over what it is measured by (-).
     pub resolution: f64,
-    /// Relative error, signed [-].
+    /// Relative error, signed (-).
     pub error: f64,
     /// What the run took.
     pub spent: Spent,
@@ -46,7 +46,7 @@ pub struct Convergence {
 }
 
 impl Convergence {
-    /// Orders between neighbours, ln(e₁/e₂)/ln(h₁/h₂) [-].
+    /// Orders between neighbours, ln(e₁/e₂)/ln(h₁/h₂) (-).
     pub fn orders(&self) -> Vec<f64> {
         let between = |p: &[Point]| (p[0].error / p[1].error).abs().ln() / (p[0].resolution / p[1].resolution).ln();
         self.points.windows(2).map(between).collect()
@@ -56,11 +56,11 @@ impl Convergence {
 /// Order of convergence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Order {
-    /// The one between neighbouring resolutions that is furthest from theory [-].
+    /// The one between neighbouring resolutions that is furthest from theory (-).
     pub observed: f64,
-    /// What theory says [-].
+    /// What theory says (-).
     pub theory: f64,
-    /// Allowed difference [-].
+    /// Allowed difference (-).
     pub tolerance: f64,
 }
 
@@ -100,7 +100,7 @@ pub struct Finding {
     pub exact: f64,
     /// What the error is relative to, in `unit`: |exact| unless that is 0 or says nothing.
     pub scale: f64,
-    /// Least and greatest relative error allowed [-]. Nothing but 0 until [`Finding::within`] or
+    /// Least and greatest relative error allowed (-). Nothing but 0 until [`Finding::within`] or
     /// [`Finding::between`] says more.
     pub allowed: [f64; 2],
     /// Order of convergence, where there is one.
@@ -135,12 +135,12 @@ impl Finding {
         Self::new(what, unit, computed, least, spent).between(0.0, f64::INFINITY)
     }
 
-    /// Allows a relative error of ±`target` [-].
+    /// Allows a relative error of ±`target` (-).
     pub fn within(self, target: f64) -> Self {
         self.between(-target, target)
     }
 
-    /// Allows relative errors from `low` to `high` [-].
+    /// Allows relative errors from `low` to `high` (-).
     pub fn between(mut self, low: f64, high: f64) -> Self {
         self.allowed = [low, high];
         self
@@ -152,7 +152,7 @@ impl Finding {
         self
     }
 
-    /// Asks for an order of convergence of `theory` ± `tolerance` [-] between all neighbours, and counts what the
+    /// Asks for an order of convergence of `theory` ± `tolerance` (-) between all neighbours, and counts what the
     /// points took as spent.
     pub fn converging(self, axis: &'static str, points: Vec<Point>, theory: f64, tolerance: f64) -> Self {
         let found = self.over(axis, points);
@@ -173,7 +173,7 @@ impl Finding {
         self
     }
 
-    /// (computed − exact)/scale [-].
+    /// (computed − exact)/scale (-).
     pub fn error(&self) -> f64 {
         (self.computed - self.exact) / self.scale
     }

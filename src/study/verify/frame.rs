@@ -50,11 +50,11 @@ impl Frame {
 
 /// What must not depend on the frame.
 struct Outcome {
-    /// Positions [m], bond forces [N] and moments [N m], seen from home.
+    /// Positions (m), bond forces (N) and moments (N m), seen from home.
     vectors: [Vec<DVec3>; 3],
-    /// Thinning of the bonds, which tells their plastic strain [-].
+    /// Thinning of the bonds, which tells their plastic strain (-).
     thinning: Vec<f64>,
-    /// Elastic, plastic, frictional and damped energy [J].
+    /// Elastic, plastic, frictional and damped energy (J).
     energies: [f64; 5],
     spent: Spent,
 }
@@ -83,7 +83,7 @@ fn outcome(lab: &Lab, name: &str, frame: &Frame) -> Result<Outcome> {
 }
 
 impl Outcome {
-    /// Greatest difference to `other`, each relative to the greatest value of its kind [-].
+    /// Greatest difference to `other`, each relative to the greatest value of its kind (-).
     fn differs(&self, other: &Self) -> [f64; 3] {
         let forces = self.vectors.iter().zip(&other.vectors).skip(1).map(|(a, b)| {
             let largest = b.iter().map(|v| v.length()).fold(0.0, f64::max);

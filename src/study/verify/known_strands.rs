@@ -62,14 +62,14 @@ pub const JIANG: Case = Case {
     run: yielding,
 };
 
-/// The shape that the cases are run with, how finely, and how far off its forces and torques may be [-].
+/// The shape that the cases are run with, how finely, and how far off its forces and torques may be (-).
 struct Accuracy {
     shape: &'static str,
     spacing: f64,
     force: [f64; 2],
     torque: [f64; 2],
     plastic: [f64; 2],
-    /// Energy in contacts before the pull, over the work of the pull [-].
+    /// Energy in contacts before the pull, over the work of the pull (-).
     started: f64,
 }
 

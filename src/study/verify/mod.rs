@@ -132,7 +132,7 @@ pub struct Report {
     pub case: &'static Case,
     /// What it found, its energy ledger last; or why it could not be run.
     pub result: Result<Vec<Finding>>,
-    /// Wall time [s].
+    /// Wall time (s).
     pub wall_s: f64,
 }
 

@@ -20,17 +20,17 @@ pub const OBLIQUE: Case = Case {
 const SPRINGS: usize = 800;
 /// Steps over the time of contact.
 const STEPS: f64 = 4000.0;
-/// k² = I/(m R²) of the spheres [-].
+/// k² = I/(m R²) of the spheres (-).
 const GYRATION: f64 = 0.4;
 
 /// Outcome of one impact.
 struct Rebound {
     theory: Spheres,
-    /// ψ₂ [-].
+    /// ψ₂ (-).
     psi: f64,
-    /// Tangential impulse over μ times the normal one [-].
+    /// Tangential impulse over μ times the normal one (-).
     impulse: f64,
-    /// The same as the spin tells it, I ω/(R μ J_n) [-].
+    /// The same as the spin tells it, I ω/(R μ J_n) (-).
     spin: f64,
     spent: Spent,
 }
@@ -67,11 +67,11 @@ fn collide(lab: &Lab, law: &str, psi1: f64, steps: f64) -> Result<Rebound> {
 
 /// What a law may be off by where parts of the contact stick.
 struct Owed {
-    /// As a share of what friction can give, μ J_n [-].
+    /// As a share of what friction can give, μ J_n (-).
     share: f64,
-    /// Of the impulse itself [-].
+    /// Of the impulse itself (-).
     itself: f64,
-    /// ψ₁ from which on it is off by no more than what is elastic [-].
+    /// ψ₁ from which on it is off by no more than what is elastic (-).
     exact_from: f64,
 }
 

@@ -109,7 +109,7 @@ struct Turned {
 
 const RATE: f64 = 100.0;
 
-/// Moment of the bond [N m] when its angle passes each of `angles` [rad], and the angle itself.
+/// Moment of the bond (N m) when its angle passes each of `angles` (rad), and the angle itself.
 fn moments(lab: &Lab, scene: &str, linear: f64, angles: &[f64]) -> Result<(Vec<[f64; 2]>, Spent)> {
     let mut trial = lab.trial(scene, &[set("bond.hardening.linear", format!("{linear:e} Pa"))])?;
     let mut found = Vec::new();

@@ -18,7 +18,7 @@ pub const SECTION: Case = Case {
     run: section,
 };
 
-/// How fast the bond is bent or twisted [rad/s]: three times as far as it takes to yield.
+/// How fast the bond is bent or twisted (rad/s): three times as far as it takes to yield.
 const RATE: f64 = 20.0;
 
 /// The bond at one instant.
@@ -26,15 +26,15 @@ const RATE: f64 = 20.0;
 struct Instant {
     moment: f64,
     torque: f64,
-    /// Plastic elongation [m].
+    /// Plastic elongation (m).
     elongation: f64,
-    /// Plastic angle, of bending where it is bent and else of twist [rad].
+    /// Plastic angle, of bending where it is bent and else of twist (rad).
     angle: f64,
     /// The section as it has thinned.
     section: Section,
 }
 
-/// Reads the only bond, turned at `rates` of bending and twist [rad/s].
+/// Reads the only bond, turned at `rates` of bending and twist (rad/s).
 fn look(engine: &Engine, bar: &RoundBar, yield_stress: f64, rates: [f64; 2]) -> Instant {
     let s = engine.state();
     let axis = (s.x.get(1) - s.x.get(0)).normalize();

@@ -23,7 +23,7 @@ fn helix(trial: &Trial) -> Spring {
     spring
 }
 
-/// Force over displacement, both averaged under the same window while the displacement grows evenly [N/m].
+/// Force over displacement, both averaged under the same window while the displacement grows evenly (N/m).
 fn stiffness(trial: &mut Trial) -> Result<f64> {
     let end = trial.spec.stop.time.expect("the scene says when it ends");
     let last = trial.bonds() - 1;

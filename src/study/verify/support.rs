@@ -24,7 +24,7 @@ pub enum Effort {
 
 /// Steps between two looks at whether the user wants to stop.
 const STOP_INTERVAL: u64 = 1024;
-/// What the energy ledger of a trial may miss of the work done [-].
+/// What the energy ledger of a trial may miss of the work done (-).
 const LEDGER_TARGET: f64 = 1e-3;
 
 /// Where a case gets its trials from. Keeps the worst energy ledger that it has seen.
@@ -148,7 +148,7 @@ impl Trial<'_> {
         Ok(())
     }
 
-    /// Steps until `time` [s].
+    /// Steps until `time` (s).
     ///
     /// # Errors
     /// See [`Trial::run_while`].
@@ -180,7 +180,7 @@ impl Trial<'_> {
         self.run_while(more, each)
     }
 
-    /// Mean over `from..to` [s] under a Hann window, which takes out the swing that is left after a smooth ramp.
+    /// Mean over `from..to` (s) under a Hann window, which takes out the swing that is left after a smooth ramp.
     ///
     /// # Errors
     /// See [`Trial::run_while`].
@@ -228,7 +228,7 @@ pub struct Crossings {
 }
 
 impl Crossings {
-    /// The signal's next `value` at `time` [s].
+    /// The signal's next `value` at `time` (s).
     pub fn add(&mut self, time: f64, value: f64) {
         if let Some([t0, v0]) = self.last
             && v0 < 0.0
@@ -239,7 +239,7 @@ impl Crossings {
         self.last = Some([time, value]);
     }
 
-    /// Angular frequency [rad/s]; NaN with fewer than three crossings.
+    /// Angular frequency (rad/s); NaN with fewer than three crossings.
     pub fn frequency(&self) -> f64 {
         match self.times[..] {
             [first, _, .., last] if self.times.len() > 2 => TAU * (self.times.len() - 1) as f64 / (last - first),

@@ -141,13 +141,13 @@ fn sphere_on_wire(lab: &Lab) -> Result<Vec<Finding>> {
     ])
 }
 
-/// Approach of the two wires [m].
+/// Approach of the two wires (m).
 const APPROACH: f64 = 4e-6;
-/// Angles between them [degrees].
+/// Angles between them (degrees).
 const ANGLES: [f64; 6] = [0.0, 2.0, 10.0, 30.0, 60.0, 90.0];
 
-/// Force between two wires of the scene that cross at `angle` [degrees] off their particles, with particles `spacing`
-/// diameters apart and `options`, and the length over which parallel wires lie side by side [m].
+/// Force between two wires of the scene that cross at `angle` (degrees) off their particles, with particles `spacing`
+/// diameters apart and `options`, and the length over which parallel wires lie side by side (m).
 fn crossed(lab: &Lab, angle: f64, spacing: f64, options: &[String]) -> Result<(f64, f64, Spent)> {
     // A patch at 2 degrees is 3 mm long.
     let half = if angle == 2.0 { 8.0 } else { 3.2 };

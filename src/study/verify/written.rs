@@ -17,7 +17,7 @@ pub const WRITTEN: Case = Case {
     run: curve_as_written,
 };
 
-/// Strains at which the curve is read [-]: three below yield, two beyond.
+/// Strains at which the curve is read (-): three below yield, two beyond.
 const STRAINS: [f64; 5] = [2e-4, 4e-4, 6e-4, 1e-3, 1.4e-3];
 
 /// The built-in wire at the speed that it is shipped with: 0.15 % take as long as an elastic wave from grip to grip, and what
@@ -58,7 +58,7 @@ fn options(out: &Path) -> RunOptions {
     }
 }
 
-/// Strain [-] and nominal stress [Pa] of each row.
+/// Strain (-) and nominal stress (Pa) of each row.
 fn read(path: &Path) -> Result<Vec<[f64; 2]>> {
     let wrong = |e: csv::Error| Error::io("cannot read", path, std::io::Error::other(e));
     let mut table = csv::Reader::from_path(path).map_err(wrong)?;

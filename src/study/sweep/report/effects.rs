@@ -10,9 +10,9 @@ use crate::study::table::Table;
 
 /// Quantities whose effects are drawn.
 const DRAWN: [&str; 2] = ["strength", "elongation"];
-/// Size of a figure of effects [px of an SVG].
+/// Size of a figure of effects (px of an SVG).
 const SIZE: [u32; 2] = [860, 420];
-/// Probability below which a term is told from scatter [-].
+/// Probability below which a term is told from scatter (-).
 const SURE: f64 = 0.05;
 
 /// Effects on every quantity of a study with a design; none without one.

@@ -11,11 +11,11 @@ use crate::study::cases::measured::Curve;
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series};
 use std::path::{Path, PathBuf};
 
-/// Size of a figure with its legend beside it [px of an SVG].
+/// Size of a figure with its legend beside it (px of an SVG).
 const SIZE: [u32; 2] = [860, 480];
 /// Most curves that are named one by one.
 const MOST_NAMED: usize = 16;
-/// A curve is drawn with points this far apart at least, over its extent [-].
+/// A curve is drawn with points this far apart at least, over its extent (-).
 const RESOLUTION: f64 = 0.002;
 /// Points of a fitted curve.
 const FINE: usize = 200;
@@ -82,7 +82,7 @@ fn curves(definition: &Definition, gathered: &Gathered) -> Figure {
     figure
 }
 
-/// Strain [%] and stress [MPa] of a curve, without points that lie on top of each other at the size of a figure.
+/// Strain (%) and stress (MPa) of a curve, without points that lie on top of each other at the size of a figure.
 fn thinned(curve: &Curve) -> Vec<[f64; 2]> {
     let all = curve.strain.iter().zip(&curve.stress_mpa).map(|(strain, stress)| [100.0 * strain, *stress]);
     let (wide, high) = (100.0 * curve.end(), curve.stress_mpa.iter().fold(0.0f64, |most, s| most.max(s.abs())));

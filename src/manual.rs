@@ -1,0 +1,11 @@
+//! The manual: pages without code. [`physics`] states every equation and parameter of the model with its source,
+//! [`architecture`] how the crate is built and where a new thing goes, [`glossary`] what the words mean.
+
+#[doc = include_str!("manual/physics.md")]
+pub mod physics {}
+
+#[doc = include_str!("manual/architecture.md")]
+pub mod architecture {}
+
+#[doc = include_str!("manual/glossary.md")]
+pub mod glossary {}
