@@ -152,7 +152,7 @@ fn print(study: &Study, files: &[PathBuf]) {
         say!("Interrupted: the same command goes on with what is missing.");
     }
     if study.other_build > 0 {
-        say!("{} runs were made by another build of this version; --fresh makes them again.", study.other_build);
+        say!("{} runs were made by another build with the same physics; --fresh makes them again.", study.other_build);
     }
     say!("{} runs made, {} kept from before. Written:", study.made, study.kept);
     files.iter().for_each(|file| say!("  {}", file.display()));

@@ -108,7 +108,7 @@ pub struct Trial {
     pub elongation: Stat,
     /// Relative errors of the means of strength and elongation (-).
     pub error: [f64; 2],
-    /// Runs that were there from before, and of those the ones of another build of the same version.
+    /// Runs that were there from before, and of those the ones of another build of the same physics.
     pub kept: usize,
     /// See `kept`.
     pub other_build: usize,

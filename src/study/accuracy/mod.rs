@@ -86,7 +86,7 @@ pub struct Study {
     pub kept: usize,
     /// Runs made now.
     pub made: usize,
-    /// Kept runs of another build of the same version.
+    /// Kept runs of another build of the same physics.
     pub other_build: usize,
     /// Whether the user stopped it.
     pub interrupted: bool,

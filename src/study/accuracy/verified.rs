@@ -2,6 +2,7 @@
 //! each level takes.
 
 use crate::base::error::{Error, Result};
+use crate::engine::REVISION;
 use crate::observe::files::write_whole;
 use crate::run::in_pool;
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series, Slope};
@@ -56,7 +57,7 @@ pub struct Level {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseRecord {
     /// Version of the program.
-    version: String,
+    physics: u32,
     /// Whether fewer levels were run.
     quick: bool,
     /// The case.
@@ -121,8 +122,7 @@ pub fn study(
             Err(error) => (Vec::new(), Some(error.to_string())),
         };
         let (about, source) = (case.about.into(), case.source.into());
-        let version = env!("CARGO_PKG_VERSION").into();
-        let record = CaseRecord { version, quick, case: case.name.into(), about, source, levels, failed };
+        let record = CaseRecord { physics: REVISION, quick, case: case.name.into(), about, source, levels, failed };
         let text = serde_json::to_string_pretty(&record).expect("a record holds nothing that JSON lacks");
         write_whole(&path, &text)?;
         found.records.push(kept(&path, case, quick).unwrap_or(record));
@@ -131,10 +131,10 @@ pub fn study(
     Ok(found)
 }
 
-/// The record of a case; one that is damaged, or of another version, is none.
+/// The record of a case; one that is damaged, or of another revision of the physics, is none.
 fn kept(path: &Path, case: &Case, quick: bool) -> Option<CaseRecord> {
     let record: CaseRecord = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
-    (record.version == env!("CARGO_PKG_VERSION") && record.case == case.name && record.quick == quick).then_some(record)
+    (record.physics == REVISION && record.case == case.name && record.quick == quick).then_some(record)
 }
 
 /// The levels of a finding: one for each resolution, or one alone.
@@ -227,7 +227,7 @@ impl Verified {
         let document = serde_json::json!({
             "scene": self.name,
             "command": command,
-            "version": env!("CARGO_PKG_VERSION"),
+            "physics": REVISION,
             "interrupted": self.interrupted,
             "reference": { "kind": "closed-form" },
             "cases": self.records,

@@ -3,6 +3,7 @@
 
 use super::measured::{Measured, Watcher};
 use crate::base::error::{Error, Result};
+use crate::engine::REVISION;
 use crate::observe::files::write_whole;
 use crate::run::folder::SCENE;
 use crate::run::{RunOptions, cost, outputs, run_watched, summarise};
@@ -21,8 +22,8 @@ const RECORD: &str = "case.json";
 /// What decides what a run gives: two runs that agree in this are the same run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
-    /// Version of the program.
-    pub version: String,
+    /// Revision of the physics: an engine that computes something else is not served an old answer.
+    pub physics: u32,
     /// Threads of the engine where the cost of a run is what is studied; `None` where only its answer is, which has the
     /// same bits on any number.
     pub threads: Option<usize>,
@@ -41,12 +42,12 @@ impl Identity {
                 let _ = writeln!(scene, "# {points:?}");
             }
         }
-        Self { version: env!("CARGO_PKG_VERSION").into(), threads, writes, scene }
+        Self { physics: REVISION, threads, writes, scene }
     }
 
     /// Name of its folder: FNV-1a over all of it. The record holds the whole identity, so that a clash of names is seen.
     pub fn name(&self) -> String {
-        let text = format!("{} {:?} {} {}", self.version, self.threads, self.writes, self.scene);
+        let text = format!("{} {:?} {} {}", self.physics, self.threads, self.writes, self.scene);
         let fnv = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
         let hash = text.bytes().fold(0xCBF2_9CE4_8422_2325, fnv);
         format!("{hash:016x}")
@@ -73,7 +74,7 @@ pub enum Found {
 pub struct Record {
     /// Which run.
     pub identity: Identity,
-    /// Which build of this version made it: length and time of its file.
+    /// Which build made it: length and time of the program's file.
     pub build: String,
     /// What it gave.
     pub found: Found,
@@ -120,7 +121,7 @@ pub fn open(folder: &Path, fresh: bool) -> Result<()> {
     Ok(())
 }
 
-/// Which build this is: a version may be built many times while it is worked on.
+/// Which build this is: one revision may be built many times while it is worked on.
 pub fn build() -> String {
     let told = std::env::current_exe().and_then(|path| path.metadata()).and_then(|file| {
         let since = file.modified()?.duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
@@ -223,6 +224,8 @@ mod tests {
         assert_eq!(std::fs::read_to_string(one.folder(folder.path()).join(SCENE)).unwrap(), one.scene);
         assert_eq!(Record::kept(&identity(&["seed=2"], 1), folder.path()), None);
         assert_eq!(Record::kept(&identity(&[], 2), folder.path()), None);
+        let other_physics = Identity { physics: one.physics + 1, ..one.clone() };
+        assert_eq!(Record::kept(&other_physics, folder.path()), None);
         open(folder.path(), true).unwrap();
         assert_eq!(Record::kept(&one, folder.path()), None);
     }

@@ -75,7 +75,7 @@ pub struct Gathered {
     pub cases: Vec<CaseResult>,
     /// The scene of every point, with the first seed; `None` where it is refused.
     pub scenes: Vec<Option<Scene>>,
-    /// Kept cases that another build of this version made.
+    /// Kept cases that another build of the same physics made.
     pub other_build: usize,
 }
 

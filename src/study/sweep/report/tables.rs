@@ -182,7 +182,7 @@ pub fn state(definition: &Definition, gathered: &Gathered) -> String {
     if gathered.other_build > 0 {
         let _ = writeln!(
             text,
-            "{} cases were run by another build of this version; --fresh runs them again.",
+            "{} cases were run by another build with the same physics; --fresh runs them again.",
             gathered.other_build
         );
     }
