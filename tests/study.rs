@@ -138,8 +138,11 @@ fn a_case_that_fails_is_told_with_its_cause_and_stops_no_other() {
     let of = |outcome: &str| cases.iter().filter(|row| row["outcome"] == outcome).count();
     assert_eq!((of("ran"), of("failed"), of("refused")), (3, 1, 2));
     let alone = study(folder.path(), &failing, &["--case", "5"]);
-    assert_eq!(alone.status.code(), Some(2));
-    assert!(text(&alone.stderr).contains("failed: stopped at step"), "{}", text(&alone.stderr));
+    assert_eq!(alone.status.code(), Some(4));
+    assert!(text(&alone.stdout).contains("failed: stopped at step"), "{}", text(&alone.stdout));
+    let refused = study(folder.path(), &failing, &["--case", "6"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("is refused: `spacing` is -1"), "{}", text(&refused.stderr));
 }
 
 #[test]

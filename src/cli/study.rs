@@ -9,6 +9,7 @@ use crate::base::error::{Error, Result};
 use crate::run::folder;
 use crate::scene::quality::Quality;
 use crate::study::cases::workshop::Progress;
+use crate::study::sweep::gather::State;
 use crate::study::sweep::report::{self, Findings};
 use crate::study::sweep::{self, Changes, Cost, Definition, Gathered, Making, definition};
 use std::path::{Path, PathBuf};
@@ -130,11 +131,16 @@ fn one(definition: &Definition, number: usize, out: &Path, interrupted: bool) ->
     let gathered = Gathered::read(definition, out)?;
     let case = &gathered.cases[number - 1];
     let name = definition.case_name(case.point, case.seed);
-    if let Some(cause) = case.state.cause() {
-        return Err(Error::input(
-            format!("case {number} ({name}) {}: {cause}", case.state.word()),
-            "the others can be run all the same",
-        ));
+    match &case.state {
+        State::Refused(cause) => {
+            let help = "the others can be run all the same";
+            return Err(Error::input(format!("case {number} ({name}) is refused: {cause}"), help));
+        }
+        State::Failed(cause) => {
+            say!("case {number} ({name}) failed: {cause}");
+            return Ok(Ended::Missed);
+        }
+        State::Ran(_) | State::Missing => {}
     }
     match case.measured() {
         Some(run) => say!(

@@ -1,40 +1,14 @@
 //! `accuracy.csv`: one line per run.
 
 use super::Study;
+use super::columns::COLUMNS;
 use super::rows::{Outcome, Row, Run};
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
 use std::path::Path;
 
-const HEAD: [&str; 27] = [
-    "knob",
-    "key",
-    "value",
-    "number",
-    "role",
-    "default",
-    "seed",
-    "outcome",
-    "cause",
-    "wall_s",
-    "cpu_s",
-    "steps",
-    "ms_per_step",
-    "particles",
-    "strength_mpa",
-    "strength_error_percent",
-    "elongation_percent",
-    "elongation_error_percent",
-    "curve_error_percent",
-    "plastic_work_error_percent",
-    "same_first_wire",
-    "first_break_off_mm",
-    "order_tau",
-    "energy_residual_percent",
-    "kinetic_over_internal",
-    "grip_mismatch_percent",
-    "worst_layer_error_percent",
-];
+/// What stands before the numbers of a run.
+const BEFORE: [&str; 9] = ["knob", "key", "value", "number", "role", "default", "seed", "outcome", "cause"];
 
 /// Writes the table. Cells of what is not known are empty.
 ///
@@ -44,9 +18,10 @@ pub fn write(study: &Study, path: &Path) -> Result<()> {
     let layers = study.layers();
     let refuse = |e: csv::Error| Error::io("cannot write", path, std::io::Error::other(e));
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let head = HEAD.iter().map(|name| name.to_string());
+    let numbers = COLUMNS.iter().map(|column| column.name);
+    let head = BEFORE.into_iter().chain(numbers).chain(["same_first_wire", "worst_layer_error_percent"]);
     let of_layers = layers.iter().map(|layer| format!("layer_error_percent:{layer}"));
-    writer.write_record(head.chain(of_layers)).map_err(refuse)?;
+    writer.write_record(head.map(str::to_owned).chain(of_layers)).map_err(refuse)?;
     for row in &study.rows {
         for run in &row.runs {
             writer.write_record(cells(row, run, layers.len())).map_err(refuse)?;
@@ -71,32 +46,16 @@ fn cells(row: &Row, run: &Run, layers: usize) -> Vec<String> {
         text(run.cause().map(String::as_str)),
     ];
     let Outcome::Ran { measured, errors } = &run.outcome else {
-        cells.resize(HEAD.len() + layers, String::new());
+        cells.resize(BEFORE.len() + COLUMNS.len() + 2 + layers, String::new());
         return cells;
     };
+    let errors = errors.as_ref();
     let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    let error = |value: &dyn Fn(&super::errors::Errors) -> Option<f64>| number(errors.as_ref().and_then(value));
-    let same = errors.as_ref().and_then(|errors| errors.same_first_wire);
-    cells.extend([
-        measured.wall_s.to_string(),
-        number(measured.cpu_s),
-        measured.steps.to_string(),
-        number(measured.ms_per_step),
-        measured.particles.to_string(),
-        measured.strength_mpa.to_string(),
-        error(&|e| Some(e.strength_percent)),
-        measured.elongation_percent.to_string(),
-        error(&|e| Some(e.elongation_percent)),
-        error(&|e| e.curve_percent),
-        error(&|e| e.plastic_work_percent),
-        same.map_or(String::new(), |same| if same { "yes" } else { "no" }.into()),
-        error(&|e| e.first_break_off_mm),
-        error(&|e| e.order_tau),
-        number(measured.energy_residual_percent),
-        number(measured.kinetic_over_internal),
-        number(measured.grip_mismatch_percent),
-        error(&|e| e.worst_layer().map(|(_, error)| error)),
-    ]);
-    cells.extend((0..layers).map(|k| error(&|e| e.layers_percent.get(k).copied().flatten())));
+    cells.extend(COLUMNS.iter().map(|column| number(column.of_run(measured, errors))));
+    let same = errors.and_then(|errors| errors.same_first_wire);
+    cells.push(same.map_or(String::new(), |same| if same { "yes" } else { "no" }.into()));
+    cells.push(number(errors.and_then(|errors| errors.worst_layer()).map(|(_, error)| error)));
+    let of_layer = |k: usize| errors.and_then(|errors| errors.layers_percent.get(k).copied().flatten());
+    cells.extend((0..layers).map(|k| number(of_layer(k))));
     cells
 }

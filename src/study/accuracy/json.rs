@@ -1,12 +1,12 @@
 //! `accuracy.json`: the study for programs, and the tables for the page.
 
+use super::columns::Means;
 use super::ensemble::{self, Quantity, Spread};
 use super::rows::{Outcome, Row};
 use super::table;
 use super::{Study, reference::Along};
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
-use crate::study::cases::stat::Stat;
 use crate::study::table::Table;
 use serde::Serialize;
 use std::path::Path;
@@ -64,24 +64,12 @@ struct RowOut<'a> {
     number: Option<f64>,
     role: Option<&'a str>,
     default: bool,
-    wall_s: Option<Stat>,
-    cpu_s: Option<Stat>,
-    steps: Option<Stat>,
-    ms_per_step: Option<Stat>,
-    strength_mpa: Option<Stat>,
-    strength_error_percent: Option<Stat>,
-    elongation_percent: Option<Stat>,
-    elongation_error_percent: Option<Stat>,
+    #[serde(flatten)]
+    means: Means<'a>,
     /// Whether the error of the mean is told from scatter: of strength and of elongation.
     told_from_scatter: [Option<bool>; 2],
     /// Spread over seeds beside that of the scene as it stands: of strength and of elongation.
     spread: [Option<Spread>; 2],
-    curve_error_percent: Option<Stat>,
-    plastic_work_error_percent: Option<Stat>,
-    order_tau: Option<Stat>,
-    energy_residual_percent: Option<Stat>,
-    kinetic_over_internal: Option<Stat>,
-    grip_mismatch_percent: Option<Stat>,
     runs: Vec<RunOut<'a>>,
 }
 
@@ -151,22 +139,9 @@ fn row<'a>(row: &'a Row, base: Option<&Row>) -> RowOut<'a> {
         number: knob.and_then(|knob| knob.number),
         role: knob.map(|knob| knob.role.word()),
         default: knob.is_none(),
-        wall_s: row.of_runs(|run| Some(run.wall_s)),
-        cpu_s: row.of_runs(|run| run.cpu_s),
-        steps: row.of_runs(|run| Some(run.steps as f64)),
-        ms_per_step: row.of_runs(|run| run.ms_per_step),
-        strength_mpa: row.of_runs(|run| Some(run.strength_mpa)),
-        strength_error_percent: row.of_errors(|errors| Some(errors.strength_percent)),
-        elongation_percent: row.of_runs(|run| Some(run.elongation_percent)),
-        elongation_error_percent: row.of_errors(|errors| Some(errors.elongation_percent)),
+        means: Means(row),
         told_from_scatter: Quantity::ALL.map(|quantity| ensemble::mean_is_told(row, quantity)),
         spread: Quantity::ALL.map(|quantity| base.and_then(|base| ensemble::spread(row, base, quantity))),
-        curve_error_percent: row.of_errors(|errors| errors.curve_percent),
-        plastic_work_error_percent: row.of_errors(|errors| errors.plastic_work_percent),
-        order_tau: row.of_errors(|errors| errors.order_tau),
-        energy_residual_percent: row.of_runs(|run| run.energy_residual_percent),
-        kinetic_over_internal: row.of_runs(|run| run.kinetic_over_internal),
-        grip_mismatch_percent: row.of_runs(|run| run.grip_mismatch_percent),
         runs: row
             .runs
             .iter()

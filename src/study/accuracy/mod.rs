@@ -6,6 +6,7 @@
 
 pub mod agenda;
 pub mod closed_form;
+mod columns;
 mod csv;
 pub mod ensemble;
 pub mod errors;

@@ -1,5 +1,6 @@
 //! The study as people read it: two tables and what stands around them.
 
+use super::columns::{Column, named, signed};
 use super::ensemble::{self, Quantity};
 use super::errors::Errors;
 use super::reference::Along;
@@ -15,35 +16,20 @@ const LEFT: usize = 2;
 
 /// What was asked of each row, and what it costs.
 pub fn costs_and_errors(study: &Study) -> Table {
-    let heads = [
-        "knob (scene has)",
-        "value",
-        "run time [s]",
-        "CPU [s]",
+    let columns = [
+        "wall_s",
+        "cpu_s",
         "steps",
-        "ms/step",
-        "strength [MPa]",
-        "error [%]",
-        "elongation [%]",
-        "error [%]",
-        "curve [%]",
-        "note",
+        "ms_per_step",
+        "strength_mpa",
+        "strength_error_percent",
+        "elongation_percent",
+        "elongation_error_percent",
+        "curve_error_percent",
     ];
-    let cells = |row: &Row| {
-        vec![
-            mean(row.of_runs(|run| Some(run.wall_s)), 2),
-            mean(row.of_runs(|run| run.cpu_s), 2),
-            mean(row.of_runs(|run| Some(run.steps as f64)), 0),
-            mean(row.of_runs(|run| run.ms_per_step), 3),
-            mean(row.of_runs(|run| Some(run.strength_mpa)), 2),
-            signed(row.of_errors(|errors| Some(errors.strength_percent))),
-            mean(row.of_runs(|run| Some(run.elongation_percent)), 3),
-            signed(row.of_errors(|errors| Some(errors.elongation_percent))),
-            unsigned(row.of_errors(|errors| errors.curve_percent)),
-            note(study, row),
-        ]
-    };
-    table("Error against run time", &heads, study, cells)
+    table("Error against run time", study, &[], columns.map(named).as_slice(), Some("note"), |row| {
+        (Vec::new(), note(study, row))
+    })
 }
 
 /// What must be known of a row, scatter included.
@@ -69,37 +55,33 @@ fn spread(study: &Study, row: &Row, quantity: Quantity) -> String {
 
 /// What else went otherwise, and whether the run may be believed.
 pub fn histories_and_checks(study: &Study) -> Table {
-    let heads = [
-        "knob (scene has)",
-        "value",
-        "spread of strength [%]",
-        "of elongation [%]",
-        "plastic work [%]",
-        "worst layer [%]",
-        "first break",
-        "break order τ [-]",
-        "energy residual [%]",
-        "kinetic/internal [-]",
-        "grip mismatch [%]",
+    let heads = ["spread of strength [%]", "of elongation [%]", "worst layer [%]", "first break"];
+    let columns = [
+        "plastic_work_error_percent",
+        "order_tau",
+        "energy_residual_percent",
+        "kinetic_over_internal",
+        "grip_mismatch_percent",
     ];
     let layers = study.layers();
-    let cells = |row: &Row| {
-        vec![
-            spread(study, row, Quantity::Strength),
-            spread(study, row, Quantity::Elongation),
-            signed(row.of_errors(|errors| errors.plastic_work_percent)),
-            worst_layer(row, &layers),
-            first_break(row),
-            mean(row.of_errors(|errors| errors.order_tau), 2),
-            signed(row.of_runs(|run| run.energy_residual_percent)),
-            mean(row.of_runs(|run| run.kinetic_over_internal), 4),
-            mean(row.of_runs(|run| run.grip_mismatch_percent), 2),
-        ]
-    };
-    table("What else differs from the reference, and whether loading was quasi-static", &heads, study, cells)
+    let title = "What else differs from the reference, and whether loading was quasi-static";
+    table(title, study, &heads, columns.map(named).as_slice(), None, |row| {
+        let spreads = Quantity::ALL.map(|quantity| spread(study, row, quantity));
+        let cells = spreads.into_iter().chain([worst_layer(row, &layers), first_break(row)]);
+        (cells.collect(), String::new())
+    })
 }
 
-fn table(title: &str, heads: &[&str], study: &Study, cells: impl Fn(&Row) -> Vec<String>) -> Table {
+/// A table of the rows that were run: knob and value, `heads` with the cells that `more` gives, `columns`, and the note that
+/// it gives under the head `note`.
+fn table(
+    title: &str,
+    study: &Study,
+    heads: &[&str],
+    columns: &[&Column],
+    note: Option<&str>,
+    more: impl Fn(&Row) -> (Vec<String>, String),
+) -> Table {
     let mut last = None;
     // What was not run is told below the tables.
     let shown = || study.rows.iter().filter(|row| !row.is_missing());
@@ -110,35 +92,14 @@ fn table(title: &str, heads: &[&str], study: &Study, cells: impl Fn(&Row) -> Vec
             Some(knob) => (format!("{} ({})", knob.name, knob.default), row.value.clone()),
         };
         last = row.knob.as_ref().map(|knob| knob.name);
-        [knob, value].into_iter().chain(cells(row)).collect()
+        let (cells, said) = more(row);
+        let numbers = columns.iter().map(|column| column.cell(row));
+        [knob, value].into_iter().chain(cells).chain(numbers).chain(note.map(|_| said)).collect()
     });
     let default = shown().position(|row| row.knob.is_none());
-    Table {
-        title: title.into(),
-        heads: heads.iter().map(|head| head.to_string()).collect(),
-        rows: rows.collect(),
-        default,
-        left: LEFT,
-    }
-}
-
-fn mean(stat: Option<Stat>, decimals: usize) -> String {
-    stat.map_or(String::new(), |stat| format!("{:.decimals$}", stat.mean))
-}
-
-/// An error with its sign, and its interval over seeds.
-fn signed(stat: Option<Stat>) -> String {
-    stat.map_or(String::new(), |stat| with_interval(format!("{:+.3}", stat.mean), stat))
-}
-
-fn unsigned(stat: Option<Stat>) -> String {
-    stat.map_or(String::new(), |stat| with_interval(format!("{:.3}", stat.mean), stat))
-}
-
-fn with_interval(mean: String, stat: Stat) -> String {
-    // Errors that round to nothing have no sign.
-    let mean = if mean == "+0.000" || mean == "-0.000" { "0.000".into() } else { mean };
-    stat.interval_95.map_or(mean.clone(), |half| format!("{mean} ± {half:.3}"))
+    let of_columns = columns.iter().map(|column| column.head);
+    let heads = ["knob (scene has)", "value"].into_iter().chain(heads.iter().copied()).chain(of_columns).chain(note);
+    Table { title: title.into(), heads: heads.map(str::to_owned).collect(), rows: rows.collect(), default, left: LEFT }
 }
 
 /// The layer whose mean error over seeds is greatest.
@@ -260,11 +221,15 @@ fn along(all: &[(u64, Along)]) -> Vec<String> {
             }
         };
         let quantity = |name: &str, k: usize| {
-            let correction = signed(stat(&|along| along.correction_percent[k]));
-            let sure = mean(stat(&|along| along.uncertainty_percent[k]), 3);
-            if correction == "0.000" && sure == "0.000" {
+            let means = [stat(&|along| along.correction_percent[k]), stat(&|along| along.uncertainty_percent[k])];
+            let [correction, sure] = means.map(|stat| stat.map_or(0.0, |stat| stat.mean));
+            // Neither shows in three decimals.
+            if correction.abs().max(sure) < 5e-4 {
                 return format!("{name} unchanged");
             }
+            let interval = means[0].and_then(|stat| stat.interval_95);
+            let correction = signed(correction) + &interval.map_or(String::new(), |half| format!(" ± {half:.3}"));
+            let sure = format!("{sure:.3}");
             format!("{name} {correction} % (uncertain by {sure} %, {})", orders(k))
         };
         format!("towards the limit in {knob}: {}, {}", quantity("strength", 0), quantity("elongation", 1))
