@@ -7,6 +7,7 @@
 //!
 //! Its tests stand where it is used, in `strand::lay_radius`, beside the helices themselves.
 
+use super::bisect::bisect;
 use std::f64::consts::TAU;
 
 /// Least lay radius (m) at which `wires` equal helical wires of `diameter` (m) and `pitch` (m) do not overlap each other;
@@ -33,14 +34,7 @@ pub fn least_radius_of_layer(wires: usize, diameter: f64, pitch: f64) -> Option<
         high *= 2.0;
     }
     // D grows with R for every u, hence so does its minimum: one root.
-    while high - low > 1e-14 * high {
-        let middle = 0.5 * (low + high);
-        if fits(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
+    let [_, high] = bisect(low, high, 1e-14, |radius| !fits(radius));
     Some(high)
 }
 
@@ -59,17 +53,6 @@ pub fn distance(r1: f64, r2: f64, phase: f64, rate: f64) -> f64 {
 ///
 /// On 0..=ψ ≤ π this function is concave, not above 0 at 0 and not below 0 at ψ: it has one root, and D² one minimum.
 fn closest_angle(s: f64, phase: f64) -> f64 {
-    let (mut low, mut high) = (0.0, phase);
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if s * middle.sin() + middle - phase >= 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
+    let [low, high] = bisect(0.0, phase, 0.0, |u| s * u.sin() + u - phase < 0.0);
     0.5 * (low + high)
 }

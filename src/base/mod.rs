@@ -1,5 +1,6 @@
 //! Floor 0: units, vectors, seeded randomness, errors, findings and their words, ticks of axes. Imports nothing of this crate.
 
+pub mod bisect;
 pub mod error;
 pub mod finding;
 pub mod lanes;

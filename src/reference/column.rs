@@ -4,6 +4,7 @@
 //! the complete elliptic integrals (Euler 1744; Timoshenko & Gere, *Theory of Elastic Stability*, section 2.7).
 
 use super::elliptic;
+use crate::base::bisect::bisect;
 use std::f64::consts::FRAC_PI_2;
 
 /// A buckled clamped–free column, in terms of its length and of Euler's load π²EI/(4L²).
@@ -26,12 +27,8 @@ impl Column {
 
     /// The column whose tip has come down by `shortening` of its length (-), 0 to 1.
     pub fn shortened(shortening: f64) -> Self {
-        let (mut low, mut high) = (0.0, 1.0 - 1e-12);
-        for _ in 0..100 {
-            let middle = 0.5 * (low + high);
-            if Self::with_modulus(middle).shortening < shortening { low = middle } else { high = middle }
-        }
-        Self::with_modulus(low)
+        let [modulus, _] = bisect(0.0, 1.0 - 1e-12, 0.0, |k| Self::with_modulus(k).shortening < shortening);
+        Self::with_modulus(modulus)
     }
 }
 

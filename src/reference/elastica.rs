@@ -2,6 +2,7 @@
 //!
 //! Source: Bisshopp & Drucker, Q. Appl. Math. 3 (1945) 272.
 
+use crate::base::bisect::bisect;
 use crate::reference::elliptic::{first, second};
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -30,11 +31,7 @@ pub fn tip(load: f64) -> Tip {
         let (p, start) = parts(slope);
         first(FRAC_PI_2, p) - first(start, p) - root
     };
-    let (mut low, mut high) = (0.0, FRAC_PI_2 - 1e-12);
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if excess(middle) < 0.0 { low = middle } else { high = middle }
-    }
+    let [low, high] = bisect(0.0, FRAC_PI_2 - 1e-12, 0.0, |slope| excess(slope) < 0.0);
     let slope = 0.5 * (low + high);
     let (p, start) = parts(slope);
     Tip {

@@ -2,6 +2,7 @@
 //!
 //! Source: Hertz 1882; Johnson, *Contact Mechanics*, 1985, section 11.4.
 
+use crate::base::bisect::bisect;
 use crate::reference::elliptic;
 use std::f64::consts::PI;
 
@@ -58,12 +59,10 @@ pub fn elliptical_factor(ratio: f64) -> f64 {
         let (k, e) = (elliptic::first(PI / 2.0, e2.sqrt()), elliptic::second(PI / 2.0, e2.sqrt()));
         (e2, k, e / (slim * slim) - k, k - e)
     };
-    let (mut low, mut high) = (1e-6, 1.0 - 1e-9);
-    for _ in 0..100 {
-        let slim = 0.5 * (low + high);
+    let [low, high] = bisect(1e-6, 1.0 - 1e-9, 0.0, |slim| {
         let (_, _, above, below) = parts(slim);
-        if above / below > ratio { low = slim } else { high = slim }
-    }
+        above / below > ratio
+    });
     let slim: f64 = 0.5 * (low + high);
     let (e2, k, above, below) = parts(slim);
     let f1 = (4.0 / (PI * e2) * slim.powf(1.5) * (above * below).sqrt()).cbrt();

@@ -2,6 +2,7 @@
 //!
 //! Source: Lubliner, *Plasticity Theory*, 1990, chapter 4; Considère, Ann. Ponts et Chaussées 9 (1885) 574.
 
+use crate::base::bisect::bisect;
 use std::f64::consts::PI;
 
 /// A round section of one yield stress.
@@ -89,7 +90,7 @@ impl Section {
     /// limit of a round section, N/N_p = (2/π)(θ + sin θ cos θ), M/M_p = cos³θ.
     pub fn exact_moment(&self, axial: f64) -> f64 {
         let share = axial / self.plastic_force();
-        let angle = bisect(0.0, PI / 2.0, |t| 2.0 / PI * (t + t.sin() * t.cos()) - share);
+        let angle = root(0.0, PI / 2.0, |t| 2.0 / PI * (t + t.sin() * t.cos()) - share);
         self.plastic_moment() * angle.cos().powi(3)
     }
 }
@@ -133,7 +134,7 @@ pub fn tension_at(strain: f64, stress: impl Fn(f64) -> f64, young: f64) -> Tensi
         return tension_point(0.0, young * true_strain, young);
     }
     // p + σ(p)/E grows with p, so the root is bracketed by 0 and ε.
-    let p = bisect(0.0, true_strain, |p| p + stress(p) / young - true_strain);
+    let p = root(0.0, true_strain, |p| p + stress(p) / young - true_strain);
     tension_point(p, stress(p), young)
 }
 
@@ -150,24 +151,14 @@ pub fn considere_strain(stress: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64,
         return Some(0.0);
     }
     let at = |i: usize| limit * i as f64 / PIECES as f64;
-    (0..PIECES).find(|&i| excess(at(i + 1)) <= 0.0).map(|i| bisect(at(i), at(i + 1), excess))
+    (0..PIECES).find(|&i| excess(at(i + 1)) <= 0.0).map(|i| root(at(i), at(i + 1), excess))
 }
 
 /// Root of `f` between `a` and `b`, where it changes sign, to the last bits.
-fn bisect(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
+fn root(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rising = f(b) > f(a);
-    for _ in 0..200 {
-        let middle = 0.5 * (a + b);
-        if middle <= a || middle >= b {
-            break;
-        }
-        if (f(middle) > 0.0) == rising {
-            b = middle;
-        } else {
-            a = middle;
-        }
-    }
-    0.5 * (a + b)
+    let [low, high] = bisect(a, b, 0.0, |x| (f(x) > 0.0) != rising);
+    0.5 * (low + high)
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@
 //! | moments G′ = EI Δκ, H = GJ Δτ, shear N′ = Hκ − G′τ | Love's equilibrium of a helix without couples along it |
 //! | F = n (T cos β + N′ sin β), M = n (H cos β + G′ sin β + T R sin β − N′ R cos β) | sum of the wires' sections over the strand's |
 
+use crate::base::bisect::bisect;
 use crate::reference::helix::lay_angle;
 use std::f64::consts::FRAC_PI_4;
 
@@ -200,17 +201,11 @@ pub fn elongation(layers: &[Layer], wire: f64) -> f64 {
         layers.iter().map(|layer| wire_strain(strain, layer.lay_angle(), contraction)).fold(f64::MIN, f64::max)
     };
     // No wire is strained more than the strand, and a strand of finite pitch hardly more than twice as much as its wires.
-    let (mut low, mut high) = (wire, 2.0 * wire + 1.0);
+    let mut high = 2.0 * wire + 1.0;
     while greatest(high) < wire {
         high *= 2.0;
     }
-    while high - low > 1e-14 * high {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if greatest(middle) < wire { low = middle } else { high = middle }
-    }
+    let [low, high] = bisect(wire, high, 1e-14, |strain| greatest(strain) < wire);
     0.5 * (low + high)
 }
 

@@ -7,6 +7,7 @@ pub mod check_run;
 pub mod fit;
 pub mod plot;
 pub mod screening;
+mod select;
 pub mod stability;
 pub mod sweep;
 pub mod table;

@@ -1,9 +1,9 @@
 //! What trades error for time, one row each: [`KNOBS`]. A new one is a row there and a function that makes its ladder.
 
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::scene::plan::{ContactPlan, Plan};
 use crate::scene::spec::{AdaptiveSpec, ContactSpec, DriveSpec, Shape, Spec, TangentialSpec};
-use crate::scene::suggest::nearest;
+use crate::study::select;
 
 /// Something that can be turned.
 #[derive(Debug)]
@@ -161,18 +161,7 @@ pub const KNOBS: &[Knob] = &[
 /// # Errors
 /// A name that no knob has; the nearest is suggested.
 pub fn select(names: &[String]) -> Result<Vec<&'static Knob>> {
-    for name in names {
-        if !KNOBS.iter().any(|knob| knob.name == name) {
-            let all: Vec<&str> = KNOBS.iter().map(|knob| knob.name).collect();
-            let near = nearest(name, all.iter().copied());
-            let guess = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
-            return Err(Error::input(
-                format!("--vary {name}: there is no such knob"),
-                format!("{guess}knobs: {}; `strandsnap accuracy SCENE --list` explains them", all.join(", ")),
-            ));
-        }
-    }
-    Ok(KNOBS.iter().filter(|knob| names.is_empty() || names.iter().any(|name| name == knob.name)).collect())
+    select::select(names, KNOBS, |knob| knob.name, "knob", "strandsnap accuracy SCENE --list")
 }
 
 /// A number without the dust of binary arithmetic: 0.30000000000000004 is 0.3.
@@ -405,6 +394,7 @@ fn touching(spec: &Spec) -> Option<&ContactSpec> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::error::Error;
     use crate::scene;
 
     fn spec(name: &str, options: &[&str]) -> Spec {

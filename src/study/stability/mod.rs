@@ -23,8 +23,8 @@ pub mod plots;
 pub mod report;
 pub mod run;
 
-use crate::base::error::{Error, Result};
-use crate::scene::suggest::nearest;
+use crate::base::error::Result;
+use crate::study::select;
 use case::Case;
 use outcome::Report;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -36,22 +36,8 @@ use std::sync::{Mutex, PoisonError};
 /// A name that no case has; the nearest is suggested.
 pub fn select(names: &[String]) -> Result<Vec<Case>> {
     let all = matrix::cases();
-    if let Some(name) = names.iter().find(|name| !all.iter().any(|case| matches(name, case))) {
-        let help = match nearest(name, all.iter().map(|case| case.name.as_str())) {
-            Some(near) => format!("did you mean `{near}`? `strandsnap stability --list` names them all"),
-            None => "`strandsnap stability --list` names them all; `friction-*` takes all that begin so".into(),
-        };
-        return Err(Error::input(format!("there is no stability case `{name}`"), help));
-    }
-    let wanted = |case: &Case| names.is_empty() || names.iter().any(|name| matches(name, case));
-    Ok(all.into_iter().filter(wanted).collect())
-}
-
-fn matches(name: &str, case: &Case) -> bool {
-    match name.strip_suffix('*') {
-        Some(start) => case.name.starts_with(start),
-        None => case.name == name,
-    }
+    let chosen = select::select(names, &all, |case| &case.name, "stability case", "strandsnap stability --list")?;
+    Ok(chosen.into_iter().cloned().collect())
 }
 
 /// Runs cases, `threads` at a time and each on one thread, the long ones first; calls `done` after each. Reports come in

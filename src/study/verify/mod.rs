@@ -28,9 +28,9 @@ mod waves;
 mod wires;
 mod written;
 
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::run::in_pool;
-use crate::scene::suggest::nearest;
+use crate::study::select;
 use finding::{Finding, Outcome};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -113,17 +113,7 @@ pub const CASES: &[Case] = &[
 /// # Errors
 /// A name that no case has; the nearest is suggested.
 pub fn select(names: &[String]) -> Result<Vec<&'static Case>> {
-    for name in names {
-        if !CASES.iter().any(|case| case.name == *name) {
-            let near = nearest(name, CASES.iter().map(|case| case.name));
-            let guess = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
-            return Err(Error::input(
-                format!("there is no verification case `{name}`"),
-                format!("{guess}`strandsnap verify --list` names them all"),
-            ));
-        }
-    }
-    Ok(CASES.iter().filter(|case| names.is_empty() || names.iter().any(|name| name == case.name)).collect())
+    select::select(names, CASES, |case| case.name, "verification case", "strandsnap verify --list")
 }
 
 /// What became of one case.

@@ -3,6 +3,7 @@
 use super::Case;
 use super::finding::{Finding, Spent};
 use super::support::{Lab, set};
+use crate::base::bisect::bisect;
 use crate::base::error::Result;
 use crate::reference::beam::RoundBar;
 use crate::reference::plasticity::{Section, tension_at};
@@ -193,11 +194,7 @@ fn wire_twisted(lab: &Lab) -> Result<Vec<Finding>> {
     let sample = trial.engine.sample();
     let torque_at = |p: f64| per_stress * law.stress(p);
     let angle_at = |p: f64| p * bar.area() * bar.length / per_stress + bar.twist(torque_at(p));
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..100 {
-        let p = 0.5 * (low + high);
-        if angle_at(p) < rate * sample.time { low = p } else { high = p }
-    }
+    let [low, _] = bisect(0.0, 1.0, 0.0, |p| angle_at(p) < rate * sample.time);
     let what = format!("torque at a plastic strain of {:.2} %", 100.0 * low);
     Ok(vec![Finding::new(what, "N m", sample.torque, torque_at(low), trial.finish()).within(5e-3)])
 }
