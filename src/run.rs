@@ -18,7 +18,7 @@ pub mod view;
 
 pub use crate::base::finding::StopReason;
 pub use crate::observe::summary::RunSummary;
-pub use drive::{Outcome, simulate};
+pub use drive::{Outcome, simulate, simulate_engine};
 pub use schedule::{Due, Schedule};
 pub use stop::StopRule;
 

@@ -6,7 +6,7 @@ mod synthetic;
 use std::path::Path;
 use std::time::Instant;
 use strandsnap::base::error::Error;
-use strandsnap::base::finding::{Finding, Instant, Notice};
+use strandsnap::base::finding::{Finding, Instant as Moment, Notice};
 use strandsnap::engine::view::Snapshot;
 use strandsnap::observe::Observer;
 use strandsnap::observe::recording::read::{RecordingContents, contents};
@@ -108,7 +108,7 @@ fn notices_are_warnings_in_the_log_and_in_the_headline() {
     let file = folder.path().join("recording.rrd");
     let mut recording = Recording::new(&file, options()).unwrap();
     run.show_unfinished(&mut recording).unwrap();
-    let at = Instant { step: 7, time: 1e-3, strain: Some(0.1) };
+    let at = Moment { step: 7, time: 1e-3, strain: Some(0.1) };
     let notice = Notice { at, finding: Finding::KineticEnergy { over_internal: 0.1, limit: 0.05 } };
     recording.notice(&notice).unwrap();
     let text = notice.to_string();

@@ -109,7 +109,7 @@ impl MulAssign for Counted {
 impl Real for Counted {
     type Mask = bool;
 
-    fn like(self, value: f64) -> Self {
+    fn splat(self, value: f64) -> Self {
         Self(value)
     }
     fn mul_add(self, factor: Self, addend: Self) -> Self {
@@ -123,16 +123,16 @@ impl Real for Counted {
     fn abs(self) -> Self {
         Self(self.0.abs())
     }
-    fn lesser(self, other: Self) -> Self {
-        Self(Real::lesser(self.0, other.0))
+    fn simd_min(self, other: Self) -> Self {
+        Self(Real::simd_min(self.0, other.0))
     }
-    fn greater(self, other: Self) -> Self {
-        Self(Real::greater(self.0, other.0))
+    fn simd_max(self, other: Self) -> Self {
+        Self(Real::simd_max(self.0, other.0))
     }
-    fn above(self, other: Self) -> bool {
+    fn simd_gt(self, other: Self) -> bool {
         self.0 > other.0
     }
-    fn choose(mask: bool, yes: Self, no: Self) -> Self {
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }
     fn power_of_two(self) -> Self {

@@ -34,7 +34,7 @@ pub trait Real:
     type Mask: Mask;
 
     /// `value`, as many times as there are numbers in `self`.
-    fn like(self, value: f64) -> Self;
+    fn splat(self, value: f64) -> Self;
     /// `self` × `factor` + `addend`, rounded once: by a library function, slowly, where there is no such instruction.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// Square root.
@@ -42,13 +42,13 @@ pub trait Real:
     /// Absolute value.
     fn abs(self) -> Self;
     /// The lesser; `other` where either is not a number.
-    fn lesser(self, other: Self) -> Self;
+    fn simd_min(self, other: Self) -> Self;
     /// The greater; `other` where either is not a number.
-    fn greater(self, other: Self) -> Self;
+    fn simd_max(self, other: Self) -> Self;
     /// Where `self` > `other`.
-    fn above(self, other: Self) -> Self::Mask;
+    fn simd_gt(self, other: Self) -> Self::Mask;
     /// `yes` where the mask holds, `no` elsewhere.
-    fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// 2^k for whole k from −1022 to 1023.
     fn power_of_two(self) -> Self;
     /// Mantissa from 1 to below 2 and whole exponent of a positive normal number.
@@ -71,7 +71,7 @@ pub trait Real:
     /// Newton's rounds take less than a division does, and other work fits between them.
     #[inline(always)]
     fn inverse(self) -> Self {
-        let (minus, one) = (-self, self.like(1.0));
+        let (minus, one) = (-self, self.splat(1.0));
         let mut y = self.inverse_guess();
         for _ in 0..4 {
             y = y.mul_add(minus.mul_add(y, one), y);
@@ -85,14 +85,14 @@ pub trait Real:
     /// keep one unit of the processor busy for longer than all else in a contact.
     #[inline(always)]
     fn inverse_sqrt(self) -> Self {
-        let (half, three_halves) = (self * -0.5, self.like(1.5));
+        let (half, three_halves) = (self * -0.5, self.splat(1.5));
         let mut y = self.inverse_sqrt_guess();
         for _ in 0..2 {
             y = y * (half * y).mul_add(y, three_halves);
         }
         // In this order nothing overflows at 0.
-        let rest = (-self * y).mul_add(y, self.like(1.0));
-        (y * rest).mul_add(rest.mul_add(self.like(0.375), self.like(0.5)), y)
+        let rest = (-self * y).mul_add(y, self.splat(1.0));
+        (y * rest).mul_add(rest.mul_add(self.splat(0.375), self.splat(0.5)), y)
     }
 
     /// e^`self`, to 1e-15 relative, from −700 to 700; the ends' values beyond.
@@ -103,11 +103,11 @@ pub trait Real:
         const LOW: f64 = 1.908_214_929_270_587_7e-10;
         /// Adding and taking it off again rounds to the next whole number.
         const ROUND: f64 = 6_755_399_441_055_744.0;
-        let x = self.greater(self.like(-700.0)).lesser(self.like(700.0));
+        let x = self.simd_max(self.splat(-700.0)).simd_min(self.splat(700.0));
         let k = x * std::f64::consts::LOG2_E + ROUND - ROUND;
         let r = x - k * HIGH - k * LOW;
         // Taylor, |r| ≤ ln 2 / 2.
-        let mut sum = self.like(1.0 / 6_227_020_800.0);
+        let mut sum = self.splat(1.0 / 6_227_020_800.0);
         for inverse in [
             1.0 / 479_001_600.0,
             1.0 / 39_916_800.0,
@@ -123,7 +123,7 @@ pub trait Real:
             1.0,
             1.0,
         ] {
-            sum = sum.mul_add(r, r.like(inverse));
+            sum = sum.mul_add(r, r.splat(inverse));
         }
         sum * k.power_of_two()
     }
@@ -135,15 +135,15 @@ pub trait Real:
         const LOW: f64 = 1.908_214_929_270_587_7e-10;
         let (mantissa, exponent) = self.split();
         // From √½ to √2, so that the exponent is 0 near 1.
-        let large = mantissa.above(self.like(std::f64::consts::SQRT_2));
-        let m = Self::choose(large, mantissa * 0.5, mantissa);
-        let k = Self::choose(large, exponent + 1.0, exponent);
+        let large = mantissa.simd_gt(self.splat(std::f64::consts::SQRT_2));
+        let m = Self::select(large, mantissa * 0.5, mantissa);
+        let k = Self::select(large, exponent + 1.0, exponent);
         // 2 artanh s; |s| ≤ 0.172.
         let s = (m - 1.0) * (m + 1.0).inverse();
         let s2 = s * s;
-        let mut sum = self.like(2.0 / 21.0);
+        let mut sum = self.splat(2.0 / 21.0);
         for odd in [2.0 / 19.0, 2.0 / 17.0, 2.0 / 15.0, 2.0 / 13.0, 2.0 / 11.0, 2.0 / 9.0, 2.0 / 7.0, 0.4, 2.0 / 3.0] {
-            sum = sum.mul_add(s2, s2.like(odd));
+            sum = sum.mul_add(s2, s2.splat(odd));
         }
         k * HIGH + (k * LOW + (s * 2.0 + s * s2 * sum))
     }
@@ -172,7 +172,7 @@ impl Real for f64 {
     type Mask = bool;
 
     #[inline(always)]
-    fn like(self, value: f64) -> Self {
+    fn splat(self, value: f64) -> Self {
         value
     }
     #[inline(always)]
@@ -188,19 +188,19 @@ impl Real for f64 {
         f64::abs(self)
     }
     #[inline(always)]
-    fn lesser(self, other: Self) -> Self {
+    fn simd_min(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
     #[inline(always)]
-    fn greater(self, other: Self) -> Self {
+    fn simd_max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
     #[inline(always)]
-    fn above(self, other: Self) -> bool {
+    fn simd_gt(self, other: Self) -> bool {
         self > other
     }
     #[inline(always)]
-    fn choose(mask: bool, yes: Self, no: Self) -> Self {
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }
     #[inline(always)]
@@ -411,7 +411,7 @@ impl<S: Simd> Real for Lanes<S> {
     type Mask = LaneMask<S>;
 
     #[inline(always)]
-    fn like(self, value: f64) -> Self {
+    fn splat(self, value: f64) -> Self {
         Self::splat(self.simd, value)
     }
     #[inline(always)]
@@ -429,23 +429,23 @@ impl<S: Simd> Real for Lanes<S> {
         self.both(|value| self.simd.abs_f64s(value))
     }
     #[inline(always)]
-    fn lesser(self, other: Self) -> Self {
+    fn simd_min(self, other: Self) -> Self {
         let simd = self.simd;
         Self { simd, low: simd.min_f64s(self.low, other.low), high: simd.min_f64s(self.high, other.high) }
     }
     #[inline(always)]
-    fn greater(self, other: Self) -> Self {
+    fn simd_max(self, other: Self) -> Self {
         let simd = self.simd;
         Self { simd, low: simd.max_f64s(self.low, other.low), high: simd.max_f64s(self.high, other.high) }
     }
     #[inline(always)]
-    fn above(self, other: Self) -> LaneMask<S> {
+    fn simd_gt(self, other: Self) -> LaneMask<S> {
         let simd = self.simd;
         let low = simd.greater_than_f64s(self.low, other.low);
         LaneMask { simd, low, high: simd.greater_than_f64s(self.high, other.high) }
     }
     #[inline(always)]
-    fn choose(mask: LaneMask<S>, yes: Self, no: Self) -> Self {
+    fn select(mask: LaneMask<S>, yes: Self, no: Self) -> Self {
         let simd = mask.simd;
         let low = simd.select_f64s(mask.low, yes.low, no.low);
         Self { simd, low, high: simd.select_f64s(mask.high, yes.high, no.high) }
@@ -567,9 +567,9 @@ mod tests {
             let mut out = vec![[0.0; 5]; self.0.len()];
             for at in (0..self.0.len()).step_by(Lanes::<S>::LEN) {
                 let x = Lanes::load_up_to_end(simd, self.0, at);
-                let half = x.like(0.5);
-                let picked = Lanes::choose(x.above(half), x.inverse(), half - x);
-                assert!(!(x.above(half) & half.above(x)).any() && (!x.above(x)).any());
+                let half = x.splat(0.5);
+                let picked = Lanes::select(x.simd_gt(half), x.inverse(), half - x);
+                assert!(!(x.simd_gt(half) & half.simd_gt(x)).any() && (!x.simd_gt(x)).any());
                 let roots = x.each(f64::sqrt) - x.sqrt();
                 let all = [x.ln(), (x * 1e-3).exp(), picked, roots, x.inverse_sqrt()];
                 for (k, y) in all.into_iter().enumerate() {

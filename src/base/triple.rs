@@ -37,14 +37,14 @@ impl<R: Real> Triple<R> {
     /// Zero, as many times as there are numbers in `like`.
     #[inline(always)]
     pub fn zero(like: R) -> Self {
-        let zero = like.like(0.0);
+        let zero = like.splat(0.0);
         Self { x: zero, y: zero, z: zero }
     }
 
     /// `yes` where the mask holds, `no` elsewhere.
     #[inline(always)]
-    pub fn choose(mask: R::Mask, yes: Self, no: Self) -> Self {
-        Self { x: R::choose(mask, yes.x, no.x), y: R::choose(mask, yes.y, no.y), z: R::choose(mask, yes.z, no.z) }
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self { x: R::select(mask, yes.x, no.x), y: R::select(mask, yes.y, no.y), z: R::select(mask, yes.z, no.z) }
     }
 
     /// Vector `k` of several.

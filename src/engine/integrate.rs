@@ -156,11 +156,11 @@ impl WithSimd for Thin<'_> {
         for k in (0..radius.len()).step_by(Lanes::<S>::LEN) {
             let here = rows.here(simd, BondActions::THINNING, k);
             let before = rows.before(simd, BondActions::THINNING, k);
-            let (some, both) = (here.above(zero) | before.above(zero), here.above(zero) & before.above(zero));
+            let (some, both) = (here.simd_gt(zero) | before.simd_gt(zero), here.simd_gt(zero) & before.simd_gt(zero));
             let undeformed = Lanes::load_up_to_end(simd, radius0, k);
             let kept = Lanes::load_up_to_end(simd, radius, k);
-            let mean = undeformed * ((here + before) * Lanes::choose(both, half, one));
-            let now = Lanes::choose(some, mean, kept);
+            let mean = undeformed * ((here + before) * Lanes::select(both, half, one));
+            let now = Lanes::select(some, mean, kept);
             now.store_up_to_end(radius, k);
             (kept - now).store_up_to_end(thinned, k);
         }
@@ -269,7 +269,7 @@ impl WithSimd for Drift<'_> {
 /// The larger of two numbers, lane by lane; one that is none wins, so that it is seen.
 #[inline(always)]
 fn worse<R: Real>(most: R, next: R) -> R {
-    R::choose(!most.above(next) & most.above(most.like(f64::NEG_INFINITY)), next, most)
+    R::select(!most.simd_gt(next) & most.simd_gt(most.splat(f64::NEG_INFINITY)), next, most)
 }
 
 /// The largest of some numbers.

@@ -26,9 +26,9 @@ pub mod wires;
 
 use crate::base::error::{Error, Result};
 use crate::base::finding::{Failure, StepLimit};
-use crate::law::bond::Moduli;
 use crate::law::bond::elastic::Elastic;
 use crate::law::bond::elasto_plastic::ElastoPlastic;
+use crate::law::bond::{BondLaw, Moduli};
 use crate::law::contact::constants::effective_modulus;
 use crate::scene::plan::{ContactPlan, Plan};
 use crate::scene::spec::{BondLawSpec, Material, Spec};
@@ -144,10 +144,27 @@ impl Engine {
     /// # Errors
     /// When there is no stable step because nothing is stiff and the scene fixes none, or a grip holds nothing.
     pub fn new(spec: &Spec, assembly: Assembly) -> Result<Self> {
+        Self::set_up(spec, assembly, build_bonds)
+    }
+
+    /// [`Engine::new`] with a bond law of one's own in the place of the scene's, whose `bond.law` and hardening then say
+    /// nothing; damping and rupture are the scene's.
+    ///
+    /// # Errors
+    /// As for [`Engine::new`].
+    pub fn with_law<L: BondLaw>(spec: &Spec, assembly: Assembly, law: L) -> Result<Self> {
+        Self::set_up(spec, assembly, |spec, plan, assembly| bond_stage(law, spec, plan, assembly))
+    }
+
+    fn set_up(
+        spec: &Spec,
+        assembly: Assembly,
+        build_bonds: impl FnOnce(&Spec, &Plan, &Assembly) -> Box<dyn Bonds>,
+    ) -> Result<Self> {
         let plan = Plan::new(spec);
         let mut state = State::new(&assembly, plan.rotations);
         let holds = Holds::new(spec, &assembly, &mut state)?;
-        let bonds = plan.bonds.then(|| build_bonds(spec, &plan, &assembly));
+        let bonds = if plan.bonds { Some(build_bonds(spec, &plan, &assembly)) } else { None };
         let measures = Measures::new(spec, &assembly, &holds);
         let least_radius = assembly.radius.iter().copied().fold(f64::MAX, f64::min);
         let mut engine = Self {
@@ -478,6 +495,11 @@ impl Engine {
         std::mem::take(&mut self.ruptures)
     }
 
+    /// The scene that it runs.
+    pub fn spec(&self) -> &Spec {
+        &self.spec
+    }
+
     /// The assembly that the run started from.
     pub fn assembly(&self) -> &Assembly {
         &self.assembly
@@ -507,22 +529,20 @@ impl Engine {
 /// Chooses law and modes, once per run.
 fn build_bonds(spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
     let moduli = Moduli::new(spec.material.young, spec.material.poisson);
+    match &spec.bond.law {
+        BondLawSpec::Elastic => bond_stage(Elastic { moduli }, spec, plan, assembly),
+        BondLawSpec::ElastoPlastic(h) => {
+            bond_stage(ElastoPlastic { moduli, hardening: h.clone() }, spec, plan, assembly)
+        }
+    }
+}
+
+fn bond_stage<L: BondLaw>(law: L, spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
     let check = spec.bond.rupture.as_ref().map(|r| RuptureCheck::new(r, spec.seed, assembly));
     let damping = spec.bond.damping;
-    match (&spec.bond.law, plan.rotations) {
-        (BondLawSpec::Elastic, true) => {
-            Box::new(BondStage::<_, true>::new(Elastic { moduli }, assembly, damping, check))
-        }
-        (BondLawSpec::Elastic, false) => {
-            Box::new(BondStage::<_, false>::new(Elastic { moduli }, assembly, damping, check))
-        }
-        (BondLawSpec::ElastoPlastic(h), turn) => {
-            let law = ElastoPlastic { moduli, hardening: h.clone() };
-            if turn {
-                Box::new(BondStage::<_, true>::new(law, assembly, damping, check))
-            } else {
-                Box::new(BondStage::<_, false>::new(law, assembly, damping, check))
-            }
-        }
+    if plan.rotations {
+        Box::new(BondStage::<L, true>::new(law, assembly, damping, check))
+    } else {
+        Box::new(BondStage::<L, false>::new(law, assembly, damping, check))
     }
 }

@@ -96,7 +96,7 @@ impl<N: NormalLaw, T: TangentialLaw, R: Real> History<N, T, R> {
     /// Contacts that push: surfaces that lie in a dent without a force count as apart.
     #[inline(always)]
     pub fn touching(&self) -> R::Mask {
-        self.normal_force.above(self.normal_force.like(0.0))
+        self.normal_force.simd_gt(self.normal_force.splat(0.0))
     }
 }
 
@@ -156,10 +156,10 @@ pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
     meeting: &Meeting<R>,
     answer: &NormalResponse<R>,
 ) -> (PairForce<R>, Given<R>) {
-    let zero = meeting.overlap.like(0.0);
-    let touches = meeting.overlap.above(zero);
+    let zero = meeting.overlap.splat(0.0);
+    let touches = meeting.overlap.simd_gt(zero);
     let mean = (history.normal_force + answer.force) * 0.5;
-    let thinner = R::choose(touches & history.touching(), meeting.thinner, zero);
+    let thinner = R::select(touches & history.touching(), meeting.thinner, zero);
     let mut given = Given { plastic: answer.plastic_work, thinning: mean * thinner, friction: zero, damping: zero };
     history.normal_force = answer.force;
 
@@ -170,7 +170,7 @@ pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
         let across = meeting.velocity - meeting.normal * approach;
         let input = TangentialInput {
             normal: meeting.normal,
-            slip: across * zero.like(meeting.dt),
+            slip: across * zero.splat(meeting.dt),
             normal_force: answer.force,
             radius: answer.radius,
             inverse_radius: answer.inverse_radius,
@@ -183,7 +183,7 @@ pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
         // √k from one root; 0 where nothing pushes. Damping never turns the push into a pull.
         let root = answer.stiffness * answer.stiffness.inverse_sqrt();
         let damper = -(meeting.viscosity * root * approach);
-        let viscous = R::choose(answer.force.above(zero), damper.greater(-answer.force), zero);
+        let viscous = R::select(answer.force.simd_gt(zero), damper.simd_max(-answer.force), zero);
         push += viscous;
         given.damping = -((history.viscous + viscous) * approach * (0.5 * meeting.dt));
         history.viscous = viscous;

@@ -79,11 +79,11 @@ impl Straight<'_> {
     fn hold<S: Simd>(&mut self, simd: S, run: Range<usize>, lane: usize, sums: &mut Sums) {
         let s = &mut *self.state;
         let (mass, inertia) = (load(simd, &s.mass, &run), load(simd, &s.inertia, &run));
-        let zero = mass.like(0.0);
+        let zero = mass.splat(0.0);
         let per_kick = 1.0 / self.kicked;
         // The speeds before the kick, the push to where the grip goes, and the work of it.
         let v = vector(simd, &s.v, &run);
-        let after = Triple { x: zero, y: zero, z: zero.like(self.speed) };
+        let after = Triple { x: zero, y: zero, z: zero.splat(self.speed) };
         let push = (after - v) * (mass * per_kick);
         let before = v - vector(simd, &s.force, &run) * (load(simd, &s.inverse_mass, &run) * self.kicked);
         let w = vector(simd, &s.w, &run);

@@ -58,7 +58,16 @@ pub fn simulate(
     observers: &mut [&mut dyn Observer],
     stop: &AtomicBool,
 ) -> Result<Outcome> {
-    let (outcome, error) = drive(Engine::new(spec, assembly)?, spec, observers, stop)?;
+    simulate_engine(Engine::new(spec, assembly)?, observers, stop)
+}
+
+/// [`simulate`] from an engine that is set up, such as one with a bond law of its own ([`Engine::with_law`]).
+///
+/// # Errors
+/// As for [`simulate`], but for what [`Engine::new`] refuses.
+pub fn simulate_engine(engine: Engine, observers: &mut [&mut dyn Observer], stop: &AtomicBool) -> Result<Outcome> {
+    let spec = engine.spec().clone();
+    let (outcome, error) = drive(engine, &spec, observers, stop)?;
     match error {
         Some(error) => Err(error),
         None => Ok(outcome),

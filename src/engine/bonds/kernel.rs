@@ -64,8 +64,8 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         let record = &mut self.records[block * BLOCK * fields..(block + 1) * BLOCK * fields];
         let load = |record: &[f64], field: usize| Lanes::load(simd, record, field * BLOCK + lane);
         let live_number = load(record, BondStage::<L, TURN>::LIVE);
-        let zero = live_number.like(0.0);
-        let live = live_number.above(zero);
+        let zero = live_number.splat(0.0);
+        let live = live_number.simd_gt(zero);
 
         let constants = &self.constants[self.kind[block] as usize..][..CONSTANTS * BLOCK];
         let shape = shape(|k| load(constants, k));
@@ -80,7 +80,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         // What is written of a bond that broke stays as it was then, no force and its last plastic strain, wherever its two
         // particles go: whoever reads a record need not ask whether the bond holds.
         let keep = |record: &mut [f64], field: usize, number: Lanes<S>| {
-            Lanes::choose(live, number, load(record, field)).store(record, field * BLOCK + lane);
+            Lanes::select(live, number, load(record, field)).store(record, field * BLOCK + lane);
         };
 
         let mut step = Step { law: self.law, dt: self.dt, live, plastic: zero, damping: zero };
@@ -102,14 +102,14 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         keep(record, BondStage::<L, TURN>::DASHPOT, dashpot);
         L::each_number(&state, |k, number| keep(record, BondStage::<L, TURN>::HISTORY + k, number));
         let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| {
-            (Lanes::load(simd, sum, lane) + Lanes::choose(live, part, zero)).store(sum, lane);
+            (Lanes::load(simd, sum, lane) + Lanes::select(live, part, zero)).store(sum, lane);
         };
         book(&mut sums.plastic, step.plastic);
         book(&mut sums.damping, step.damping);
         self.act(block, lane, live, &acts, self.law.thinning(&shape, &state));
         self.limit.is_some_and(|limit| {
             let limit = Lanes::load_up_to_end(simd, limit, slot);
-            (live & !limit.above(self.law.plastic_strain(&shape, &state))).any()
+            (live & !limit.simd_gt(self.law.plastic_strain(&shape, &state))).any()
         })
     }
 
@@ -135,7 +135,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
     ) {
         let at = block * BLOCK + lane;
         let mut put = |field: usize, number: Lanes<S>| {
-            Lanes::choose(live, number, number.like(0.0)).store(self.actions, field * CHUNK + at);
+            Lanes::select(live, number, number.splat(0.0)).store(self.actions, field * CHUNK + at);
         };
         put(BondActions::THINNING, thinning);
         put(BondActions::PULL, acts.pull.x);

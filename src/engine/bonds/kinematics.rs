@@ -58,7 +58,7 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
     ) -> Acts<R> {
         let d = b.x - a.x;
         let (length, n) = axis(d);
-        let zero = length.like(0.0);
+        let zero = length.splat(0.0);
         let log_strain = log_strain(d, shape);
         let step = BondIncrement { log_strain, length, shear: [zero; 2], bend: [zero; 2], twist: zero };
         self.plastic = self.law.axial_response(shape, force, state, &step, self.live);
@@ -109,7 +109,7 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         let (length, n) = axis(d);
 
         // Mid-step geometry.
-        let middle = d - dv * length.like(0.5 * dt);
+        let middle = d - dv * length.splat(0.5 * dt);
         let inv_middle = middle.length_squared().inverse_sqrt();
         let n_mid = middle * inv_middle;
         let spin = (a.w + b.w).map(|w| w * 0.5);

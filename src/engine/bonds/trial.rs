@@ -21,11 +21,11 @@ pub struct Trial<L: BondLaw, R: Real> {
 impl<L: BondLaw, R: Real> Trial<L, R> {
     /// A bond that was never loaded; `one` is the number 1 of the wanted kind. `turn` and `damped` as in the stage.
     pub fn new(law: L, one: R, turn: bool, damped: bool) -> Self {
-        let zero = one.like(0.0);
+        let zero = one.splat(0.0);
         let mut numbers = vec![0.0; L::HISTORY];
         L::each_number(&law.initial(), |k, number| numbers[k] = number);
         Self {
-            history: L::history(|k| one.like(numbers[k])),
+            history: L::history(|k| one.splat(numbers[k])),
             law,
             shape: BondShape { rest_length: one, radius: one, inverse_length: one, inverse_radius: one },
             force: BondForce { axial: zero, shear: [zero; 2], bend: [zero; 2], twist: zero },
@@ -38,13 +38,13 @@ impl<L: BondLaw, R: Real> Trial<L, R> {
 
     /// Takes one step to the length `stretch`; returns the axial force.
     pub fn step(&mut self, stretch: f64) -> R {
-        let zero = self.dashpot.like(0.0);
+        let zero = self.dashpot.splat(0.0);
         let none = Triple { x: zero, y: zero, z: zero };
-        let far = Triple { x: zero.like(stretch), y: zero, z: zero };
+        let far = Triple { x: zero.splat(stretch), y: zero, z: zero };
         let ends = [Node { x: none, v: none, w: none }, Node { x: far, v: none, w: none }];
-        let live = zero.like(1.0).above(zero);
+        let live = zero.splat(1.0).simd_gt(zero);
         let mut step = Step { law: &self.law, dt: 1.0, live, plastic: zero, damping: zero };
-        let viscosity = self.damped.then_some([zero.like(1.0); 4]);
+        let viscosity = self.damped.then_some([zero.splat(1.0); 4]);
         let (shape, force, history) = (&self.shape, &mut self.force, &mut self.history);
         let acts = if self.turn {
             step.turning(&ends, shape, &mut self.e1, force, history, &mut self.dashpot, viscosity)

@@ -91,7 +91,7 @@ impl Sums {
     #[inline(always)]
     fn book<S: Simd>(&mut self, simd: S, lane: usize, given: &Given<Lanes<S>>, counts: <Lanes<S> as Real>::Mask) {
         let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| {
-            (Lanes::load(simd, sum, lane) + Lanes::choose(counts, part, part.like(0.0))).store(sum, lane);
+            (Lanes::load(simd, sum, lane) + Lanes::select(counts, part, part.splat(0.0))).store(sum, lane);
         };
         book(&mut self.plastic, given.plastic);
         book(&mut self.thinning, given.thinning);
@@ -154,27 +154,27 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let (first, second) = (ball(simd, self.seen, i), ball(simd, self.seen, j));
         let d = second.x - first.x;
         let square = d.length_squared();
-        let zero = square.like(0.0);
+        let zero = square.splat(0.0);
         let inverse = square.inverse_sqrt();
         let distance = square * inverse;
         let touching = first.radius + second.radius;
         let constants = self.work.blocks[b].constants as usize + lane;
         let reduced = Lanes::load(simd, self.work.constants, constants);
         let offset = load(record, History::<N, T>::OFFSET);
-        let pairs = reduced.above(zero);
+        let pairs = reduced.simd_gt(zero);
         let reach = touching - offset;
         let overlap = reach - distance;
-        let touches = overlap.above(zero) & pairs;
-        let remembers = load(record, History::<N, T>::FORCE).above(zero) | offset.above(zero);
+        let touches = overlap.simd_gt(zero) & pairs;
+        let remembers = load(record, History::<N, T>::FORCE).simd_gt(zero) | offset.simd_gt(zero);
         if !(touches | remembers).any() {
-            Lanes::choose(pairs, -overlap, zero.like(f64::INFINITY)).store(gap, lane);
+            Lanes::select(pairs, -overlap, zero.splat(f64::INFINITY)).store(gap, lane);
             self.still(simd, b, lane);
             return false;
         }
         zero.store(gap, lane);
 
         let mut history = History::<N, T, _>::of(reduced, |k| load(record, k));
-        let overlap = Lanes::choose(touches, overlap, zero);
+        let overlap = Lanes::select(touches, overlap, zero);
         let normal = d * inverse;
         let sunk = (overlap + offset) * 0.5;
         let arms = [first.radius - sunk, second.radius - sunk];
@@ -186,8 +186,8 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         sums.book(simd, lane, &given, pairs);
         history.each_number(|k, number| number.store(record, k * BLOCK + lane));
 
-        let least = first.radius.lesser(second.radius);
-        let deep = touches & overlap.above(least * self.deepest.ratio);
+        let least = first.radius.simd_min(second.radius);
+        let deep = touches & overlap.simd_gt(least * self.deepest.ratio);
         if deep.any() {
             self.deepen([i, j], overlap, least, &history, deep);
         }
@@ -208,7 +208,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
 
     #[inline(always)]
     fn deepen<R: Real>(&mut self, [i, j]: [usize; 2], overlap: R, least: R, history: &History<N, T, R>, deep: R::Mask) {
-        let deep = R::choose(deep, overlap, overlap.like(0.0));
+        let deep = R::select(deep, overlap, overlap.splat(0.0));
         for k in 0..R::COUNT {
             let pair = [(i + k) as u32, (j + k) as u32];
             let (reduced, force) = (history.reduced_radius.at(k), history.normal_force.at(k));
@@ -230,15 +230,15 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         normal: Triple<Lanes<S>>,
         arms: [Lanes<S>; 2],
     ) {
-        let nothing = Triple::zero(arms[0].like(0.0));
+        let nothing = Triple::zero(arms[0].splat(0.0));
         let own = self.work.blocks[b].i as usize + lane - self.work.first * CHUNK;
         let size = rows::<T>() * BLOCK;
         let actions = &mut self.work.actions[b * size..(b + 1) * size];
-        let force = Triple::choose(touches, pair.force, nothing);
+        let force = Triple::select(touches, pair.force, nothing);
         add(simd, &mut self.work.sides.force, own, force);
         store(force, actions, lane);
         if T::ACTIVE {
-            let twist = Triple::choose(touches, normal.cross(pair.friction), nothing);
+            let twist = Triple::select(touches, normal.cross(pair.friction), nothing);
             add(simd, &mut self.work.sides.torque, own, twist * arms[0]);
             store(twist * arms[1], actions, 3 * BLOCK + lane);
         }

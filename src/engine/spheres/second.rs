@@ -83,13 +83,13 @@ impl SecondSides<'_> {
             }
             // Places beyond the ends of a row are those of other rows, which the mask leaves out.
             let theirs = place + f64::from(*shift);
-            let within = theirs.above(theirs.like(-0.5)) & theirs.like(BLOCK as f64 - 0.5).above(theirs);
+            let within = theirs.simd_gt(theirs.splat(-0.5)) & theirs.splat(BLOCK as f64 - 0.5).simd_gt(theirs);
             // The actions begin with a block to spare.
             let row = (1 + *block as usize * rows) * BLOCK + lane;
             let from = row.wrapping_add_signed(*shift as isize);
             for (k, sum) in sum.iter_mut().take(rows).enumerate() {
                 let part = Lanes::load(simd, self.actions, from + k * BLOCK);
-                let part = Lanes::choose(within, part, place.like(0.0));
+                let part = Lanes::select(within, part, place.splat(0.0));
                 *sum += if k < 3 { -part } else { part };
             }
         }

@@ -140,7 +140,7 @@ impl WithSimd for Find<'_> {
         let mut found = [[0.0; BLOCK]; 2];
         for lane in (0..self.gaps.count).step_by(Lanes::<S>::LEN) {
             let rows = Rows { simd, rows: &self.gaps.rows, lane };
-            let zero = rows.row(GAP_PLACE).like(0.0);
+            let zero = rows.row(GAP_PLACE).splat(0.0);
             let nowhere = Triple::zero(zero);
             let beside = Beside {
                 near: rows.quartic(GAP_NEAR),
@@ -150,16 +150,16 @@ impl WithSimd for Find<'_> {
                 spin: [nowhere; 3],
                 radius: [rows.row(GAP_RADIUS), rows.row(GAP_RADIUS + 1), rows.row(GAP_RADIUS + 2)],
                 t: rows.row(GAP_PLACE),
-                moves: zero.like(1.0),
-                first: zero.like(-0.5),
-                width: zero.like(1.0 / CELLS as f64),
+                moves: zero.splat(1.0),
+                first: zero.splat(-0.5),
+                width: zero.splat(1.0 / CELLS as f64),
                 length: zero,
                 per_length: zero,
                 reach: zero,
                 viscosity: zero,
             };
             let at = beside.expand(ROUNDS);
-            let deepest = Beside::deepest(&beside.gap(&at, rows.row(GAP_OFFSET), zero), &[zero.like(1.0); CELLS]);
+            let deepest = Beside::deepest(&beside.gap(&at, rows.row(GAP_OFFSET), zero), &[zero.splat(1.0); CELLS]);
             at.t.store(&mut found[0], lane);
             (-deepest).store(&mut found[1], lane);
         }
@@ -262,20 +262,20 @@ impl<N: NormalLaw, T: TangentialLaw> Run<'_, N, T> {
         let mut beside = rows.beside::<T>();
         let at = beside.expand(ROUNDS);
         let mut history = History::<N, T, _>::of(rows.row(REDUCED), |k| rows.row(HISTORY + k));
-        let zero = at.t.like(0.0);
-        let all = [zero.like(1.0); CELLS];
+        let zero = at.t.splat(0.0);
+        let all = [zero.splat(1.0); CELLS];
         let deepest = Beside::deepest(&beside.gap(&at, history.offset, history.reduced_radius), &all);
         let mut dents = [zero; CELLS];
         for (q, dent) in dents.iter_mut().enumerate() {
             *dent = rows.row(DENTS + q);
         }
         let touched = history.touching();
-        let touches = deepest.above(zero);
+        let touches = deepest.simd_gt(zero);
         let curvature = at.distance[2] * beside.near[1].length_squared().inverse();
         let new = touches & !touched;
         if new.any() {
             // The angle at which they came to touch.
-            let new = Lanes::choose(new, zero.like(1.0), zero);
+            let new = Lanes::select(new, zero.splat(1.0), zero);
             for k in 0..Lanes::<S>::LEN {
                 if new.at(k) > 0.0 {
                     let per_length = self.meets.per_length(history.reduced_radius.at(k), curvature.at(k));
@@ -284,7 +284,7 @@ impl<N: NormalLaw, T: TangentialLaw> Run<'_, N, T> {
             }
         }
         let answer = beside.respond(self.meets.laws, &at, &all, &mut dents, &mut history, self.meets.state.dt);
-        let here = Lanes::choose(touches | touched, zero.like(1.0), zero);
+        let here = Lanes::select(touches | touched, zero.splat(1.0), zero);
         let mut put = |row: usize, value: Lanes<S>| value.store(&mut out[row], lane);
         put(OUT_PLACE, at.t);
         put(OUT_HERE, here);
@@ -393,8 +393,8 @@ impl<S: Simd> Rows<'_, S> {
         let (a, b, c) = (self.vector(first, 5, 0), self.vector(first, 5, 1), self.vector(first, 5, 2));
         let (d, e) = (self.vector(first, 5, 3), self.vector(first, 5, 4));
         let like = a.x;
-        let slope = ((d - b) * like.like(8.0) - (e - a)) * like.like(1.0 / 12.0);
-        let bend = ((b + d) * like.like(16.0) - (a + e) - c * like.like(30.0)) * like.like(1.0 / 12.0);
+        let slope = ((d - b) * like.splat(8.0) - (e - a)) * like.splat(1.0 / 12.0);
+        let bend = ((b + d) * like.splat(16.0) - (a + e) - c * like.splat(30.0)) * like.splat(1.0 / 12.0);
         [c, slope, bend]
     }
 
@@ -403,8 +403,8 @@ impl<S: Simd> Rows<'_, S> {
     fn arc(self, first: usize) -> [Triple<Lanes<S>>; 4] {
         let (a, b) = (self.vector(first, 4, 0), self.vector(first, 4, 1));
         let (c, d) = (self.vector(first, 4, 2), self.vector(first, 4, 3));
-        let (half, three) = (a.x.like(0.5), a.x.like(3.0));
-        let square = (a - b * half.like(2.0) + c) * half;
+        let (half, three) = (a.x.splat(0.5), a.x.splat(3.0));
+        let square = (a - b * half.splat(2.0) + c) * half;
         let blend = (d - a + (b - c) * three) * half;
         [b, (c - a) * half, square, blend]
     }
@@ -424,9 +424,9 @@ impl<S: Simd> Rows<'_, S> {
             spin,
             radius: [self.row(RADIUS), self.row(RADIUS + 1), self.row(RADIUS + 2)],
             t: like,
-            moves: like.like(1.0),
-            first: like.like(-0.5),
-            width: like.like(1.0 / CELLS as f64),
+            moves: like.splat(1.0),
+            first: like.splat(-0.5),
+            width: like.splat(1.0 / CELLS as f64),
             length: self.row(LENGTH),
             per_length: self.row(PER_LENGTH),
             reach: self.row(REACH),

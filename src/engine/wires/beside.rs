@@ -113,7 +113,7 @@ pub struct Answer<R> {
 #[inline(always)]
 fn arc<R: Real>([a, b, c, d]: [Triple<R>; 4], t: R) -> [Triple<R>; 3] {
     let [h, h1, h2, _] = blend(t);
-    let two = t.like(2.0);
+    let two = t.splat(2.0);
     [a + (b + c * t) * t + d * h, b + c * (t * two) + d * h1, c * two + d * h2]
 }
 
@@ -127,13 +127,13 @@ impl<R: Real> Beside<R> {
             let [q, q1, q2] = arc(self.far, t);
             let (away, square) = (q - p, q1.length_squared());
             // Far from the foot the distance may be concave; then the straight line decides.
-            let rise = square + away.dot(q2).greater(square * -0.5);
+            let rise = square + away.dot(q2).simd_max(square * -0.5);
             t -= away.dot(q1) * rise.inverse() * self.moves;
         }
         let [q, q1, q2] = arc(self.far, t);
         let e = p - q;
         let square = q1.length_squared();
-        let inverse_rise = (square - e.dot(q2)).greater(square * STIFF).inverse();
+        let inverse_rise = (square - e.dot(q2)).simd_max(square * STIFF).inverse();
         let cross = p1.dot(q1);
         let rate = cross * inverse_rise * self.moves;
         let e1 = p1 - q1 * rate;
@@ -173,10 +173,10 @@ impl<R: Real> Beside<R> {
     /// Overlap of the deepest of the cells of which `share` counts something (m).
     #[inline(always)]
     pub fn deepest(gap: &CellGap<R>, share: &[R; CELLS]) -> R {
-        let mut deepest = gap.overlap.like(f64::NEG_INFINITY);
+        let mut deepest = gap.overlap.splat(f64::NEG_INFINITY);
         for (q, share) in share.iter().enumerate() {
-            let counts = share.above(share.like(0.0));
-            deepest = R::choose(counts, deepest.greater(gap.depth(gap.place(q))), deepest);
+            let counts = share.simd_gt(share.splat(0.0));
+            deepest = R::select(counts, deepest.simd_max(gap.depth(gap.place(q))), deepest);
         }
         deepest
     }
@@ -192,19 +192,19 @@ impl<R: Real> Beside<R> {
         history: &mut History<N, T, R>,
         dt: f64,
     ) -> Answer<R> {
-        let zero = self.t.like(0.0);
+        let zero = self.t.splat(0.0);
         let gap = self.gap(at, history.offset, history.reduced_radius);
         let deepest = Self::deepest(&gap, share);
         let cells = respond_cells(&gap, laws.normal.limiting_pressure(), share, greatest);
         let [force, first, second] = cells.moments;
-        let pushes = force.above(zero);
-        let inverse_force = R::choose(pushes, force, force.like(1.0)).inverse();
+        let pushes = force.simd_gt(zero);
+        let inverse_force = R::select(pushes, force, force.splat(1.0)).inverse();
         // Mean of u and u² where the force acts.
         let (mean, square) = (first * inverse_force, second * inverse_force);
         let [n, n1, n2] = at.normal;
         // The mean line from the stretch to the other wire: friction along it would turn the two.
         let [e, e1, e2] = at.away;
-        let toward = (e + e1 * mean + e2 * (square * 0.5)) * zero.like(-1.0);
+        let toward = (e + e1 * mean + e2 * (square * 0.5)) * zero.splat(-1.0);
         let apart = toward.length_squared();
         let inverse = apart.inverse_sqrt();
         let (normal, mean_distance) = (toward * inverse, apart * inverse);
@@ -222,11 +222,11 @@ impl<R: Real> Beside<R> {
             force,
             stiffness,
             radius,
-            inverse_radius: R::choose(pushes, radius, radius.like(1.0)).inverse(),
+            inverse_radius: R::select(pushes, radius, radius.splat(1.0)).inverse(),
             plastic_work: cells.plastic_work,
         };
         let reach = at.touching - history.offset;
-        let overlap = deepest.greater(zero);
+        let overlap = deepest.simd_max(zero);
         let thinner = self.reach - reach;
         let meeting = Meeting { normal, overlap, thinner, velocity, viscosity: self.viscosity, dt };
         let (pair, given) = press(laws, history, &meeting, &answer);
@@ -277,18 +277,18 @@ impl<R: Real> Beside<R> {
 
     #[inline(always)]
     fn between(&self, t: R) -> R {
-        t.greater(t.like(0.0)).lesser(t.like(1.0))
+        t.simd_max(t.splat(0.0)).simd_min(t.splat(1.0))
     }
 
     /// Spreads a force per length with the moments `a`, `b`, 2`c` over the particles' polynomials.
     #[inline(always)]
     fn act(&self, at: &Expansion<R>, [a, b, c]: [Triple<R>; 3], twist: Triple<R>, arms: [R; 2]) -> Act<R> {
-        let two = at.t.like(2.0);
+        let two = at.t.splat(2.0);
         let (t, square) = (at.t, at.t * at.t);
         let [h, h1, h2, _] = blend(t);
         let once = b * at.rate + c * at.bend;
         let twice = c * (at.rate * at.rate);
-        let minus = t.like(-1.0);
+        let minus = t.splat(-1.0);
         let far = [
             a * minus,
             (a * t + once) * minus,
@@ -299,7 +299,7 @@ impl<R: Real> Beside<R> {
         Act {
             near: [a, b, c * two],
             far,
-            twist: [twist * arms[0], other * (t.like(1.0) - self.between(t)), other * self.between(t)],
+            twist: [twist * arms[0], other * (t.splat(1.0) - self.between(t)), other * self.between(t)],
         }
     }
 }

@@ -266,7 +266,7 @@ impl Arc {
 /// h(t) = (t² − t)(3t² − 2t³) and its derivatives.
 #[inline(always)]
 pub fn blend<R: Real>(t: R) -> [R; 4] {
-    let one = |value: f64| t.like(value);
+    let one = |value: f64| t.splat(value);
     let square = t * t;
     [
         square * t * ((one(5.0) - t * 2.0) * t - 3.0),

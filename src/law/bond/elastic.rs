@@ -48,7 +48,7 @@ impl BondLaw for Elastic {
         _: R::Mask,
     ) -> R {
         force.axial = Section::round(shape.radius).area * self.moduli.young * step.log_strain;
-        step.length.like(0.0)
+        step.length.splat(0.0)
     }
 
     #[inline(always)]
@@ -71,12 +71,12 @@ impl BondLaw for Elastic {
 
     #[inline(always)]
     fn plastic_strain<R: Real>(&self, shape: &BondShape<R>, _: &()) -> R {
-        shape.radius.like(0.0)
+        shape.radius.splat(0.0)
     }
 
     #[inline(always)]
     fn thinning<R: Real>(&self, shape: &BondShape<R>, _: &()) -> R {
-        shape.radius.like(1.0)
+        shape.radius.splat(1.0)
     }
 }
 

@@ -44,14 +44,14 @@ pub struct PlasticState<R = f64> {
 
 impl<R: Real> PlasticState<R> {
     #[inline(always)]
-    fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+    fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         Self {
-            axial: R::choose(mask, yes.axial, no.axial),
-            equivalent: R::choose(mask, yes.equivalent, no.equivalent),
-            thinning: R::choose(mask, yes.thinning, no.thinning),
-            inverse_thinning: R::choose(mask, yes.inverse_thinning, no.inverse_thinning),
-            yield_stress: R::choose(mask, yes.yield_stress, no.yield_stress),
-            slope: R::choose(mask, yes.slope, no.slope),
+            axial: R::select(mask, yes.axial, no.axial),
+            equivalent: R::select(mask, yes.equivalent, no.equivalent),
+            thinning: R::select(mask, yes.thinning, no.thinning),
+            inverse_thinning: R::select(mask, yes.inverse_thinning, no.inverse_thinning),
+            yield_stress: R::select(mask, yes.yield_stress, no.yield_stress),
+            slope: R::select(mask, yes.slope, no.slope),
         }
     }
 }
@@ -59,7 +59,7 @@ impl<R: Real> PlasticState<R> {
 impl ElastoPlastic {
     #[inline(always)]
     fn trial_axial<R: Real>(&self, stress: R, state: &PlasticState<R>) -> Trial<R> {
-        let zero = stress.like(0.0);
+        let zero = stress.splat(0.0);
         let inverse_yield = state.yield_stress.inverse();
         let inverse2 = inverse_yield * inverse_yield;
         Trial {
@@ -85,11 +85,11 @@ impl ElastoPlastic {
         let half = plastic_axial * 0.5;
         state.thinning -= state.thinning * (half * (half * -0.5 + 1.0));
         state.inverse_thinning += state.inverse_thinning * (half * (half * 0.5 + 1.0));
-        let large = half.abs().above(half.like(5e-6)) & wanted;
+        let large = half.abs().simd_gt(half.splat(5e-6)) & wanted;
         if large.any() {
             let thinning = (state.axial * -0.5).exp();
-            state.thinning = R::choose(large, thinning, state.thinning);
-            state.inverse_thinning = R::choose(large, thinning.inverse(), state.inverse_thinning);
+            state.thinning = R::select(large, thinning, state.thinning);
+            state.inverse_thinning = R::select(large, thinning.inverse(), state.inverse_thinning);
         }
         (state.yield_stress, state.slope) = self.hardening.evaluate(state.equivalent);
     }
@@ -183,7 +183,7 @@ impl BondLaw for ElastoPlastic {
         let trial = self.trial(shape, force, state, &section, &k, stress, step.length);
         let outside = trial.outside() & live;
         force.axial = stress * section.area;
-        let zero = stress.like(0.0);
+        let zero = stress.splat(0.0);
         if !outside.any() {
             return zero;
         }
@@ -202,9 +202,9 @@ impl BondLaw for ElastoPlastic {
         flowed.axial = self.axial_force(shape, &history, step.log_strain);
         let thinner = history.thinning * state.inverse_thinning;
         let work = work + soften(&mut flowed, &compliance, &self.stiffness(shape, &history), thinner);
-        *force = BondForce::choose(outside, &flowed, force);
-        *state = PlasticState::choose(outside, &history, state);
-        R::choose(outside, work, zero)
+        *force = BondForce::select(outside, &flowed, force);
+        *state = PlasticState::select(outside, &history, state);
+        R::select(outside, work, zero)
     }
 
     #[inline(always)]
@@ -222,7 +222,7 @@ impl BondLaw for ElastoPlastic {
         let outside = trial.outside() & live;
         let before = force.axial;
         force.axial = stress * section.area;
-        let zero = stress.like(0.0);
+        let zero = stress.splat(0.0);
         if !outside.any() {
             return zero;
         }
@@ -231,9 +231,9 @@ impl BondLaw for ElastoPlastic {
         let work = (before + stress * end.axial * section.area) * 0.5 * step.length * plastic_axial;
         let mut history = *state;
         self.advance(&mut history, plastic_axial, end.equivalent, outside);
-        force.axial = R::choose(outside, self.axial_force(shape, &history, step.log_strain), force.axial);
-        *state = PlasticState::choose(outside, &history, state);
-        R::choose(outside, work, zero)
+        force.axial = R::select(outside, self.axial_force(shape, &history, step.log_strain), force.axial);
+        *state = PlasticState::select(outside, &history, state);
+        R::select(outside, work, zero)
     }
 
     #[inline(always)]

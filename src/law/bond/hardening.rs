@@ -52,7 +52,7 @@ impl Hardening {
         match self {
             Hardening::Voce { yield_stress, saturation, rate, linear } => {
                 let decay = (p * -rate).exp();
-                let stress = p.like(1.0) - decay;
+                let stress = p.splat(1.0) - decay;
                 (stress * *saturation + *yield_stress + p * *linear, decay * (saturation * rate) + *linear)
             }
             Hardening::Swift { strength, prestrain, exponent } => {
@@ -62,8 +62,8 @@ impl Hardening {
             }
             Hardening::Ludwik { yield_stress, strength, exponent } => {
                 // The slope of p^n is infinite at p = 0; the secant over the first 1e-8 stands in for it there.
-                let p_slope = p.greater(p.like(1e-8));
-                let least = p.greater(p.like(f64::MIN_POSITIVE));
+                let p_slope = p.simd_max(p.splat(1e-8));
+                let least = p.simd_max(p.splat(f64::MIN_POSITIVE));
                 (
                     least.powf(*exponent) * *strength + *yield_stress,
                     p_slope.powf(exponent - 1.0) * (exponent * strength),

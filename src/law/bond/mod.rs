@@ -107,8 +107,8 @@ fn square<R: Real>(v: [R; 2]) -> R {
 }
 
 #[inline(always)]
-fn choose_both<R: Real>(mask: R::Mask, yes: [R; 2], no: [R; 2]) -> [R; 2] {
-    [R::choose(mask, yes[0], no[0]), R::choose(mask, yes[1], no[1])]
+fn select_both<R: Real>(mask: R::Mask, yes: [R; 2], no: [R; 2]) -> [R; 2] {
+    [R::select(mask, yes[0], no[0]), R::select(mask, yes[1], no[1])]
 }
 
 impl<R: Real> BondForce<R> {
@@ -126,12 +126,12 @@ impl<R: Real> BondForce<R> {
 
     /// `yes` where the mask holds, `no` elsewhere.
     #[inline(always)]
-    pub fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+    pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         Self {
-            axial: R::choose(mask, yes.axial, no.axial),
-            shear: choose_both(mask, yes.shear, no.shear),
-            bend: choose_both(mask, yes.bend, no.bend),
-            twist: R::choose(mask, yes.twist, no.twist),
+            axial: R::select(mask, yes.axial, no.axial),
+            shear: select_both(mask, yes.shear, no.shear),
+            bend: select_both(mask, yes.bend, no.bend),
+            twist: R::select(mask, yes.twist, no.twist),
         }
     }
 }

@@ -57,7 +57,7 @@ impl<R: Real> Trial<R> {
     #[inline(always)]
     pub fn outside(&self) -> R::Mask {
         let reached = self.axial * self.axial + self.bend + self.twist * self.twist + self.shear * self.shear;
-        reached.above(reached.like(1.0))
+        reached.simd_gt(reached.splat(1.0))
     }
 
     /// Newton on z = x (σ_y₀/σ_y)², in which the return has no division by the growth of σ_y: 1/growth is 1 − hz.
@@ -70,16 +70,16 @@ impl<R: Real> Trial<R> {
     /// A law as steep as Ludwik's at first yield needs that.
     #[inline(always)]
     pub fn solve(&self, wanted: R::Mask) -> Return<R> {
-        let one = self.axial.like(1.0);
-        let zero = self.axial.like(0.0);
+        let one = self.axial.splat(1.0);
+        let zero = self.axial.splat(0.0);
         // Plastic work per x is 2 − m on the surface. Hardening within the step takes m from the trial: what that
         // leaves out is of second order in the step, and the next step starts from σ_y(p) again.
-        let h = self.hardening_rate * (-self.bend.lesser(one) + 2.0);
+        let h = self.hardening_rate * (-self.bend.simd_min(one) + 2.0);
         let (n2, t2, v2) = (self.axial * self.axial, self.twist * self.twist, self.shear * self.shear);
         let fall = n2 * (h + self.axial_rate) + t2 * (h + self.twist_rate) + v2 * (h + self.shear_rate);
         let size2 = n2 + t2 + v2;
         let size = size2 * size2.inverse_sqrt();
-        let start = ((size - 1.0) * size2 * fall.inverse()).greater(zero);
+        let start = ((size - 1.0) * size2 * fall.inverse()).simd_max(zero);
         let mut z = self.within_range(h, zero, start);
         let mut open = wanted;
         for round in 0..=60 {
@@ -87,7 +87,7 @@ impl<R: Real> Trial<R> {
             let f =
                 point.axial * point.axial + point.bend + point.twist * point.twist + point.shear * point.shear - 1.0;
             if round > 0 {
-                open = open & !one.above(f.abs() * 1e10);
+                open = open & !one.simd_gt(f.abs() * 1e10);
                 if !open.any() {
                     return self.end(z, &point);
                 }
@@ -95,10 +95,10 @@ impl<R: Real> Trial<R> {
             let slope = fall_of(point.axial, self.axial_rate, point.soft[0], h)
                 + fall_of(point.twist, self.twist_rate, point.soft[1], h)
                 + fall_of(point.shear, self.shear_rate, point.soft[2], h);
-            let bent = point.bend.above(zero);
-            let falls = slope * 2.0 + R::choose(bent, self.bend * h + self.bend_rate, zero);
-            let next = self.within_range(h, z, (z + f * falls.inverse()).greater(zero));
-            z = R::choose(open, next, z);
+            let bent = point.bend.simd_gt(zero);
+            let falls = slope * 2.0 + R::select(bent, self.bend * h + self.bend_rate, zero);
+            let next = self.within_range(h, z, (z + f * falls.inverse()).simd_max(zero));
+            z = R::select(open, next, z);
         }
         self.end(z, &self.at(h, z))
     }
@@ -106,14 +106,14 @@ impl<R: Real> Trial<R> {
     /// `next`, or half way from `last` to the end of the range of z where it lies beyond that.
     #[inline(always)]
     fn within_range(&self, h: R, last: R, next: R) -> R {
-        let far = (next * h).above((last * h + 1.0) * 0.5);
-        if far.any() { R::choose(far, (last + h.inverse()) * 0.5, next) } else { next }
+        let far = (next * h).simd_gt((last * h + 1.0) * 0.5);
+        if far.any() { R::select(far, (last + h.inverse()) * 0.5, next) } else { next }
     }
 
     /// The stress point at `z`, relative to the yield values that belong to it.
     #[inline(always)]
     fn at(&self, h: R, z: R) -> Point<R> {
-        let shrink = z.like(1.0) - h * z;
+        let shrink = z.splat(1.0) - h * z;
         // The axial mode apart, so that it has the same bits without the others; two inverses from one division.
         let axial = (z * self.axial_rate + 1.0).inverse();
         let (twist, shear) = (z * self.twist_rate + 1.0, z * self.shear_rate + 1.0);
@@ -125,23 +125,23 @@ impl<R: Real> Trial<R> {
             axial: self.axial * shrink * soft[0],
             twist: self.twist * shrink * soft[1],
             shear: self.shear * shrink * soft[2],
-            bend: (self.bend * shrink - z * self.bend_rate).greater(z.like(0.0)),
+            bend: (self.bend * shrink - z * self.bend_rate).simd_max(z.splat(0.0)),
         }
     }
 
     /// What becomes of the trial values at the answer.
     #[inline(always)]
     fn end(&self, z: R, point: &Point<R>) -> Return<R> {
-        let zero = z.like(0.0);
-        let bent = point.bend.above(zero);
-        let bend = R::choose(bent, self.bend, z.like(1.0));
+        let zero = z.splat(0.0);
+        let bent = point.bend.simd_gt(zero);
+        let bend = R::select(bent, self.bend, z.splat(1.0));
         let inverse = (point.shrink * bend).inverse();
         let growth = inverse * bend;
         Return {
             axial: point.soft[0],
             twist: point.soft[1],
             shear: point.soft[2],
-            bend: R::choose(bent, point.bend * inverse, zero),
+            bend: R::select(bent, point.bend * inverse, zero),
             equivalent: z * (-point.bend + 2.0) * self.inverse_yield * growth,
         }
     }

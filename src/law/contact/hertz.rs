@@ -21,7 +21,7 @@ pub(super) fn hertzian<R: Real>(effective_modulus: f64, radius_squared: R, overl
         stiffness: radius * (2.0 * effective_modulus),
         radius,
         inverse_radius,
-        plastic_work: overlap.like(0.0),
+        plastic_work: overlap.splat(0.0),
     }
 }
 
@@ -44,7 +44,7 @@ impl NormalLaw for Hertz {
 
     #[inline(always)]
     fn response<R: Real>(&self, (): &mut (), reduced_radius: R, overlap: R) -> NormalResponse<R> {
-        let overlap = overlap.greater(overlap.like(0.0));
+        let overlap = overlap.simd_max(overlap.splat(0.0));
         hertzian(self.effective_modulus, reduced_radius * overlap, overlap)
     }
 

@@ -155,12 +155,12 @@ const BEYOND: [f64; 2] = [-0.061_356_565_352_632_15, 0.107_226_905_224_402_29];
 /// Force per length over k δ_y at overlap x δ_y on the limit (-).
 #[inline(always)]
 fn limit<R: Real>(x: R) -> R {
-    let one = x.like(1.0);
-    let inverse_root = x.greater(one).inverse_sqrt();
+    let one = x.splat(1.0);
+    let inverse_root = x.simd_max(one).inverse_sqrt();
     let (root, y) = (x * inverse_root, inverse_root * inverse_root);
     let [c, d] = BEYOND;
-    let series = y * y.mul_add(y.mul_add((y * y).mul_add(y.like(d), y.like(c)), y.like(0.05)), y.like(1.0 / 3.0));
-    R::choose(x.above(one), root * FRAC_2_PI * (y.like(2.0) - series), x)
+    let series = y * y.mul_add(y.mul_add((y * y).mul_add(y.splat(d), y.splat(c)), y.splat(0.05)), y.splat(1.0 / 3.0));
+    R::select(x.simd_gt(one), root * FRAC_2_PI * (y.splat(2.0) - series), x)
 }
 
 /// Plastic work per length over k δ_y² done on the way to x along the limit (-): ∫ f dδ − f²/(2k).
@@ -284,7 +284,7 @@ impl<R: Real> CellGap<R> {
     /// Where the middle of cell `q` lies, in bonds (-).
     #[inline(always)]
     pub fn place(&self, q: usize) -> R {
-        self.width.mul_add(self.width.like(q as f64 + 0.5), self.first)
+        self.width.mul_add(self.width.splat(q as f64 + 0.5), self.first)
     }
 
     /// Overlap there (m).
@@ -327,7 +327,7 @@ pub fn respond_cells<R: Real>(
     greatest: &mut [R; CELLS],
 ) -> CellResponse<R> {
     let k = gap.stiffness;
-    let zero = k.like(0.0);
+    let zero = k.splat(0.0);
     let mut sum = CellResponse { moments: [zero; 3], stiffness: zero, energy: zero, plastic_work: zero };
     let compliance = k.inverse();
     let elastic = pressure.is_infinite();
@@ -341,17 +341,17 @@ pub fn respond_cells<R: Real>(
         let depth = gap.depth(u);
         let length = gap.length * share[q];
         let before = greatest[q];
-        let after = before.greater(depth);
-        let mut above = depth.greater(zero);
+        let after = before.simd_max(depth);
+        let mut above = depth.simd_max(zero);
         if !elastic {
             greatest[q] = after;
-            let yielded = after.above(limit_overlap);
+            let yielded = after.simd_gt(limit_overlap);
             if yielded.any() {
                 // Both over k.
                 let (first, last) = (limit(before * inverse) * limit_overlap, limit(after * inverse) * limit_overlap);
-                let dent = R::choose(yielded, (after - before) - (last - first), zero);
+                let dent = R::select(yielded, (after - before) - (last - first), zero);
                 sum.plastic_work = (length * k * (first + last) * 0.5).mul_add(dent, sum.plastic_work);
-                above = R::choose(yielded, (last - (after - depth)).greater(zero), above);
+                above = R::select(yielded, (last - (after - depth)).simd_max(zero), above);
             }
         }
         let force = above * k;
@@ -359,7 +359,7 @@ pub fn respond_cells<R: Real>(
         let along = push * u;
         sum.moments = [sum.moments[0] + push, sum.moments[1] + along, along.mul_add(u, sum.moments[2])];
         sum.energy = (push * force * 0.5).mul_add(compliance, sum.energy);
-        sum.stiffness += R::choose(force.above(zero), length * k, zero);
+        sum.stiffness += R::select(force.simd_gt(zero), length * k, zero);
     }
     sum
 }

@@ -39,11 +39,11 @@ pub struct ThorntonState<R = f64> {
 
 impl<R: Real> ThorntonState<R> {
     #[inline(always)]
-    fn choose(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+    fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         Self {
-            greatest_overlap: R::choose(mask, yes.greatest_overlap, no.greatest_overlap),
-            dent_radius: R::choose(mask, yes.dent_radius, no.dent_radius),
-            residual_overlap: R::choose(mask, yes.residual_overlap, no.residual_overlap),
+            greatest_overlap: R::select(mask, yes.greatest_overlap, no.greatest_overlap),
+            dent_radius: R::select(mask, yes.dent_radius, no.dent_radius),
+            residual_overlap: R::select(mask, yes.residual_overlap, no.residual_overlap),
         }
     }
 }
@@ -90,12 +90,12 @@ impl Thornton {
     /// `force` (N); through Hertz's curve if `before` has not yielded (J).
     #[inline(always)]
     fn lost<R: Real>(&self, before: &ThorntonState<R>, after: &ThorntonState<R>, force: R, reduced_radius: R) -> R {
-        let zero = reduced_radius.like(0.0);
-        let dented = before.greatest_overlap.above(zero);
+        let zero = reduced_radius.splat(0.0);
+        let dented = before.greatest_overlap.simd_gt(zero);
         // The plastic line begins at first yield, where everything is stored.
-        let from = R::choose(dented, before.greatest_overlap, self.yield_overlap(reduced_radius));
+        let from = R::select(dented, before.greatest_overlap, self.yield_overlap(reduced_radius));
         let force_there = self.plastic_force(reduced_radius, from);
-        let stored = R::choose(dented, Self::recoverable(before, force_there), force_there * from * 0.4);
+        let stored = R::select(dented, Self::recoverable(before, force_there), force_there * from * 0.4);
         let work = (force_there + force) * 0.5 * (after.greatest_overlap - from);
         work - (Self::recoverable(after, force) - stored)
     }
@@ -103,16 +103,16 @@ impl Thornton {
     /// Whether the contact loads plastically at `overlap` with this history.
     #[inline(always)]
     fn yields<R: Real>(&self, state: &ThorntonState<R>, reduced_radius: R, overlap: R) -> R::Mask {
-        overlap.above(state.greatest_overlap) & overlap.above(self.yield_overlap(reduced_radius))
+        overlap.simd_gt(state.greatest_overlap) & overlap.simd_gt(self.yield_overlap(reduced_radius))
     }
 
     /// Radius and shift of the Hertzian curve on which the contact moves while it does not yield: (R*, 0) before
     /// first yield, (R_p, δ_p) after it.
     #[inline(always)]
     fn elastic_curve<R: Real>(state: &ThorntonState<R>, reduced_radius: R) -> (R, R) {
-        let zero = reduced_radius.like(0.0);
-        let dented = state.greatest_overlap.above(zero);
-        (R::choose(dented, state.dent_radius, reduced_radius), R::choose(dented, state.residual_overlap, zero))
+        let zero = reduced_radius.splat(0.0);
+        let dented = state.greatest_overlap.simd_gt(zero);
+        (R::select(dented, state.dent_radius, reduced_radius), R::select(dented, state.residual_overlap, zero))
     }
 }
 
@@ -135,12 +135,12 @@ impl NormalLaw for Thornton {
 
     #[inline(always)]
     fn response<R: Real>(&self, state: &mut ThorntonState<R>, reduced_radius: R, overlap: R) -> NormalResponse<R> {
-        let zero = overlap.like(0.0);
+        let zero = overlap.splat(0.0);
         let yields = self.yields(state, reduced_radius, overlap);
         let (radius, shift) = Self::elastic_curve(state, reduced_radius);
-        let elastic = (overlap - shift).greater(zero);
+        let elastic = (overlap - shift).simd_max(zero);
         // One root serves both branches.
-        let a2 = R::choose(yields, reduced_radius * overlap, radius * elastic);
+        let a2 = R::select(yields, reduced_radius * overlap, radius * elastic);
         let answer = hertzian(self.effective_modulus, a2, elastic);
         if !yields.any() {
             return answer;
@@ -148,11 +148,11 @@ impl NormalLaw for Thornton {
         let force = self.plastic_force(reduced_radius, overlap);
         let after = self.curve_from(overlap, force, a2, answer.inverse_radius);
         let plastic_work = self.lost(state, &after, force, reduced_radius);
-        *state = ThorntonState::choose(yields, &after, state);
+        *state = ThorntonState::select(yields, &after, state);
         NormalResponse {
-            force: R::choose(yields, force, answer.force),
-            stiffness: R::choose(yields, self.slope(reduced_radius), answer.stiffness),
-            plastic_work: R::choose(yields, plastic_work, zero),
+            force: R::select(yields, force, answer.force),
+            stiffness: R::select(yields, self.slope(reduced_radius), answer.stiffness),
+            plastic_work: R::select(yields, plastic_work, zero),
             ..answer
         }
     }

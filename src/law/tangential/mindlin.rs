@@ -64,23 +64,23 @@ impl TangentialLaw for Mindlin {
 
     #[inline(always)]
     fn response<R: Real>(&self, state: &mut MindlinState<R>, input: &TangentialInput<R>) -> TangentialResponse<R> {
-        let (zero, one) = (input.radius.like(0.0), input.radius.like(1.0));
-        let touches = input.normal_force.above(zero) & input.radius.above(zero);
+        let (zero, one) = (input.radius.splat(0.0), input.radius.splat(1.0));
+        let touches = input.normal_force.simd_gt(zero) & input.radius.simd_gt(zero);
         let energy = self.stored(state);
         let stiffness = input.radius * (8.0 * self.shear_modulus_star);
         let cap = input.normal_force * self.friction;
         // A radius that has not changed must not wear the pull away by rounding.
         let ratio = input.radius * state.inverse_radius;
-        let kept = R::choose(ratio.above(one - 1e-14), one, ratio);
+        let kept = R::select(ratio.simd_gt(one - 1e-14), one, ratio);
         let before = held_to(turn(state.pull, input.normal) * kept, cap);
         let pull = held_to(before + input.slip * stiffness, cap);
-        state.pull = Triple::choose(touches, pull, Triple::zero(zero));
-        state.inverse_radius = R::choose(touches, input.inverse_radius, zero);
+        state.pull = Triple::select(touches, pull, Triple::zero(zero));
+        state.inverse_radius = R::select(touches, input.inverse_radius, zero);
         let work = (before + pull).dot(input.slip) * 0.5 - (self.stored(state) - energy);
         TangentialResponse {
             pull: state.pull,
-            stiffness: R::choose(touches, stiffness, zero),
-            friction_work: R::choose(touches, work, energy),
+            stiffness: R::select(touches, stiffness, zero),
+            friction_work: R::select(touches, work, energy),
         }
     }
 

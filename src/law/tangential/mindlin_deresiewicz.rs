@@ -185,7 +185,7 @@ impl TangentialLaw for MindlinDeresiewicz {
     /// One contact after the other: their branches differ.
     #[inline(always)]
     fn response<R: Real>(&self, state: &mut Numbers<R>, input: &TangentialInput<R>) -> TangentialResponse<R> {
-        let zero = input.radius.like(0.0);
+        let zero = input.radius.splat(0.0);
         let mut out = TangentialResponse { pull: Triple::zero(zero), stiffness: zero, friction_work: zero };
         for k in 0..R::COUNT {
             let mut own = MindlinDeresiewiczState::from_numbers(&state.map(|number| number.at(k)));

@@ -86,15 +86,15 @@ pub fn turn<R: Real>(stored: Triple<R>, normal: Triple<R>) -> Triple<R> {
     // √(before/after) in one root, where the plane has turned: a plane at rest leaves the vector as it is, to the bit.
     // One so small that the product of squares leaves the number range keeps what is flat of it; one along the normal
     // has no direction left, and flat is zero.
-    let turned = before.above(after * (1.0 + 4.0 * f64::EPSILON)) & both.above(both.like(1e-290));
-    flat * R::choose(turned, before * both.inverse_sqrt(), both.like(1.0))
+    let turned = before.simd_gt(after * (1.0 + 4.0 * f64::EPSILON)) & both.simd_gt(both.splat(1e-290));
+    flat * R::select(turned, before * both.inverse_sqrt(), both.splat(1.0))
 }
 
 /// `vector` scaled back to the length `cap` where it is longer.
 #[inline(always)]
 pub(crate) fn held_to<R: Real>(vector: Triple<R>, cap: R) -> Triple<R> {
     let square = vector.length_squared();
-    vector * R::choose(square.above(cap * cap), cap * square.inverse_sqrt(), cap.like(1.0))
+    vector * R::select(square.simd_gt(cap * cap), cap * square.inverse_sqrt(), cap.splat(1.0))
 }
 
 #[cfg(test)]

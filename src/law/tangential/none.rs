@@ -23,7 +23,7 @@ impl TangentialLaw for Frictionless {
 
     #[inline(always)]
     fn response<R: Real>(&self, (): &mut (), input: &TangentialInput<R>) -> TangentialResponse<R> {
-        let zero = input.radius.like(0.0);
+        let zero = input.radius.splat(0.0);
         TangentialResponse { pull: Triple::zero(zero), stiffness: zero, friction_work: zero }
     }
 
