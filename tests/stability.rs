@@ -30,7 +30,7 @@ fn refusals_say_what_is_wrong() {
         ("overlap-same-place", ["overlap", "apart"]),
         ("overlap-strand-20%", ["overlap", "lay"]),
         ("softening", ["softening", "localise"]),
-        ("softening-linear", ["linear", "bond.hardening"]),
+        ("softening-linear", ["linear", "zero or more"]),
     ] {
         let cases = select(&[case.to_string()]).unwrap();
         let reports = run_all(&cases, true, 1, &AtomicBool::new(false), &|_| {});

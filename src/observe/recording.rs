@@ -162,8 +162,7 @@ impl Observer for Recording {
     }
 
     fn notice(&mut self, notice: &Notice) -> Result<()> {
-        self.run()?.notice(notice);
-        Ok(())
+        self.run()?.notice(notice)
     }
 
     fn peaks(&mut self, peaks: &Peaks) -> Result<()> {

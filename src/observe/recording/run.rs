@@ -106,9 +106,10 @@ impl Run {
         self.summariser.peaks(peaks)
     }
 
-    pub fn notice(&mut self, notice: &Notice) {
+    pub fn notice(&mut self, notice: &Notice) -> Result<()> {
         self.marks.add_notice(notice);
         self.headline.notice(notice);
+        self.summariser.notice(notice)
     }
 
     /// Sends the rest, and what only the end knows: the result, and a layout whose close view looks at the place of

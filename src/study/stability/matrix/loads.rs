@@ -71,7 +71,7 @@ fn speeds() -> Vec<Case> {
         "stop.strain=",
         "stop.time=60 us",
     ];
-    let fast = &[FindingKind::KineticEnergy];
+    let fast = &[FindingKind::TooShort];
     vec![
         pulled(0.1, "").quick(["stop.strain=1 %"]).gives(pulled_strand),
         pulled(1.0, "").gives(pulled_strand),
