@@ -366,6 +366,18 @@ fn a_run_away_stops_with_its_results_kept() {
     assert!(summary["warnings"][0].as_str().unwrap().contains("stopped at step"), "{}", summary["warnings"]);
 }
 
+/// A device that takes nothing, as a full disk does.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_printed_does_not_end_well() {
+    for arguments in [&["scene", "show", "ka4"][..], &["scene", "keys"], &["completions", "bash"]] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_strandsnap")).args(arguments).stdout(full).output().unwrap();
+        assert_code(&output, 1);
+        assert!(stderr(&output).contains("standard output"), "{}", stderr(&output));
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_reader_who_has_gone_is_no_trouble() {

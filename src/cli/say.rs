@@ -1,12 +1,22 @@
 //! Printing that survives a reader who has gone, as in `strandsnap scene list | head -1`.
 
+use crate::base::error::Error;
 use std::fmt::Arguments;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 /// Prints to standard output. `println!` would panic when nobody reads any more; results are in files by then, so
-/// there is nothing to save.
+/// there is nothing to save. Anything else that is refused, such as a full disk behind a redirection, ends the program:
+/// half of a scene or of a table must not look whole.
 pub fn print(text: Arguments) {
-    let _ = std::io::stdout().write_fmt(text);
+    let mut out = std::io::stdout();
+    match out.write_fmt(text).and_then(|()| out.flush()) {
+        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => {
+            let error = Error::io("cannot write", "standard output", cause);
+            eprintln!("{error}");
+            std::process::exit(i32::from(error.exit_code()));
+        }
+        _ => {}
+    }
 }
 
 /// Like `println!`, but see [`print`].
