@@ -14,7 +14,7 @@ use strandsnap::scene::caution::cautions;
 
 /// Steps until `steps`, or until it fails.
 fn until_it_fails(engine: &mut Engine, steps: u64) -> Option<Error> {
-    (0..steps).find_map(|_| engine.step().err()).or_else(|| engine.inspect().err())
+    (0..steps).find_map(|_| engine.step().err()).or_else(|| engine.check_crossings().err())
 }
 
 fn texts(engine: &mut Engine) -> Vec<String> {
@@ -299,7 +299,7 @@ fn wires_that_meet_and_part_do_not_stop_it() {
     run_steps(&mut engine, 300);
     let deep = texts(&mut engine);
     assert!(deep.len() == 1 && deep[0].contains("of the radius deep"), "{deep:?}");
-    engine.inspect().unwrap();
+    engine.check_crossings().unwrap();
 }
 
 /// A wire that bends, in a plan that left the bending out.

@@ -7,7 +7,7 @@ use crate::{Args, memory};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 use strandsnap::base::error::Result;
-use strandsnap::engine::bytes::StageBytes;
+use strandsnap::engine::memory::StageBytes;
 use strandsnap::engine::{Engine, Timings};
 use strandsnap::run::cost::cpu_time;
 use strandsnap::run::{assemble, in_pool};

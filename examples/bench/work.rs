@@ -5,7 +5,7 @@ use crate::counted::{Counted, Operations, count};
 use strandsnap::base::triple::Triple;
 use strandsnap::engine::Engine;
 use strandsnap::engine::bonds::trial::Trial;
-use strandsnap::engine::pair::{History, Laws, Meeting, meet};
+use strandsnap::engine::contact::pair::{History, Laws, Meeting, meet};
 use strandsnap::law::bond::elastic::Elastic;
 use strandsnap::law::bond::elasto_plastic::ElastoPlastic;
 use strandsnap::law::bond::{BondLaw, Moduli};

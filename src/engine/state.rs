@@ -176,7 +176,7 @@ impl State {
     }
 
     /// Makes room for what contacts do.
-    pub fn meet_contacts(&mut self) {
+    pub fn make_room_for_contacts(&mut self) {
         self.contact_force = Vectors::zeros(self.len());
         self.contact_torque = Vectors::zeros(self.len());
     }

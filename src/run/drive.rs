@@ -173,7 +173,7 @@ impl Driver<'_, '_> {
             self.engine.step()?;
             self.look()?;
         };
-        self.engine.inspect()?;
+        self.engine.check_crossings()?;
         if self.shown != Some(self.engine.steps()) {
             self.show()?;
         }
@@ -186,7 +186,7 @@ impl Driver<'_, '_> {
         let engine = &self.engine;
         let (strain, stress) = (engine.strain(), engine.stress());
         self.rule.step(engine.time(), strain, stress);
-        self.monitor.see(strain, stress, (0..engine.assembly().wires.len()).map(|w| engine.wire_stress(w)));
+        self.monitor.see(strain, stress, (0..engine.assembly().wires.len()).map(|w| engine.view().wire_stress(w)));
     }
 
     /// The guard's look at the present state; a failure is told before it is returned.

@@ -3,7 +3,7 @@
 use crate::base::error::Result;
 use crate::base::finding::StepLimit;
 use crate::engine::Engine;
-use crate::engine::bytes::StageBytes;
+use crate::engine::memory::StageBytes;
 use crate::scene::spec::{DriveSpec, Spec};
 use crate::strand::assembly::Assembly;
 use std::fmt;

@@ -108,7 +108,7 @@ impl Seen {
             rows: Vec::new(),
             ruptures: Vec::new(),
             notices: Vec::new(),
-            negligible: engine.negligible_energy(),
+            negligible: engine.info().negligible_energy,
             track: Vec::new(),
             least_bound: f64::INFINITY,
             end: Default::default(),

@@ -128,7 +128,7 @@ pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
             watched.row()?;
         }
     }
-    watched.engine.inspect()?;
+    watched.engine.check_crossings()?;
     watched.row()?;
     watched.guard.finish(true);
     watched.notices();

@@ -25,28 +25,29 @@ mod chains;
 mod chunk;
 mod curve;
 mod meeting;
+mod record;
 mod spread;
 
-use super::bytes::{Bytes, NUMBER, VECTOR, behind};
-use super::contacts::{Contacts, closing};
-use super::neighbours::{PairList, apart};
 use super::pair::{History, Laws, foreseen_stiffness, leave};
-use super::spheres::SecondSides;
-use super::state::{CHUNK, Deepest, Partial, State};
-use super::time_step::Stiffness;
+use super::spheres::second::SecondSides;
+use super::stage::{Contacts, closing};
+use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
+use crate::engine::neighbours::{PairList, apart};
+use crate::engine::state::{CHUNK, Deepest, Partial, State};
+use crate::engine::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{reduced_mass, reduced_radius};
 use crate::law::contact::line::{CELLS, LineStiffness, patch_length};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 use crate::strand::assembly::Assembly;
-use beside::Answer;
 use chains::Chains;
 use chunk::{Chunk, Work};
 use curve::{Around, Place};
 use meeting::Meets;
 use pulp::Arch;
 use rayon::prelude::*;
+use record::{Contact, Kind, Mode};
 use spread::{FarSum, NearSum, Spread};
 
 /// Movement of particles moves points of a centreline by up to this (-): the weights of a cubic, or of a quartic near an
@@ -57,86 +58,6 @@ const SPREAD: f64 = 2.2;
 /// sine of the angle times the length of a stretch, over the sum of the radii (-). Below, a patch 1 % of the radius deep
 /// has some ten cells.
 const RESOLVED: f64 = 0.25;
-
-/// What meets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
-    /// A stretch of wire against a wire.
-    Stretch,
-    /// A ball against a body.
-    Ball,
-    /// The two ends of a broken bond.
-    Ends,
-}
-
-/// How a stretch meets a wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mode {
-    /// Side by side: cells along the stretch.
-    Line,
-    /// Across: a patch around the narrowest place, which the cells would not resolve.
-    Point,
-}
-
-/// What came out for a stretch beside another wire.
-#[expect(clippy::large_enum_variant, reason = "it lives on the stack for one contact")]
-enum Touch {
-    /// Nothing touches, at a gap of `gap` (m); the foot is at `t`.
-    Apart { t: f64, gap: f64 },
-    /// They touch, or did at the last step.
-    Here {
-        answer: Answer<f64>,
-        t: f64,
-        /// Sum of the radii (m).
-        touching: f64,
-        per_length: f64,
-        /// Of the gap (1/m).
-        curvature: f64,
-    },
-}
-
-/// Particle `i` against another body near `place` of it. What a contact that is apart needs comes first, so that it takes
-/// one line of the cache: most candidates are apart.
-#[derive(Clone, Copy)]
-#[repr(C)]
-struct Contact<N: NormalLaw, T: TangentialLaw> {
-    /// Nothing can touch until [`State::travel`] has reached this (m).
-    quiet_until: f64,
-    place: Place,
-    i: u32,
-    kind: Kind,
-    mode: Mode,
-    /// Whether an end of either wire is near.
-    edge: bool,
-    /// Two pieces of one wire, one of which has not yet passed the end of the other.
-    end_to_end: bool,
-    /// Taken over by the next list.
-    taken: bool,
-    history: History<N, T>,
-    /// Greatest overlap of each cell so far (m); across, of the patch in the first.
-    dents: [f64; CELLS],
-    /// What part of each cell counted at the last step (-).
-    shares: [f64; CELLS],
-    /// Length of a cell along the undeformed wire (m).
-    cell_length: f64,
-    /// Stiffness per length (Pa), of the angle at which they came to touch: what is stored changes by work alone.
-    per_length: f64,
-    /// 2ξ√m* (√kg).
-    viscosity: f64,
-    /// Overlap at the last step, at its deepest (m).
-    overlap: f64,
-    /// Sum of the radii at the last step, less the overlap that does not count (m).
-    reach: f64,
-    /// Length of a stretch (m), and curvature of its gap (1/m), at the last step.
-    length: f64,
-    curvature: f64,
-    /// Elastic energy of the normal force (J).
-    energy: f64,
-    /// Where the force acts, in bonds from the particle (-).
-    u: f64,
-    /// Lever arms of the two sides (m).
-    arm: [f64; 2],
-}
 
 /// Contacts between smooth wires with normal law `N` and tangential law `T`.
 pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
@@ -387,7 +308,8 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             tasks.push(Chunk { meets, arch, first, contacts: own, quiet_until, near, sum, work });
         }
         (tasks, &mut *partial).into_par_iter().for_each(|(task, partial)| *partial = task.compute());
-        spread.finish(work, chains, state, T::ACTIVE);
+        let acting: Vec<&[FarSum]> = work.iter().map(|work| &work.acting[..]).collect();
+        spread.finish(&acting, chains, state, T::ACTIVE);
         let mut sum = Partial::beyond(before);
         partial.iter().for_each(|p| sum.add(p));
         *deepest = sum.deepest;

@@ -30,7 +30,7 @@ fn pull(set: &[&str], mut look: impl FnMut(&Engine)) -> Found {
     while engine.sample().bonds_broken < 2 {
         run_steps(&mut engine, 8);
         look(&engine);
-        let (energy, speed) = (engine.energy(), engine.pull_speed());
+        let (energy, speed) = (engine.energy(), engine.grip_speed());
         found.strength = found.strength.max(engine.stress());
         found.residual = found.residual.max(energy.residual().abs() / energy.work);
         found.speeds = [found.speeds[0].min(speed), found.speeds[1].max(speed)];
@@ -72,7 +72,7 @@ fn the_ledger_stays_closed_and_the_acceleration_bounded() {
     let mut before = (0.0, 2.0);
     let mut changes = 0;
     let found = pull(&[ADAPTIVE], |engine| {
-        let now = (engine.time(), engine.pull_speed());
+        let now = (engine.time(), engine.grip_speed());
         // A kick spans half of the step before as well.
         let span = now.0 - before.0 + engine.time_step();
         assert!((now.1 - before.1).abs() <= most * span, "{before:?} {now:?}");
@@ -96,7 +96,7 @@ fn after_a_rupture_it_is_slow() {
     run_while(&mut engine, |e| e.sample().bonds_broken == 0);
     let then = engine.strain();
     run_while(&mut engine, |e| e.strain() < then + 0.02);
-    assert_eq!(engine.pull_speed(), 2.0);
+    assert_eq!(engine.grip_speed(), 2.0);
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn threads_do_not_change_a_bit_of_an_adaptive_pull() {
                 [&PULL[..], &["strand.length=60 mm", "grip.adaptive={ fastest = '40 m/s', passages = 5 }"]].concat();
             let mut engine = engine(STRAND, &set);
             run_steps(&mut engine, 6000);
-            assert!(engine.pull_speed() > 3.0, "{} m/s is hardly adaptive", engine.pull_speed());
+            assert!(engine.grip_speed() > 3.0, "{} m/s is hardly adaptive", engine.grip_speed());
             Outcome::of(&mut engine)
         })
     };

@@ -9,69 +9,28 @@
 //! the first sides to its own particles; the second sides are left as actions, which the gathering of all forces adds
 //! up ([`SecondSides`]).
 
+mod block;
 mod kernel;
-mod second;
+pub mod second;
 
-use super::bytes::{Bytes, NUMBER, VECTOR, behind};
-use super::contacts::{Contacts, closing};
-use super::kinds::Kinds;
-use super::neighbours::PairList;
 use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
-use super::state::{BondActions, CHUNK, Deepest, Partial, State};
-use super::time_step::Stiffness;
+use super::stage::{Contacts, closing};
 use crate::base::lanes::BLOCK;
+use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
+use crate::engine::kinds::Kinds;
+use crate::engine::neighbours::PairList;
+use crate::engine::state::{BondActions, CHUNK, Deepest, Partial, State};
+use crate::engine::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{reduced_mass, reduced_radius};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
+use block::{Block, key, pair};
 use kernel::Work;
 use pulp::Arch;
 use rayon::prelude::*;
-use second::Places;
-pub use second::SecondSides;
-
-/// Pairs (i + k, j + k), k below [`BLOCK`].
-#[derive(Debug, Clone, Copy)]
-struct Block {
-    /// A multiple of [`BLOCK`].
-    i: u32,
-    j: u32,
-    /// Which of them are candidates, a bit each.
-    pairs: u16,
-    /// Its rows among the constants.
-    constants: u32,
-    /// Whether any of them touched at the last step.
-    acts: bool,
-    /// Nothing can touch until [`State::travel`] has reached this (m).
-    quiet_until: f64,
-}
-
-impl Block {
-    /// The order of blocks; see [`key`].
-    fn key(&self) -> u64 {
-        key(self.i, self.j) / BLOCK as u64
-    }
-
-    fn lanes(&self) -> impl Iterator<Item = usize> + use<> {
-        let pairs = self.pairs;
-        (0..BLOCK).filter(move |k| pairs >> k & 1 == 1)
-    }
-}
-
-/// Orders pairs by chunk of i, diagonal, i; pairs of a block share all but the last digits.
-fn key(i: u32, j: u32) -> u64 {
-    let (chunk, within) = (i as u64 / CHUNK as u64, i as u64 % CHUNK as u64);
-    chunk << 40 | u64::from(j - i) << 8 | within
-}
-
-const _: () = assert!(CHUNK == 256 && CHUNK.is_multiple_of(BLOCK), "a key has eight bits for the place in a chunk");
-
-/// The pair that a key stands for.
-fn pair(key: u64) -> [u32; 2] {
-    let i = (key >> 40) as u32 * CHUNK as u32 + (key & 0xFF) as u32;
-    [i, i + (key >> 8) as u32]
-}
+use second::{Places, SecondSides};
 
 /// Blocks with what their contacts remember: field after field of [`BLOCK`] numbers each.
 #[derive(Default)]

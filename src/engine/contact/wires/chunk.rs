@@ -3,8 +3,8 @@
 
 use super::batch::{Answers, Batch, Gaps};
 use super::meeting::{Meets, Sides};
+use super::record::{Contact, Mode};
 use super::spread::{FarSum, NearSum};
-use super::{Contact, Mode};
 use crate::engine::state::{Deepest, Partial};
 use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;

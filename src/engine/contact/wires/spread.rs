@@ -5,7 +5,6 @@
 //! give the points. Neither momentum nor energy is lost.
 
 use super::chains::Chains;
-use super::chunk::Work;
 use super::curve::{Around, spread_arc};
 use crate::engine::bytes::behind;
 use crate::engine::state::{CHUNK, State};
@@ -63,11 +62,11 @@ impl Spread {
     }
 
     /// Sorts what acts by chunk; the order within a chunk is kept.
-    fn sort(&mut self, work: &[Work]) {
+    fn sort(&mut self, acting: &[&[FarSum]]) {
         let chunk_of = |bond: u32| bond as usize / CHUNK;
         self.starts.clear();
         self.starts.resize(self.far.len().div_ceil(CHUNK) + 1, 0);
-        for act in work.iter().flat_map(|work| &work.acting) {
+        for act in acting.iter().copied().flatten() {
             self.starts[chunk_of(act.bond) + 1] += 1;
         }
         for chunk in 1..self.starts.len() {
@@ -75,8 +74,8 @@ impl Spread {
         }
         self.order.clear();
         self.order.resize(self.starts.last().copied().unwrap_or(0), [0; 2]);
-        for (list, work) in work.iter().enumerate() {
-            for (k, act) in work.acting.iter().enumerate() {
+        for (list, acts) in acting.iter().enumerate() {
+            for (k, act) in acts.iter().enumerate() {
                 let at = &mut self.starts[chunk_of(act.bond)];
                 self.order[*at] = [list as u32, k as u32];
                 *at += 1;
@@ -87,14 +86,14 @@ impl Spread {
         self.starts[0] = 0;
     }
 
-    /// Adds up what contacts do to bonds, and writes the forces and, with `turn`, the moments of all particles.
-    pub fn finish(&mut self, work: &[Work], chains: &Chains, state: &mut State, turn: bool) {
-        self.sort(work);
+    /// Adds up what contacts do to bonds (`acting`, a list per chunk), and writes the forces and, with `turn`, the moments of all particles.
+    pub fn finish(&mut self, acting: &[&[FarSum]], chains: &Chains, state: &mut State, turn: bool) {
+        self.sort(acting);
         let Self { near, far, order, starts } = self;
         far.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, far)| {
             far.fill(FarSum::default());
             for [list, k] in &order[starts[chunk]..starts[chunk + 1]] {
-                let act = &work[*list as usize].acting[*k as usize];
+                let act = &acting[*list as usize][*k as usize];
                 let sum = &mut far[act.bond as usize - chunk * CHUNK];
                 sum.acts = true;
                 sum.force.iter_mut().zip(act.force).for_each(|(sum, f)| *sum += f);

@@ -11,18 +11,20 @@
 
 mod kernel;
 mod kinematics;
+mod layout;
 pub mod trial;
 
-use super::bytes::{Bytes, NUMBER, VECTOR, behind};
-use super::kinds::Kinds;
-use super::rupture::{Criterion, RuptureCheck};
-use super::state::{BondActions, CHUNK, Partial, State};
-use super::time_step::Stiffness;
-use crate::base::lanes::{BLOCK, Real};
+use crate::base::lanes::BLOCK;
+use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
+use crate::engine::kinds::Kinds;
+use crate::engine::rupture::{Criterion, RuptureCheck};
+use crate::engine::state::{BondActions, CHUNK, Partial, State};
+use crate::engine::time_step::Stiffness;
 use crate::law::bond::{BondForce, BondLaw, BondShape, Section};
 use crate::law::damping::viscous_coefficient;
 use crate::strand::assembly::Assembly;
 use kernel::Chunk;
+use layout::{CONSTANTS, Layout, MODES, SHAPE, force, place, shape};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -52,7 +54,7 @@ pub trait Bonds: Send {
 /// Bonds with law `L`; `TURN` says whether particles turn.
 pub struct BondStage<L: BondLaw, const TURN: bool> {
     law: L,
-    /// Blocks of [`Self::FIELDS`] fields.
+    /// Blocks of [`Layout::FIELDS`] fields.
     records: Vec<f64>,
     /// Rows of the shapes and of the viscous coefficients of axial, shear (N s/m), bending, torsion (N m s), by kind of
     /// block.
@@ -67,31 +69,14 @@ pub struct BondStage<L: BondLaw, const TURN: bool> {
     arch: Arch,
 }
 
-/// Viscous coefficients of a bond.
-const MODES: usize = 4;
-/// l₀, r₀ and their inverses.
-const SHAPE: usize = 4;
-/// Rows that never change.
-const CONSTANTS: usize = SHAPE + MODES;
-
 impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
-    // Places of the fields in a block. A bond that only stretches has no frame and no force but the axial one.
-    const FRAME: usize = 0;
-    const AXIAL: usize = if TURN { 3 } else { 0 };
-    const ACROSS: usize = Self::AXIAL + 1;
-    const DASHPOT: usize = Self::ACROSS + if TURN { 5 } else { 0 };
-    const HISTORY: usize = Self::DASHPOT + 1;
-    /// 1 where the bond holds, 0 elsewhere.
-    const LIVE: usize = Self::HISTORY + L::HISTORY;
-    const FIELDS: usize = Self::LIVE + 1;
-
     /// All bonds of the assembly; `damping` is the fraction of critical per mode (-).
     pub fn new(law: L, assembly: &Assembly, damping: [f64; MODES], rupture: Option<RuptureCheck>) -> Self {
         let n = assembly.len();
         let blocks = n.div_ceil(BLOCK);
         let mut stage = Self {
             law,
-            records: vec![0.0; blocks * BLOCK * Self::FIELDS],
+            records: vec![0.0; blocks * BLOCK * Layout::<L, TURN>::FIELDS],
             constants: Kinds::default(),
             kind: Vec::with_capacity(blocks),
             damped: damping.iter().any(|d| *d > 0.0),
@@ -115,23 +100,23 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
     /// The record of a slot before any load.
     fn set_up(&mut self, slot: usize, assembly: &Assembly) {
         let initial = self.law.initial();
-        L::each_number(&initial, |k, number| self.set(slot, Self::HISTORY + k, number));
+        L::each_number(&initial, |k, number| self.set(slot, Layout::<L, TURN>::HISTORY + k, number));
         if assembly.is_bond(slot) {
-            self.set(slot, Self::LIVE, 1.0);
+            self.set(slot, Layout::<L, TURN>::LIVE, 1.0);
             if TURN {
                 let axis = (assembly.position.get(slot + 1) - assembly.position.get(slot)).normalize();
                 let e1 = axis.any_orthonormal_vector().to_array();
-                e1.into_iter().enumerate().for_each(|(k, e)| self.set(slot, Self::FRAME + k, e));
+                e1.into_iter().enumerate().for_each(|(k, e)| self.set(slot, Layout::<L, TURN>::FRAME + k, e));
             }
         }
     }
 
     fn get(&self, slot: usize, field: usize) -> f64 {
-        self.records[place(Self::FIELDS, slot, field)]
+        self.records[place(Layout::<L, TURN>::FIELDS, slot, field)]
     }
 
     fn set(&mut self, slot: usize, field: usize, number: f64) {
-        self.records[place(Self::FIELDS, slot, field)] = number;
+        self.records[place(Layout::<L, TURN>::FIELDS, slot, field)] = number;
     }
 
     fn shape(&self, slot: usize) -> BondShape {
@@ -143,36 +128,20 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
     }
 
     fn history(&self, slot: usize) -> L::State<f64> {
-        L::history(|k| self.get(slot, Self::HISTORY + k))
+        L::history(|k| self.get(slot, Layout::<L, TURN>::HISTORY + k))
     }
 
     fn force(&self, slot: usize) -> BondForce {
         if TURN {
-            force(self.get(slot, Self::AXIAL), |k| self.get(slot, Self::ACROSS + k))
+            force(self.get(slot, Layout::<L, TURN>::AXIAL), |k| self.get(slot, Layout::<L, TURN>::ACROSS + k))
         } else {
-            BondForce { axial: self.get(slot, Self::AXIAL), ..Default::default() }
+            BondForce { axial: self.get(slot, Layout::<L, TURN>::AXIAL), ..Default::default() }
         }
     }
 
     fn section(&self, slot: usize) -> Section {
         self.law.section(&self.shape(slot), &self.history(slot))
     }
-}
-
-/// Where field `field` of `slot` lies among blocks of `fields` fields.
-#[inline(always)]
-fn place(fields: usize, slot: usize, field: usize) -> usize {
-    (slot / BLOCK * fields + field) * BLOCK + slot % BLOCK
-}
-
-#[inline(always)]
-fn shape<R: Real>(number: impl Fn(usize) -> R) -> BondShape<R> {
-    BondShape { rest_length: number(0), radius: number(1), inverse_length: number(2), inverse_radius: number(3) }
-}
-
-#[inline(always)]
-fn force<R: Real>(axial: R, across: impl Fn(usize) -> R) -> BondForce<R> {
-    BondForce { axial, shear: [across(0), across(1)], bend: [across(2), across(3)], twist: across(4) }
 }
 
 /// Shape of a slot, and its coefficients 2ξ√(k m) with the reduced mass (or inertia) of the two ends.
@@ -212,7 +181,7 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
         let limit = self.rupture.as_ref().and_then(RuptureCheck::plastic_limit);
         let (x, v, w, dt, damped) = (&state.x, &state.v, &state.w, state.dt, self.damped);
         (
-            self.records.par_chunks_mut(blocks * BLOCK * Self::FIELDS),
+            self.records.par_chunks_mut(blocks * BLOCK * Layout::<L, TURN>::FIELDS),
             state.bond.data.par_chunks_mut(CHUNK * fields),
             self.partial.par_iter_mut(),
             self.due.par_iter_mut(),
@@ -247,8 +216,8 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
             released += self.law.elastic_energy(&self.shape(slot), &self.force(slot), &self.history(slot));
             // The law has booked this step up to now with the mean of old and new force; the new one never acts.
             released -= 0.5 * state.dt * power(state, slot);
-            (Self::AXIAL..Self::DASHPOT).for_each(|field| self.set(slot, field, 0.0));
-            self.set(slot, Self::LIVE, 0.0);
+            (Layout::<L, TURN>::AXIAL..Layout::<L, TURN>::DASHPOT).for_each(|field| self.set(slot, field, 0.0));
+            self.set(slot, Layout::<L, TURN>::LIVE, 0.0);
             let thinning = state.bond.get(slot, BondActions::THINNING);
             state.parted[slot] = self.shape(slot).rest_length / (thinning * thinning);
             state.whole[slot] = false;
@@ -275,7 +244,7 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     }
 
     fn axial_force(&self, slot: usize) -> f64 {
-        self.get(slot, Self::AXIAL)
+        self.get(slot, Layout::<L, TURN>::AXIAL)
     }
 
     fn plastic_strain(&self, slot: usize) -> f64 {
@@ -288,12 +257,12 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     }
 
     fn bytes(&self) -> Bytes {
-        let slots = self.records.len() / Self::FIELDS;
+        let slots = self.records.len() / Layout::<L, TURN>::FIELDS;
         let limits = self.rupture.as_ref().map_or(0, RuptureCheck::bytes);
         let checked = self.rupture.as_ref().and_then(RuptureCheck::plastic_limit).map_or(0, |_| NUMBER);
         let nodes = if TURN { 3 * VECTOR } else { 2 * VECTOR };
         // Flags are only read, the rest of a record is written back.
-        let written = Self::LIVE * NUMBER;
+        let written = Layout::<L, TURN>::LIVE * NUMBER;
         let actions = BondActions::fields_of(TURN) * NUMBER;
         Bytes {
             kept: behind(&self.records)

@@ -2,10 +2,10 @@
 
 use super::beside::{Act, Answer, Beside, ROUNDS};
 use super::meeting::Meets;
-use super::{Contact, Touch};
+use super::record::{Contact, Touch};
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
-use crate::engine::pair::{Given, History};
+use crate::engine::contact::pair::{Given, History};
 use crate::engine::state::State;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::line::CELLS;

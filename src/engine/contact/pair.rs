@@ -1,8 +1,8 @@
 //! A touching pair, or several at once: normal law, friction, damping, thinning. Shared by spheres and smooth wires.
 
-use super::state::Partial;
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
+use crate::engine::state::Partial;
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 

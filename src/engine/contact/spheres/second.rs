@@ -1,6 +1,6 @@
 //! What blocks of contacts do to their second sides, seen from the particles that these are.
 
-use super::Block;
+use super::block::Block;
 use crate::base::lanes::{BLOCK, Lanes, Real};
 use crate::engine::bytes::behind;
 use pulp::Simd;

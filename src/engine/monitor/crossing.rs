@@ -5,9 +5,9 @@
 //! when it is zero the segments have a point in common. Overlap alone shows no crossing: wires of touching spheres that
 //! are stretched by a quarter have gaps through which another wire just fits.
 
-use super::neighbours::Neighbours;
-use super::state::State;
 use crate::base::vectors::Vectors;
+use crate::engine::neighbours::Neighbours;
+use crate::engine::state::State;
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -6,7 +6,7 @@
 //! wave, slow where wires flow, and leave plastic strain uneven behind it. So the whole field is sped up and slowed down
 //! together, as it is started, and the work of that is booked ([`super::grips::Holds`]).
 
-use super::Engine;
+use super::estimates::{nominal_stress, rupture_strain};
 use super::state::State;
 use crate::scene::spec::{AdaptiveSpec, DriveSpec, Spec};
 
@@ -83,7 +83,7 @@ impl Rule {
 
 /// The speed of the pull, and where it is going.
 #[derive(Debug, Clone)]
-pub struct Pace {
+pub struct LoadingRate {
     /// Speed now (m/s).
     pub speed: f64,
     /// Its change in the last step (m/s).
@@ -95,7 +95,7 @@ pub struct Pace {
     rule: Rule,
 }
 
-impl Pace {
+impl LoadingRate {
     /// At its slow speed.
     pub fn new(rule: Rule) -> Self {
         Self { speed: rule.slow, change: 0.0, target: rule.slow, acceleration: 0.0, rule }
@@ -109,72 +109,34 @@ impl Pace {
         self.speed = if left.abs() <= most { self.target } else { self.speed + self.change };
     }
 
-    /// Heads for the speed that is right now, to be reached by the next look in `interval` (s) if it can be.
-    fn look(&mut self, ahead: Ahead, interval: f64) {
+    /// Heads for the speed that is right now, to be reached in `interval` (s), when it is asked again, if it can be.
+    pub fn aim(&mut self, ahead: Ahead, interval: f64) {
         self.target = self.rule.speed(ahead);
         // A hair more than needed, so that rounding does not keep it from arriving.
         let needed = (1.0 + 1e-6) * (self.target - self.speed).abs() / interval;
         self.acceleration = needed.min(self.rule.acceleration);
+    }
+
+    /// Time that the pull is expected to take from here to `strain` (s), by the law of the bonds alone: each wire strained as
+    /// the body, ruptures where the criterion puts them. `now` is where it stands, `area` the body's (m²).
+    pub fn time_to(&self, strain: f64, now: Ahead, spec: &Spec, area: f64) -> f64 {
+        let rule = &self.rule;
+        let part = (strain - now.strain) / f64::from(PARTS);
+        let volume = area * rule.length;
+        let (mut work, mut time) = (now.work, 0.0);
+        for k in 0..PARTS {
+            let middle = now.strain + (f64::from(k) + 0.5) * part;
+            let left = (rupture_strain(spec) - middle).max(0.0);
+            time += (part * rule.length).abs() / rule.speed(Ahead { work, strain: middle, left });
+            work += nominal_stress(spec, middle) * part * volume;
+        }
+        time
     }
 }
 
 /// Σ m s² over the particles, `share` of their z their share s of the pull's speed (kg).
 pub fn inertia(state: &State, share: impl Fn(f64) -> f64) -> f64 {
     (0..state.len()).map(|p| state.mass[p] * share(state.x.z[p]).powi(2)).sum()
-}
-
-impl Engine {
-    /// Decides how fast to pull until the next look, `steps` from now.
-    pub(super) fn choose_pace(&mut self, steps: u64) {
-        if self.holds.pace.is_none() {
-            return;
-        }
-        let ahead = Ahead { work: self.holds.work, strain: self.holds.strain(), left: self.strain_left() };
-        if let Some(pace) = &mut self.holds.pace {
-            pace.look(ahead, steps as f64 * self.next_dt);
-        }
-    }
-
-    /// Strain until the bond nearest to its limit reaches it, if it goes on at its mean rate so far (-). None is left once
-    /// a bond has broken: what then comes next is the work of waves and of neighbours that take over load, and broken
-    /// wires do not flow with the others.
-    fn strain_left(&self) -> f64 {
-        let Some(bonds) = self.bonds.as_ref().filter(|_| self.plan.rupture) else { return f64::INFINITY };
-        if self.rupture_count > 0 {
-            return 0.0;
-        }
-        let whole = (0..self.state.len()).filter(|slot| self.state.whole[*slot]);
-        let most = whole.map(|slot| bonds.utilisation(slot, &self.state)).fold(0.0, f64::max);
-        self.holds.strain() * (1.0 - most).max(0.0) / most
-    }
-
-    /// Speed of the upper grip along z now, of a pull at constant or adaptive speed (m/s); 0 of any other drive.
-    pub fn pull_speed(&self) -> f64 {
-        let drive = self.spec.grip.as_ref().map(|grip| grip.drive);
-        match (&self.holds.pace, drive) {
-            (Some(pace), _) => pace.speed,
-            (None, Some(DriveSpec::Speed(speed))) => speed,
-            _ => 0.0,
-        }
-    }
-
-    /// Time that an adaptive pull is expected to take from here to `strain` (s), by the law of the bonds alone: each wire
-    /// strained as the body, ruptures where the criterion puts them. `None` of any other drive.
-    pub fn adaptive_time(&self, strain: f64) -> Option<f64> {
-        let rule = &self.holds.pace.as_ref()?.rule;
-        let begin = self.holds.strain();
-        let part = (strain - begin) / f64::from(PARTS);
-        let volume = self.assembly.area * rule.length;
-        let mut work = self.holds.work;
-        let mut time = 0.0;
-        for k in 0..PARTS {
-            let middle = begin + (f64::from(k) + 0.5) * part;
-            let left = (self.rupture_strain() - middle).max(0.0);
-            time += (part * rule.length).abs() / rule.speed(Ahead { work, strain: middle, left });
-            work += self.nominal_stress(middle) * part * volume;
-        }
-        Some(time)
-    }
 }
 
 #[cfg(test)]
@@ -229,18 +191,18 @@ mod tests {
 
     #[test]
     fn speed_changes_steadily_and_never_faster_than_allowed() {
-        let mut pace = Pace::new(rule());
+        let mut rate = LoadingRate::new(rule());
         let (fast, interval) = (Ahead { work: 1e3, strain: 0.1, left: 1.0 }, 4e-6);
-        let mut before = pace.speed;
+        let mut before = rate.speed;
         for _ in 0..100 {
-            pace.look(fast, interval);
-            (0..64).for_each(|_| pace.advance(interval / 64.0));
-            assert!(pace.speed >= before && pace.speed - before <= 1e5 * interval * (1.0 + 1e-9));
-            before = pace.speed;
+            rate.aim(fast, interval);
+            (0..64).for_each(|_| rate.advance(interval / 64.0));
+            assert!(rate.speed >= before && rate.speed - before <= 1e5 * interval * (1.0 + 1e-9));
+            before = rate.speed;
         }
-        assert_eq!(pace.speed, 20.0);
-        pace.look(Ahead { left: 0.0, ..fast }, interval);
-        pace.advance(interval);
-        assert!((pace.change + 1e5 * interval).abs() < 1e-12, "{}", pace.change);
+        assert_eq!(rate.speed, 20.0);
+        rate.aim(Ahead { left: 0.0, ..fast }, interval);
+        rate.advance(interval);
+        assert!((rate.change + 1e5 * interval).abs() < 1e-12, "{}", rate.change);
     }
 }

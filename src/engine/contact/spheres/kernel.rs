@@ -1,9 +1,9 @@
 //! The contacts of one chunk at one step, as many at once as a register holds.
 
-use super::{Block, SphereContacts};
+use super::block::Block;
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
-use crate::engine::pair::{Given, History, Laws, Meeting, PairForce, meet};
+use crate::engine::contact::pair::{Given, History, Laws, Meeting, PairForce, meet};
 use crate::engine::state::{CHUNK, ContactSides, Deepest, Partial, Seen};
 use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
@@ -73,7 +73,7 @@ pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     pub seen: &'a Seen<'a>,
     /// The deepest contact of the run so far.
     pub deepest: Deepest,
-    /// See [`SphereContacts`].
+    /// See [`closing`](crate::engine::contact::stage::closing).
     pub closing: f64,
     pub work: Work<'a>,
 }
@@ -142,7 +142,7 @@ impl<N: NormalLaw, T: TangentialLaw> WithSimd for Chunk<'_, N, T> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
-    const FIELDS: usize = SphereContacts::<N, T>::FIELDS;
+    const FIELDS: usize = History::<N, T>::NUMBERS;
 
     /// The contacts of a block from `lane` on, as many as a register holds; tells whether one of them touches. `gap`
     /// gets the gaps of pairs that are apart, and 0 where something is remembered of a touch.

@@ -12,7 +12,7 @@
 use super::curve::blend;
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
-use crate::engine::pair::{Given, History, Laws, Meeting, press};
+use crate::engine::contact::pair::{Given, History, Laws, Meeting, press};
 use crate::law::contact::line::{CELLS, CellGap, respond_cells};
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::TangentialLaw;

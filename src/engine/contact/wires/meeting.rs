@@ -3,11 +3,11 @@
 use super::beside::Beside;
 use super::chains::Chains;
 use super::curve::{Arc, Around, Foot, Other, blend, shifted};
+use super::record::{Contact, Kind, Mode, Touch};
 use super::spread::{FarSum, NearSum};
-use super::{Contact, Kind, Mode, Touch};
 use crate::base::triple::Triple;
 use crate::base::vectors::Vectors;
-use crate::engine::pair::{Laws, Meeting, meet, press};
+use crate::engine::contact::pair::{Laws, Meeting, meet, press};
 use crate::engine::state::{Deepest, Partial, State};
 use crate::law::contact::line::{CELLS, LineResponse, LineStiffness, Stretch, respond, respond_cells};
 use crate::law::contact::{NormalLaw, NormalResponse};
