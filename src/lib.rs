@@ -23,9 +23,9 @@
 //! - [`observe`]: what is shown a run and writes it down
 //! - `render`: pictures (feature `render`)
 //! - [`run`]: one run from scene to results
-//! - [`page`]: the HTML page of a run
-//! - [`study`]: many runs
-//! - [`cli`]: the command line
+//! - [`page`]: the HTML page of a run (feature `report`)
+//! - [`study`]: many runs (feature `study`)
+//! - [`cli`]: the command line (feature `cli`)
 //!
 //! # A wire that snaps
 //!
@@ -57,11 +57,13 @@
 //! ```
 
 pub mod base;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod engine;
 pub mod law;
 pub mod manual;
 pub mod observe;
+#[cfg(feature = "report")]
 pub mod page;
 pub mod reference;
 #[cfg(feature = "render")]
@@ -69,4 +71,5 @@ pub mod render;
 pub mod run;
 pub mod scene;
 pub mod strand;
+#[cfg(feature = "study")]
 pub mod study;

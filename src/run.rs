@@ -7,6 +7,7 @@ pub mod cost;
 mod drive;
 pub mod estimate;
 pub mod folder;
+mod options;
 pub mod outputs;
 #[cfg(feature = "record")]
 pub mod record;
@@ -19,6 +20,7 @@ pub mod view;
 pub use crate::base::finding::StopReason;
 pub use crate::observe::summary::RunSummary;
 pub use drive::{Outcome, simulate, simulate_engine};
+pub use options::RunOptions;
 pub use schedule::{Due, Schedule};
 pub use stop::StopRule;
 
@@ -27,7 +29,6 @@ use crate::base::finding::Kept;
 use crate::engine::Engine;
 use crate::observe::Observer;
 use crate::observe::files::write_whole;
-use crate::observe::progress::Progress;
 use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
 use crate::observe::timings::Timings;
@@ -35,31 +36,10 @@ use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
 use folder::OutFolder;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-
-/// Where a run goes and what it writes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunOptions {
-    /// Folder of the results.
-    pub out: PathBuf,
-    /// Replace earlier results in that folder.
-    pub overwrite: bool,
-    /// Threads of the engine; `None`: as many as the machine has.
-    pub threads: Option<usize>,
-    /// Draw numbered pictures into `frames/`.
-    pub frames: bool,
-    /// Make an animation of them.
-    pub animation: Option<outputs::Animation>,
-    /// Write `recording.rrd`.
-    pub recording: bool,
-    /// Address of a Rerun viewer to stream to while running.
-    pub live: Option<String>,
-    /// Show no progress bar.
-    pub quiet: bool,
-}
 
 /// Runs a scene and writes its results; `stop` ends it cleanly after the step in progress.
 ///
@@ -89,7 +69,7 @@ pub fn run_watched(
     outputs::check(options)?;
     let assembly = assemble(scene)?;
     let bonds = assembly.bond_count();
-    let engine = Engine::new(&scene.spec, assembly)?;
+    let engine = Engine::new(&scene.spec, &scene.plan, assembly)?;
     folder.open()?;
     write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
     let written = outputs::open(options, &scene.spec, &folder)?;
@@ -116,7 +96,7 @@ pub fn summarise(scene: &Scene, watchers: Vec<&mut dyn Observer>, stop: &AtomicB
     let mut summariser = Summariser::new();
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser];
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
-    let outcome = simulate(&scene.spec, assembly, &mut observers, stop)?;
+    let outcome = simulate(&scene.spec, &scene.plan, assembly, &mut observers, stop)?;
     let closing = closing(&clock, &outcome, None, None);
     Ok(summariser.summary(&scene.spec, bonds, closing))
 }
@@ -211,10 +191,8 @@ fn drive_and_summarise(
     let spec = &job.scene.spec;
     let mut summariser = Summariser::new();
     let mut tables = Tables::new(&job.options.out);
-    let mut progress = (!job.options.quiet).then(|| Progress::new(&spec.stop));
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
-    observers.extend(progress.as_mut().map(|o| o as &mut dyn Observer));
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
     let (outcome, error) = drive::drive(engine, spec, &mut observers, stop)?;
     let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));

@@ -178,7 +178,7 @@ fn bodies_that_press_from_the_start_are_told_with_what_helps() {
     // lie deeper in each other than they were given; with enough of them what is stored is that of the curves.
     let stored = |spacing: &str| {
         let scene = load_case("rope-by-centre-points", &[spacing]);
-        Engine::new(&scene.spec, assemble(&scene).unwrap()).unwrap().energy().elastic_contacts
+        Engine::new(&scene.spec, &scene.plan, assemble(&scene).unwrap()).unwrap().energy().elastic_contacts
     };
     let [coarse, fine, finer] = ["spacing=1.5", "spacing=0.5", "spacing=0.375"].map(stored);
     assert!(said.contains(&format!("contacts hold {coarse:.2e} J")) && !said.contains("lay_radius"), "{said}");
@@ -220,7 +220,7 @@ fn a_nearly_repeated_point_does_not_bend_a_wire() {
     let line = strand::caution::deviation(&scene.spec).unwrap();
     assert!(line.contains("1 point repeats the one before it"), "{line}");
     // The slope between two strains, so that what is filtered lags behind both.
-    let mut engine = Engine::new(&scene.spec, assemble(&scene).unwrap()).unwrap();
+    let mut engine = Engine::new(&scene.spec, &scene.plan, assemble(&scene).unwrap()).unwrap();
     let mut at = |strain: f64| {
         while engine.strain() < strain {
             engine.step().unwrap();

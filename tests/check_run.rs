@@ -67,7 +67,6 @@ pub fn run_into(scene: &Scene, out: &Path) {
         animation: None,
         recording: cfg!(feature = "record"),
         live: None,
-        quiet: true,
     };
     run(scene, &options, &AtomicBool::new(false)).unwrap_or_else(|error| panic!("{error:?}"));
     strandsnap::page::write(out, None, None, false).unwrap_or_else(|error| panic!("{error:?}"));

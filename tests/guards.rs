@@ -11,6 +11,7 @@ use strandsnap::engine::Engine;
 use strandsnap::engine::view::RunInfo;
 use strandsnap::observe::Observer;
 use strandsnap::scene::caution::cautions;
+use strandsnap::scene::plan::Plan;
 
 /// Steps until `steps`, or until it fails.
 fn until_it_fails(engine: &mut Engine, steps: u64) -> Option<Error> {
@@ -167,7 +168,7 @@ fn heard(text: &str, set: &[&str]) -> (Result<strandsnap::run::Outcome>, Vec<Not
     let spec = spec(text, set);
     let mut ear = Ear::default();
     let stop = std::sync::atomic::AtomicBool::new(false);
-    let ended = strandsnap::run::simulate(&spec, assembly(&spec), &mut [&mut ear], &stop);
+    let ended = strandsnap::run::simulate(&spec, &Plan::new(&spec), assembly(&spec), &mut [&mut ear], &stop);
     (ended, ear.0)
 }
 

@@ -70,7 +70,6 @@ fn write(scene: &Scene, out: PathBuf) -> RunSummary {
         animation: None,
         recording: false,
         live: None,
-        quiet: true,
     };
     run::run(scene, &options, &AtomicBool::new(false)).unwrap()
 }

@@ -59,7 +59,6 @@ fn simulated(name: &str, overrides: &[&str]) -> TempDir {
         frames: false,
         recording: false,
         live: None,
-        quiet: true,
         animation: None,
     };
     run::run(&scene::load(name, &overrides).unwrap(), &options, &AtomicBool::new(false)).unwrap();

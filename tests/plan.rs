@@ -202,7 +202,9 @@ fn a_jaw_without_wires_says_so() {
         "{WIRE}[[wire]]\nlayer = \"outer\"\ndiameter = \"0.4 mm\"\nfrom = [\"1 mm\", \"0 mm\", \"4 mm\"]\nto = [\"1 mm\", \"0 mm\", \"6 mm\"]\n"
     );
     let spec = spec(&text, &["grip.kind=jaw", "grip.clamp_pressure=10 MPa"]);
-    let Err(error) = strandsnap::engine::Engine::new(&spec, assembly(&spec)) else { panic!("nothing is held") };
+    let Err(error) = strandsnap::engine::Engine::new(&spec, &Plan::new(&spec), assembly(&spec)) else {
+        panic!("nothing is held")
+    };
     let message = format!("{error:?}");
     assert!(message.contains("outer") && message.contains("grip"), "{message}");
 }

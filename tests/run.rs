@@ -53,7 +53,7 @@ fn pull(overrides: &[&str], observers: &mut [&mut dyn Observer], stop: bool) -> 
     let overrides: Vec<String> = overrides.iter().map(|o| o.to_string()).collect();
     let scene = scene::load("single-wire", &overrides)?;
     let assembly = run::assemble(&scene)?;
-    run::simulate(&scene.spec, assembly, observers, &AtomicBool::new(stop))
+    run::simulate(&scene.spec, &scene.plan, assembly, observers, &AtomicBool::new(stop))
 }
 
 const SHORT: [&str; 3] = ["stop.steps=300", "output.samples=30", "output.snapshots=3"];

@@ -22,7 +22,7 @@ const fn operations(simple: u32) -> Operations {
     Operations { simple: simple as f64, divisions: 0.0, roots: 0.0 }
 }
 
-/// Geometry and motion of a touching pair, force and torque of its two sides, and adding them up (engine/spheres): the
+/// Geometry and motion of a touching pair, force and torque of its two sides, and adding them up (engine/contact/spheres): the
 /// distance and its inverse, overlap, lever arms, relative velocity, products, sums of energies.
 const GEOMETRY: Operations = operations(3 + 3 + 15 + 4 + 5 + 3 + 6 + 9 + 9 + 6 + 12 + 4);
 /// Kick, drift, greatest displacement and gathering one bond on either side, per three axes (engine/integrate).

@@ -1,4 +1,4 @@
-//! The error type of the library. Each variant is one kind of trouble a user can act on; the CLI maps them to
+//! The error type of the library. Each variant is one kind of failure that a user can act on; the CLI maps them to
 //! exit codes in one place (`cli/mod.rs`).
 
 use super::finding::Stopped;

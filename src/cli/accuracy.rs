@@ -1,7 +1,7 @@
 //! `strandsnap accuracy`.
 
-use super::Ended;
 use super::cases as shared;
+use super::ended::Ended;
 use super::interrupt;
 use super::say::{self, say};
 use super::values::{SceneArgs, Seeds, duration};

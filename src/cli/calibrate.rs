@@ -1,9 +1,10 @@
 //! `strandsnap calibrate`.
 
+use super::cases;
+use super::ended::Ended;
 use super::interrupt;
 use super::say::say;
 use super::values::{SceneArgs, Seeds};
-use super::{Ended, cases};
 use crate::base::error::Result;
 use crate::observe::files::write_whole;
 use crate::reference::paper::paper;

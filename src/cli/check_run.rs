@@ -1,6 +1,6 @@
 //! `strandsnap check-run`.
 
-use super::Ended;
+use super::ended::Ended;
 use super::say::{self, say};
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;

@@ -5,12 +5,16 @@ mod animation;
 mod calibrate;
 mod cases;
 mod check_run;
+#[cfg(feature = "render")]
+mod counted;
+mod ended;
 mod export;
 mod interrupt;
 mod keys;
 mod look;
 mod manual;
 mod plan;
+mod progress;
 mod record;
 mod render;
 mod report;
@@ -26,6 +30,7 @@ mod view;
 
 use crate::base::error::Result;
 use clap::{CommandFactory, Parser, Subcommand};
+use ended::Ended;
 use std::process::ExitCode;
 
 /// Pull stranded wire until it snaps: a discrete-element engine, and the pictures that show how it fails.
@@ -78,15 +83,6 @@ enum Command {
         /// The folder; it is made if it does not exist
         folder: std::path::PathBuf,
     },
-}
-
-/// How a command ended when nothing went wrong.
-enum Ended {
-    Well,
-    /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
-    Interrupted,
-    /// A study or a check ran, and a case of it misses what it must give.
-    Missed,
 }
 
 /// What the program answers to whoever called it ([`crate::base::error::Error::exit_code`], [`Ended`]).

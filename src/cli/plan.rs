@@ -5,7 +5,6 @@ use super::scene::expected;
 use super::values::SceneArgs;
 use crate::base::error::Result;
 use crate::run::{self, cautions};
-use crate::scene::plan::Plan;
 use crate::strand;
 
 #[derive(Debug, clap::Args)]
@@ -25,7 +24,7 @@ pub fn plan(args: &Args) -> Result<()> {
         set => set.join(", "),
     };
     say!("quality: {} ({preset})\n", args.scene.quality.word());
-    say!("{}", Plan::new(&scene.spec));
+    say!("{}", scene.plan);
     if let Some(expected) = expected(&scene.spec) {
         say!("{expected}\n");
     }
@@ -33,7 +32,7 @@ pub fn plan(args: &Args) -> Result<()> {
     cautions::of_scene(&scene, &assembly)?.iter().for_each(|caution| say!("WARNING: {caution}\n"));
     strand::caution::deviation(&scene.spec).iter().for_each(|line| say!("{line}\n"));
     let threads = args.threads.map(usize::from);
-    let estimate = run::in_pool(threads, || run::estimate::estimate(&scene.spec, assembly))??;
+    let estimate = run::in_pool(threads, || run::estimate::estimate(&scene.spec, &scene.plan, assembly))??;
     say!("{estimate}");
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `strandsnap record`.
 
-use super::Ended;
+use super::ended::Ended;
 use super::run::DEFAULT_VIEWER;
 use super::select::SelectArgs;
 use crate::base::error::Result;

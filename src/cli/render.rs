@@ -1,7 +1,7 @@
 //! `strandsnap render`.
 
-use super::Ended;
 use super::animation::AnimationArgs;
+use super::ended::Ended;
 use super::look::LookArgs;
 use super::select::SelectArgs;
 use crate::base::error::Result;
@@ -36,8 +36,8 @@ pub fn render(_args: Args) -> Result<Ended> {
 
 #[cfg(feature = "render")]
 pub fn render(args: Args) -> Result<Ended> {
+    use super::counted::Counted;
     use super::say::say;
-    use crate::observe::progress::Counted;
     use crate::render::FrameWriter;
     use crate::run::replay::Replay;
     use crate::run::{folder, outputs};

@@ -1,11 +1,14 @@
 //! `strandsnap run`.
 
 use super::animation::AnimationArgs;
+use super::ended::Ended;
+use super::interrupt;
 use super::look::LookArgs;
+use super::progress::Progress;
 use super::say::say;
 use super::values::SceneArgs;
-use super::{Ended, interrupt};
 use crate::base::error::Result;
+use crate::observe::Observer;
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{ANIMATION, FRAMES, RECORDING};
 use crate::run::{self, RunOptions, RunSummary, cautions, outputs};
@@ -59,13 +62,16 @@ pub fn run(args: Args) -> Result<Ended> {
         frames: outputs::HAS_RENDER && !args.no_frames,
         recording: outputs::HAS_RECORD && !args.no_recording,
         live: args.live,
-        quiet: args.quiet,
     };
     let before = cautions::of_run(&scene, &run::assemble(&scene)?)?;
     before.iter().for_each(|caution| eprintln!("WARNING: {caution}"));
     let stop = interrupt::install()?;
-    let summary = run::run(&scene, &options, stop)?;
-    print(&summary, &options);
+    let summary = run::in_pool(options.threads, || {
+        let mut progress = (!args.quiet).then(|| Progress::new(&scene.spec.stop));
+        let watchers = progress.iter_mut().map(|bar| bar as &mut dyn Observer).collect();
+        run::run_watched(&scene, &options, watchers, stop)
+    })??;
+    print(&summary, &options, args.quiet);
     Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
 }
 
@@ -79,16 +85,16 @@ fn note_what_was_not_built(args: &Args) {
     }
 }
 
-fn print(summary: &RunSummary, options: &RunOptions) {
+fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
     for warning in &summary.warnings {
         eprintln!("WARNING: {warning}");
     }
-    if options.quiet {
+    if quiet {
         say!("{}", one_line(summary));
     } else {
         say!("{}\n{}", summary.scene, report(summary));
     }
-    if !options.quiet {
+    if !quiet {
         say!("Results are in {}:", options.out.display());
         say!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
         if options.frames {

@@ -49,7 +49,7 @@ pub fn scene(command: &Command) -> Result<()> {
 fn list() -> Result<()> {
     let width = builtin::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     for (name, _) in builtin::list() {
-        let about = builtin::about(name)?;
+        let about = crate::scene::load(name, &[])?.spec.about;
         say!("{name:width$}  {}", about.lines().collect::<Vec<_>>().join(" "));
     }
     Ok(())

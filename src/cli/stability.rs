@@ -1,7 +1,7 @@
 //! `strandsnap stability`.
 
-use super::Ended;
 use super::cases::{self, CaseArgs};
+use super::ended::Ended;
 use super::interrupt;
 use super::say::{self, say};
 use crate::base::error::Result;

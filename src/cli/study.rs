@@ -1,7 +1,7 @@
 //! `strandsnap study`.
 
-use super::Ended;
 use super::cases;
+use super::ended::Ended;
 use super::interrupt;
 use super::say::{self, say};
 use super::values::{Seeds, quality};

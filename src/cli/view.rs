@@ -1,6 +1,6 @@
 //! `strandsnap view`.
 
-use super::Ended;
+use super::ended::Ended;
 use crate::base::error::Result;
 use std::path::PathBuf;
 

@@ -23,7 +23,7 @@ mod step_choice;
 pub mod step_view;
 mod straight;
 pub mod time_step;
-pub mod timings;
+mod timings;
 mod units;
 pub mod view;
 
@@ -49,7 +49,7 @@ use state::State;
 use std::time::Instant;
 use step_view::StepView;
 use time_step::{Bound, Stiffness};
-use timings::Timings;
+pub use timings::Timings;
 use view::{Energy, Findings, RunInfo, Rupture, Sample, Snapshot};
 
 /// Revision of the physics: raised whenever a run gives other bits than before, which `tests/revision.rs` sees. Kept results
@@ -92,12 +92,12 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Sets the assembly up for its first step.
+    /// Sets the assembly up for its first step. `plan` is that of `spec` ([`Plan::new`]).
     ///
     /// # Errors
     /// When there is no stable step because nothing is stiff and the scene fixes none, or a grip holds nothing.
-    pub fn new(spec: &Spec, assembly: Assembly) -> Result<Self> {
-        Self::set_up(spec, assembly, build_bonds)
+    pub fn new(spec: &Spec, plan: &Plan, assembly: Assembly) -> Result<Self> {
+        Self::set_up(spec, plan, assembly, build_bonds)
     }
 
     /// [`Engine::new`] with a bond law of one's own in the place of the scene's, whose `bond.law` and hardening then say
@@ -105,24 +105,24 @@ impl Engine {
     ///
     /// # Errors
     /// As for [`Engine::new`].
-    pub fn with_law<L: BondLaw>(spec: &Spec, assembly: Assembly, law: L) -> Result<Self> {
-        Self::set_up(spec, assembly, |spec, plan, assembly| bond_stage(law, spec, plan, assembly))
+    pub fn with_law<L: BondLaw>(spec: &Spec, plan: &Plan, assembly: Assembly, law: L) -> Result<Self> {
+        Self::set_up(spec, plan, assembly, |spec, plan, assembly| bond_stage(law, spec, plan, assembly))
     }
 
     fn set_up(
         spec: &Spec,
+        plan: &Plan,
         assembly: Assembly,
         build_bonds: impl FnOnce(&Spec, &Plan, &Assembly) -> Box<dyn Bonds>,
     ) -> Result<Self> {
-        let plan = Plan::new(spec);
         let mut state = State::new(&assembly, plan.rotations);
         let holds = Holds::new(spec, &assembly, &mut state)?;
-        let bonds = if plan.bonds { Some(build_bonds(spec, &plan, &assembly)) } else { None };
+        let bonds = if plan.bonds { Some(build_bonds(spec, plan, &assembly)) } else { None };
         let measures = Measures::new(spec, &assembly, &holds);
         let least_radius = assembly.radius.iter().copied().fold(f64::MAX, f64::min);
         let mut engine = Self {
             spec: spec.clone(),
-            plan,
+            plan: plan.clone(),
             state,
             bonds,
             contacts: None,

@@ -6,7 +6,6 @@ pub mod limits;
 pub mod partial;
 pub mod peaks;
 pub mod planned;
-pub mod progress;
 #[cfg(feature = "record")]
 pub mod recording;
 pub mod report;

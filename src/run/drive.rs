@@ -11,6 +11,7 @@ use crate::observe::guard::{Guard, QuasiStatic};
 use crate::observe::limits::Limits;
 use crate::observe::peaks::{Monitor, Peaks};
 use crate::observe::planned::PlannedEnd;
+use crate::scene::plan::Plan;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
 use std::sync::Arc;
@@ -41,7 +42,7 @@ pub struct Outcome {
     pub observing: Duration,
 }
 
-/// Simulates an assembly and shows it to observers; writes nothing itself.
+/// Simulates the assembly of a scene and its plan, and shows it to observers; writes nothing itself.
 ///
 /// Rows and snapshots come as the scene's `output` says, in the order in which things happen; a rupture comes
 /// before the row that follows it. What a run should not be believed without comes as a notice when it is found,
@@ -54,11 +55,12 @@ pub struct Outcome {
 /// observer.
 pub fn simulate(
     spec: &Spec,
+    plan: &Plan,
     assembly: Assembly,
     observers: &mut [&mut dyn Observer],
     stop: &AtomicBool,
 ) -> Result<Outcome> {
-    simulate_engine(Engine::new(spec, assembly)?, observers, stop)
+    simulate_engine(Engine::new(spec, plan, assembly)?, observers, stop)
 }
 
 /// [`simulate`] from an engine that is set up, such as one with a bond law of its own ([`Engine::with_law`]).

@@ -4,6 +4,7 @@ use crate::base::error::Result;
 use crate::base::finding::StepLimit;
 use crate::engine::Engine;
 use crate::engine::memory::StageBytes;
+use crate::scene::plan::Plan;
 use crate::scene::spec::{DriveSpec, Spec};
 use crate::strand::assembly::Assembly;
 use std::fmt;
@@ -46,10 +47,10 @@ pub struct Estimate {
 /// Sets a run up, tries a few steps and extrapolates. Call it inside a rayon pool to choose the threads.
 ///
 /// # Errors
-/// What [`Engine::new`] refuses, and trouble in the first steps.
-pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
+/// What [`Engine::new`] refuses, and failure of the first steps.
+pub fn estimate(spec: &Spec, plan: &Plan, assembly: Assembly) -> Result<Estimate> {
     let (wires, particles, bonds) = (assembly.wires.len(), assembly.len(), assembly.bond_count());
-    let mut engine = Engine::new(spec, assembly)?;
+    let mut engine = Engine::new(spec, plan, assembly)?;
     let first_time_step = engine.time_step();
     let duration = duration(spec, &engine);
     let before = *engine.timings();

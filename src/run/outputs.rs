@@ -1,7 +1,8 @@
 //! What a run writes besides tables. The one place of this floor that knows which features were built.
 
-use super::RunOptions;
 use super::folder::{self, OutFolder};
+pub use super::options::Animation;
+use super::options::RunOptions;
 use crate::base::error::{Error, Result};
 use crate::observe::Observer;
 use crate::observe::timings::Timings;
@@ -11,7 +12,6 @@ use crate::observe::units::mm;
 #[cfg(feature = "render")]
 use crate::scene::spec::OutputSpec;
 use crate::scene::spec::Spec;
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 /// Memory for snapshots that wait to be drawn (bytes): some 500 of the main scene's, more than one run has.
@@ -46,15 +46,6 @@ pub(super) fn check(options: &RunOptions) -> Result<()> {
         check_recording(options.live.as_deref())?;
     }
     Ok(())
-}
-
-/// An animation of the frames, as it is asked for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Animation {
-    /// Its file: `.gif`, or `.png` or `.apng` for an animated PNG.
-    pub file: PathBuf,
-    /// Width, when it is to be smaller than the frames (px).
-    pub width: Option<u32>,
 }
 
 impl Animation {

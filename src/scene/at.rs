@@ -1,7 +1,8 @@
 //! A place in a scene: reads quantities there, checks their range, and words errors with key, value and line.
 
+use super::place::Part;
 use super::raw::{Scalar, Triple};
-use super::source::{Part, SceneSource};
+use super::source::SceneSource;
 use crate::base::error::{Error, Result};
 use crate::base::units::{self, Dimension};
 use glam::DVec3;

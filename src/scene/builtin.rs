@@ -72,11 +72,6 @@ pub fn find(name: &str) -> Result<&'static str> {
     }
 }
 
-/// What a built-in scene shows: its key `about`. Errors: an unknown name.
-pub fn about(name: &str) -> Result<String> {
-    Ok(super::parse(find(name)?, name, Path::new("."), &[])?.spec.about)
-}
-
 /// The error for a scene file that is not there.
 pub(super) fn no_such_file(path: &Path) -> Error {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

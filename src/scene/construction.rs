@@ -5,8 +5,7 @@
 //! of 39 mm: 5 + 11 + 17 + 23 of 0.30 mm and 4 + 10 + 16 + 22 + 29 of 0.25 mm.
 
 use super::at::{At, Range};
-use super::raw::{RawConstruction, RawStrand};
-use super::resolve_bodies::hand;
+use super::raw::{RawConstruction, RawLay, RawStrand};
 use super::spec::LayerSpec;
 use crate::base::error::Result;
 use crate::base::lay::least_radius_of_layer;
@@ -51,7 +50,7 @@ pub(super) fn layers(at: &At, raw: &RawStrand, given: &RawConstruction) -> Resul
         wire_diameter: diameter,
         lay_radius: (k == 0 && *count == 1).then_some(0.0),
         pitch,
-        lay: hand(raw.lay),
+        lay: RawLay::sign(raw.lay),
         phase: 0.0,
     };
     Ok(wires.iter().enumerate().map(layer).collect())

@@ -12,6 +12,7 @@ mod idle;
 pub mod keys;
 pub mod look;
 mod overrides;
+mod place;
 pub mod plan;
 pub mod quality;
 pub mod raw;
@@ -29,8 +30,9 @@ pub use source::SceneSource;
 use crate::base::error::{Error, Result};
 use at::At;
 use overrides::Override;
+use place::{path_at, scene_error};
+use plan::Plan;
 use serde::de::DeserializeOwned;
-use source::{path_at, scene_error};
 use spec::Spec;
 use std::path::Path;
 use toml_edit::Document;
@@ -40,6 +42,8 @@ use toml_edit::Document;
 pub struct Scene {
     /// The resolved scene.
     pub spec: Spec,
+    /// What it needs: made here, once, and handed on. Whoever changes `spec` makes it anew.
+    pub plan: Plan,
     /// Its text, for errors that later floors find.
     pub source: SceneSource,
     /// Keys that it gives without effect.
@@ -82,8 +86,9 @@ pub fn parse(text: &str, file_name: &str, folder: &Path, overrides: &[String]) -
     let raw: raw::RawScene = read_tables(&changed.to_string(), &source, "a scene")?;
     let stem = Path::new(file_name).file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
     let spec = resolve::resolve(&At::root(&source), &raw, &stem, folder)?;
-    let idle = idle::check(&source, &raw, &spec)?;
-    Ok(Scene { spec, source, idle })
+    let plan = Plan::new(&spec);
+    let idle = idle::check(&source, &raw, &spec, &plan)?;
+    Ok(Scene { spec, plan, source, idle })
 }
 
 /// Reads tables of another kind than a scene, with errors of the same kind: `whole` says what it is, "a study".
@@ -108,7 +113,7 @@ fn read_tables<T: DeserializeOwned>(text: &str, source: &SceneSource, whole: &st
     toml::from_str(text).map_err(|error| {
         let document = Document::parse(text).expect("it was read before, or toml_edit wrote it");
         let (path, part) =
-            error.span().map_or_else(|| (Vec::new(), source::Part::Value), |span| path_at(document.as_item(), &span));
+            error.span().map_or_else(|| (Vec::new(), place::Part::Value), |span| path_at(document.as_item(), &span));
         let (what, help) = in_plain_words(error.message(), &path, whole);
         source.error_at(&path, part, what, help)
     })

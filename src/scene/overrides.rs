@@ -3,7 +3,7 @@
 //! The key is a dotted path with element numbers from 0, `strand.layer.0.pitch`. The value is TOML; what is not TOML
 //! is taken as text, so that `44 mm` needs no quotes. No value at all (`bond.rupture=`) removes the key.
 
-use super::source::{Part, scene_error};
+use super::place::{Part, scene_error};
 use super::suggest::nearest;
 use crate::base::error::{Error, Result};
 use std::ops::Range;

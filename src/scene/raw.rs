@@ -344,6 +344,16 @@ pub enum RawLay {
     Left,
 }
 
+impl RawLay {
+    /// Sign of the lay; right where it is not given.
+    pub(super) fn sign(lay: Option<Self>) -> f64 {
+        match lay.unwrap_or(Self::Right) {
+            Self::Right => 1.0,
+            Self::Left => -1.0,
+        }
+    }
+}
+
 /// `[[wire]]`: either `from` and `to`, or `file`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -58,17 +58,9 @@ fn layer(at: &At, strand: &At, raw: &RawLayer, defaults: &RawStrand, index: usiz
         wire_diameter: diameter.ok_or_else(|| at.missing("wire_diameter", "\"0.39 mm\""))?,
         lay_radius,
         pitch,
-        lay: hand(raw.lay.or(defaults.lay)),
+        lay: RawLay::sign(raw.lay.or(defaults.lay)),
         phase: at.optional("phase", &raw.phase, Dimension::Angle, Range::Any)?.unwrap_or(0.0),
     })
-}
-
-/// Sign of the lay; right where it is not given.
-pub(super) fn hand(lay: Option<RawLay>) -> f64 {
-    match lay.unwrap_or(RawLay::Right) {
-        RawLay::Right => 1.0,
-        RawLay::Left => -1.0,
-    }
 }
 
 /// A length that the layer gives, or the strand for all layers.

@@ -12,7 +12,6 @@
 //! same calibration goes on where it was interrupted.
 
 use crate::base::error::{Error, Result};
-use crate::scene::plan::Plan;
 use crate::scene::spec::{BondLawSpec, HardeningSpec, RuptureCriterion};
 use crate::scene::{self, Scene};
 use crate::study::cases::measured::Measured;
@@ -72,7 +71,7 @@ pub struct Calibration<'a> {
 
 /// The seeds of a scene where the user names none: the first [`SEEDS`], or its own where its bonds do not scatter.
 pub fn default_seeds(scene: &Scene) -> Vec<u64> {
-    if Plan::new(&scene.spec).scatter { (1..=SEEDS).collect() } else { vec![scene.spec.seed] }
+    if scene.plan.scatter { (1..=SEEDS).collect() } else { vec![scene.spec.seed] }
 }
 
 /// The two numbers that are fitted.

@@ -1,6 +1,6 @@
 //! Grips and holds as they are written.
 
-use super::{Scalar, Triple};
+use super::scalar::{Scalar, Triple};
 use schemars::JsonSchema;
 use serde::Deserialize;
 

@@ -22,7 +22,6 @@ pub mod verified;
 
 use crate::base::error::{Error, Result};
 use crate::run::folder::ACCURACY_STUDY;
-use crate::scene::plan::Plan;
 use crate::scene::spec::{DriveSpec, Spec};
 use crate::scene::{self, Scene};
 use crate::study::cases::measured::Measured;
@@ -147,7 +146,7 @@ impl Subject {
         }
         let (turned, absent) = agenda::turn(&options.vary, &scene.spec);
         let mut notes = Vec::new();
-        let scatter = Plan::new(&scene.spec).scatter;
+        let scatter = scene.plan.scatter;
         let mut seeds = options.seeds.clone();
         if seeds.is_empty() && scatter && closed_form::truth(&scene).is_err() {
             seeds = (1..=SEEDS).collect();

@@ -195,7 +195,6 @@ fn written(out: &Path) -> RunOptions {
         animation: None,
         recording: outputs::HAS_RECORD,
         live: None,
-        quiet: true,
     }
 }
 

@@ -105,7 +105,7 @@ fn once(case: &Case, scene: &Scene, leash: &Leash) -> Result<Ended> {
 /// # Errors
 /// What the scene, the engine or the guard refuse.
 pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
-    let engine = Engine::new(&scene.spec, assemble(scene)?)?;
+    let engine = Engine::new(&scene.spec, &scene.plan, assemble(scene)?)?;
     let info = engine.info();
     let mut guard = Guard::new(&scene.spec.time);
     guard.start(&info);

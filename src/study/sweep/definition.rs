@@ -5,7 +5,6 @@ use super::conflicts;
 use super::quantity::{self, Quantity};
 use super::raw::{RawDesign, RawQuality, RawSeeds, RawStudy};
 use crate::base::error::{Error, Result};
-use crate::scene::plan::Plan;
 use crate::scene::quality::Quality;
 use crate::scene::spec::Spec;
 use crate::scene::suggest::nearest;
@@ -182,7 +181,7 @@ impl Definition {
         let mut seen: HashMap<String, usize> = HashMap::new();
         for point in 0..self.points.len() {
             let scene = scene::load(&self.base, &self.overrides(point, first));
-            self.scatters.push(scene.as_ref().map_or(true, |scene| Plan::new(&scene.spec).scatter));
+            self.scatters.push(scene.as_ref().map_or(true, |scene| scene.plan.scatter));
             let Ok(scene) = scene else { continue };
             // A name or a sentence makes no other run.
             let bare = Spec { name: String::new(), about: String::new(), ..scene.spec };

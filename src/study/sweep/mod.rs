@@ -104,7 +104,7 @@ pub fn costs(definition: &Definition, folder: &Path, tell: &dyn Fn(usize)) -> Re
 }
 
 fn expected(scene: &scene::Scene) -> Cost {
-    let estimate = assemble(scene).and_then(|assembly| estimate::estimate(&scene.spec, assembly));
+    let estimate = assemble(scene).and_then(|assembly| estimate::estimate(&scene.spec, &scene.plan, assembly));
     let wall = estimate.ok().and_then(|estimate| Some(estimate.steps? * estimate.step_wall));
     wall.map_or(Cost::Unknown, Cost::Takes)
 }

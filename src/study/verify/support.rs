@@ -5,6 +5,7 @@ use crate::base::error::{Error, Result};
 use crate::engine::Engine;
 use crate::reference::beam::RoundBar;
 use crate::scene;
+use crate::scene::plan::Plan;
 use crate::scene::spec::Spec;
 use crate::strand;
 use crate::strand::assembly::Assembly;
@@ -87,7 +88,7 @@ impl<'a> Lab<'a> {
     fn set_up(&self, spec: Spec, change: impl FnOnce(&mut Assembly)) -> Result<Trial<'_>> {
         let mut assembly = strand::build(&spec)?;
         change(&mut assembly);
-        let engine = Engine::new(&spec, assembly)?;
+        let engine = Engine::new(&spec, &Plan::new(&spec), assembly)?;
         Ok(Trial { spec, engine, lab: self, wall_s: 0.0 })
     }
 

@@ -54,7 +54,6 @@ fn options(out: &Path) -> RunOptions {
         animation: None,
         recording: false,
         live: None,
-        quiet: true,
     }
 }
 

@@ -5,12 +5,12 @@ use crate::strand::assembly::Layer;
 use crate::strand::error::{BuildError, BuildErrorKind, mm};
 use crate::strand::helix::Helix;
 use crate::strand::lay_radius;
-use crate::strand::resample::{self, Chain, PathTrouble};
+use crate::strand::resample::{self, Chain, PathError};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// A wire before it is put into the assembly.
-pub(super) struct Strung {
+pub(super) struct WireChain {
     /// Index into the assembly's layers.
     pub layer: usize,
     /// Diameter (m).
@@ -32,7 +32,7 @@ pub(super) fn lay_up(
     spec: &Spec,
     strand: &StrandSpec,
     layers: &mut Vec<Layer>,
-    strung: &mut Vec<Strung>,
+    chains: &mut Vec<WireChain>,
 ) -> Result<(), BuildError> {
     let radii = lay_radius::resolve(&strand.layers).map_err(|error| {
         let names: Vec<&str> = strand.layers.iter().map(|l| l.name.as_str()).collect();
@@ -53,12 +53,12 @@ pub(super) fn lay_up(
                 lay: layer.lay,
                 phase: TAU * i as f64 / layer.wires as f64 + layer.phase,
             };
-            let chain = string_helix(&helix, strand.length, spec.spacing * layer.wire_diameter).map_err(|trouble| {
-                let who = format!("wire {} (layer \"{}\")", strung.len() + 1, layer.name);
+            let chain = chain_of_helix(&helix, strand.length, spec.spacing * layer.wire_diameter).map_err(|error| {
+                let who = format!("wire {} (layer \"{}\")", chains.len() + 1, layer.name);
                 let spacing = spec.spacing * layer.wire_diameter;
-                path_error(trouble, &who, "strand.length".into(), Some(k), spacing)
+                path_error(error, &who, "strand.length".into(), Some(k), spacing)
             })?;
-            strung.push(Strung {
+            chains.push(WireChain {
                 layer: k,
                 diameter: layer.wire_diameter,
                 chain,
@@ -73,9 +73,9 @@ pub(super) fn lay_up(
 }
 
 /// Particles of a helical wire from z = 0 to `length` (m): equal steps of z are equal steps of arc.
-fn string_helix(helix: &Helix, length: f64, spacing: f64) -> Result<Chain, PathTrouble> {
+fn chain_of_helix(helix: &Helix, length: f64, spacing: f64) -> Result<Chain, PathError> {
     let arc = helix.arc_length(length);
-    let n = resample::pieces(arc, spacing).ok_or(PathTrouble::TooShort(arc))?;
+    let n = resample::pieces(arc, spacing).ok_or(PathError::TooShort(arc))?;
     Ok(Chain {
         points: (0..=n).map(|i| helix.point(length * (i as f64 / n as f64))).collect(),
         arcs: vec![arc / n as f64; n],
@@ -85,12 +85,12 @@ fn string_helix(helix: &Helix, length: f64, spacing: f64) -> Result<Chain, PathT
 }
 
 /// Wire `index` of the scene's own, in the layer of its name, which is added if there is none yet.
-pub(super) fn string_wire(
+pub(super) fn chain_of_wire(
     spec: &Spec,
     wire: &WireSpec,
     index: usize,
     layers: &mut Vec<Layer>,
-) -> Result<Strung, BuildError> {
+) -> Result<WireChain, BuildError> {
     let spacing = spec.spacing * wire.diameter;
     let (chain, who) = match &wire.path {
         PathSpec::Straight { from, to } => (resample::straight(*from, *to, spacing), format!("[[wire]] {}", index + 1)),
@@ -99,12 +99,12 @@ pub(super) fn string_wire(
         }
     };
     let key = format!("wire.{index}");
-    let chain = chain.map_err(|trouble| path_error(trouble, &who, key.clone(), None, spacing))?;
+    let chain = chain.map_err(|error| path_error(error, &who, key.clone(), None, spacing))?;
     let layer = layers.iter().position(|l| l.name == wire.layer).unwrap_or_else(|| {
         layers.push(Layer { name: wire.layer.clone(), lay_radius: 0.0, pitch: f64::INFINITY, lay: 0.0 });
         layers.len() - 1
     });
-    Ok(Strung {
+    Ok(WireChain {
         layer,
         diameter: wire.diameter,
         chain,
@@ -115,19 +115,19 @@ pub(super) fn string_wire(
     })
 }
 
-fn path_error(trouble: PathTrouble, who: &str, key: String, layer: Option<usize>, spacing: f64) -> BuildError {
-    let (kind, message, help) = match trouble {
-        PathTrouble::TooShort(length) => (
+fn path_error(error: PathError, who: &str, key: String, layer: Option<usize>, spacing: f64) -> BuildError {
+    let (kind, message, help) = match error {
+        PathError::TooShort(length) => (
             BuildErrorKind::TooShort,
             format!("{who} is {} mm long, shorter than the spacing of its particles, {} mm", mm(length), mm(spacing)),
             "make it at least one spacing (spacing × diameter) long".to_owned(),
         ),
-        PathTrouble::TooFewPoints => (
+        PathError::TooFewPoints => (
             BuildErrorKind::BadPath,
             format!("{who} has fewer than two points"),
             "a centre line needs at least its two ends".to_owned(),
         ),
-        PathTrouble::NotFinite(i) => (
+        PathError::NotFinite(i) => (
             BuildErrorKind::BadPath,
             format!("{who}: point {} is not finite", i + 1),
             "coordinates must be finite numbers".to_owned(),

@@ -1,0 +1,31 @@
+//! What a run is asked for.
+
+use std::path::PathBuf;
+
+/// Where a run goes and what it writes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunOptions {
+    /// Folder of the results.
+    pub out: PathBuf,
+    /// Replace earlier results in that folder.
+    pub overwrite: bool,
+    /// Threads of the engine; `None`: as many as the machine has.
+    pub threads: Option<usize>,
+    /// Draw numbered pictures into `frames/`.
+    pub frames: bool,
+    /// Make an animation of them.
+    pub animation: Option<Animation>,
+    /// Write `recording.rrd`.
+    pub recording: bool,
+    /// Address of a Rerun viewer to stream to while running.
+    pub live: Option<String>,
+}
+
+/// An animation of the frames, as it is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Animation {
+    /// Its file: `.gif`, or `.png` or `.apng` for an animated PNG.
+    pub file: PathBuf,
+    /// Width, when it is to be smaller than the frames (px).
+    pub width: Option<u32>,
+}
