@@ -3,7 +3,7 @@
 use super::loading_rate::{self, LoadingRate, Rule};
 use super::neighbours::Stretch;
 use super::state::State;
-use super::straight::{Straight, runs};
+use super::straight::{StraightGrip, runs};
 use crate::base::error::{Error, Result};
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
 use crate::strand::assembly::Assembly;
@@ -275,7 +275,7 @@ impl Holds {
     fn straight(&mut self, group: &Group, state: &mut State, rise: f64, kicked: f64, arch: Arch) {
         let speed = if group.driven { rise / state.dt } else { 0.0 };
         let axis = self.axis.to_array();
-        let effort = arch.dispatch(Straight { runs: &group.runs, state, speed, kicked, axis });
+        let effort = arch.dispatch(StraightGrip { runs: &group.runs, state, speed, kicked, axis });
         self.work += effort.work;
         if group.driven {
             // What it takes to speed up the held particles themselves loads the drive, not the body.

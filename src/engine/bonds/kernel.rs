@@ -5,7 +5,7 @@ use super::layout::{CONSTANTS, Layout, SHAPE, force, shape};
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
 use crate::base::vectors::Vectors;
-use crate::engine::state::{BondActions, CHUNK, Partial};
+use crate::engine::state::{BondActions, CHUNK, ChunkSums};
 use crate::law::bond::BondLaw;
 use pulp::{Simd, WithSimd};
 
@@ -38,7 +38,7 @@ struct Sums {
 
 impl<L: BondLaw, const TURN: bool> WithSimd for Chunk<'_, L, TURN> {
     /// Energies, and whether a bond may have reached its limit.
-    type Output = (Partial, bool);
+    type Output = (ChunkSums, bool);
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
@@ -50,7 +50,7 @@ impl<L: BondLaw, const TURN: bool> WithSimd for Chunk<'_, L, TURN> {
             }
         }
         let sum = |lanes: [f64; BLOCK]| lanes.iter().sum();
-        (Partial { plastic: sum(sums.plastic), damping: sum(sums.damping), ..Default::default() }, due)
+        (ChunkSums { plastic: sum(sums.plastic), damping: sum(sums.damping), ..Default::default() }, due)
     }
 }
 

@@ -16,9 +16,9 @@ pub mod trial;
 
 use crate::base::lanes::BLOCK;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
-use crate::engine::kinds::Kinds;
 use crate::engine::rupture::{Criterion, RuptureCheck};
-use crate::engine::state::{BondActions, CHUNK, Partial, State};
+use crate::engine::shared_rows::SharedRows;
+use crate::engine::state::{BondActions, CHUNK, ChunkSums, State};
 use crate::engine::time_step::Stiffness;
 use crate::law::bond::{BondForce, BondLaw, BondShape, Section};
 use crate::law::damping::viscous_coefficient;
@@ -31,7 +31,7 @@ use rayon::prelude::*;
 /// What the engine asks of bonds, whatever their law.
 pub trait Bonds: Send {
     /// Computes every bond's action on its particles from `state`; returns the energies of the step.
-    fn compute(&mut self, state: &mut State) -> Partial;
+    fn compute(&mut self, state: &mut State) -> ChunkSums;
     /// Breaks the bonds that reached their limit; calls `broke(slot, cause, true axial stress [Pa])` for each, in order,
     /// and returns the elastic energy that they held (J).
     fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64;
@@ -58,12 +58,12 @@ pub struct BondStage<L: BondLaw, const TURN: bool> {
     records: Vec<f64>,
     /// Rows of the shapes and of the viscous coefficients of axial, shear (N s/m), bending, torsion (N m s), by kind of
     /// block.
-    constants: Kinds,
+    constants: SharedRows,
     /// Where those of each block are.
     kind: Vec<u32>,
     damped: bool,
     rupture: Option<RuptureCheck>,
-    partial: Vec<Partial>,
+    partial: Vec<ChunkSums>,
     /// Whether a bond of each chunk may have reached its limit at this step.
     due: Vec<bool>,
     arch: Arch,
@@ -77,11 +77,11 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
         let mut stage = Self {
             law,
             records: vec![0.0; blocks * BLOCK * Layout::<L, TURN>::FIELDS],
-            constants: Kinds::default(),
+            constants: SharedRows::default(),
             kind: Vec::with_capacity(blocks),
             damped: damping.iter().any(|d| *d > 0.0),
             rupture,
-            partial: vec![Partial::default(); n.div_ceil(CHUNK)],
+            partial: vec![ChunkSums::default(); n.div_ceil(CHUNK)],
             due: vec![true; n.div_ceil(CHUNK)],
             arch: Arch::new(),
         };
@@ -174,7 +174,7 @@ fn power(state: &State, slot: usize) -> f64 {
 }
 
 impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
-    fn compute(&mut self, state: &mut State) -> Partial {
+    fn compute(&mut self, state: &mut State) -> ChunkSums {
         let blocks = CHUNK / BLOCK;
         let fields = state.bond.fields();
         let (law, kind, constants, arch) = (&self.law, &self.kind, self.constants.rows(), self.arch);
@@ -198,7 +198,7 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
                     Chunk::<L, TURN> { law, first, x, v, w, dt, records, kind, constants, damped, limit, actions };
                 (*partial, *due) = arch.dispatch(job);
             });
-        let mut sum = Partial::default();
+        let mut sum = ChunkSums::default();
         self.partial.iter().for_each(|p| sum.add(p));
         sum
     }
@@ -219,7 +219,7 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
             (Layout::<L, TURN>::AXIAL..Layout::<L, TURN>::DASHPOT).for_each(|field| self.set(slot, field, 0.0));
             self.set(slot, Layout::<L, TURN>::LIVE, 0.0);
             let thinning = state.bond.get(slot, BondActions::THINNING);
-            state.parted[slot] = self.shape(slot).rest_length / (thinning * thinning);
+            state.length_at_break[slot] = self.shape(slot).rest_length / (thinning * thinning);
             state.whole[slot] = false;
             state.bond.clear(slot);
         }

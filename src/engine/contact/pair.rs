@@ -2,7 +2,7 @@
 
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
-use crate::engine::state::Partial;
+use crate::engine::state::ChunkSums;
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 
@@ -19,7 +19,7 @@ pub struct Laws<N, T> {
 
 /// Where and how two surfaces meet at this step.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Meeting<R = f64> {
+pub struct ContactKinematics<R = f64> {
     /// Unit normal from the first body to the second.
     pub normal: Triple<R>,
     /// Overlap δ (m); 0 where the surfaces are apart.
@@ -116,9 +116,9 @@ pub struct PairForce<R = f64> {
     pub friction: Triple<R>,
 }
 
-/// Energies that contacts give off in a step (J); see [`Partial`].
+/// Energies that contacts give off in a step (J); see [`ChunkSums`].
 #[derive(Debug, Clone, Copy)]
-pub struct Given<R = f64> {
+pub struct Dissipated<R = f64> {
     /// Plastic work.
     pub plastic: R,
     /// Work of contact pressure on thinning wires.
@@ -129,21 +129,21 @@ pub struct Given<R = f64> {
     pub damping: R,
 }
 
-impl Given {
+impl Dissipated {
     /// As a partial sum.
-    pub fn partial(&self) -> Partial {
+    pub fn partial(&self) -> ChunkSums {
         let Self { plastic, thinning, friction, damping } = *self;
-        Partial { plastic, thinning, friction, damping, ..Partial::default() }
+        ChunkSums { plastic, thinning, friction, damping, ..ChunkSums::default() }
     }
 }
 
 /// Response of pairs, of those that touch and of those that have just parted: what friction had stored is then lost.
 #[inline(always)]
-pub fn meet<N: NormalLaw, T: TangentialLaw, R: Real>(
+pub fn contact_response<N: NormalLaw, T: TangentialLaw, R: Real>(
     laws: &Laws<N, T>,
     history: &mut History<N, T, R>,
-    meeting: &Meeting<R>,
-) -> (PairForce<R>, Given<R>) {
+    meeting: &ContactKinematics<R>,
+) -> (PairForce<R>, Dissipated<R>) {
     let answer = laws.normal.response(&mut history.normal, history.reduced_radius, meeting.overlap);
     press(laws, history, meeting, &answer)
 }
@@ -153,14 +153,15 @@ pub fn meet<N: NormalLaw, T: TangentialLaw, R: Real>(
 pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
     laws: &Laws<N, T>,
     history: &mut History<N, T, R>,
-    meeting: &Meeting<R>,
+    meeting: &ContactKinematics<R>,
     answer: &NormalResponse<R>,
-) -> (PairForce<R>, Given<R>) {
+) -> (PairForce<R>, Dissipated<R>) {
     let zero = meeting.overlap.splat(0.0);
     let touches = meeting.overlap.simd_gt(zero);
     let mean = (history.normal_force + answer.force) * 0.5;
     let thinner = R::select(touches & history.touching(), meeting.thinner, zero);
-    let mut given = Given { plastic: answer.plastic_work, thinning: mean * thinner, friction: zero, damping: zero };
+    let mut given =
+        Dissipated { plastic: answer.plastic_work, thinning: mean * thinner, friction: zero, damping: zero };
     history.normal_force = answer.force;
 
     let approach = meeting.velocity.dot(meeting.normal);

@@ -3,17 +3,17 @@
 use super::spheres::second::SecondSides;
 use crate::engine::bytes::Bytes;
 use crate::engine::neighbours::PairList;
-use crate::engine::state::{Partial, State};
+use crate::engine::state::{ChunkSums, State};
 use crate::engine::time_step::Stiffness;
 use crate::strand::assembly::Assembly;
 
 /// Contacts of a run.
 pub trait Contacts: Send {
     /// Takes a new list of candidates; history of pairs that stay is kept. Returns what was lost with pairs that left.
-    fn rebuild(&mut self, list: &PairList, state: &State) -> Partial;
+    fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums;
     /// Computes all contacts and adds them up per particle in `state`, but for [`Self::second_sides`]; returns the
     /// energies of the step.
-    fn compute(&mut self, state: &mut State) -> Partial;
+    fn compute(&mut self, state: &mut State) -> ChunkSums;
     /// What contacts do besides what they have added up.
     fn second_sides(&self) -> Option<SecondSides<'_>>;
     /// Stored elastic energy at the positions of the last call of `compute` (J).

@@ -3,8 +3,8 @@
 use super::block::Block;
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
-use crate::engine::contact::pair::{Given, History, Laws, Meeting, PairForce, meet};
-use crate::engine::state::{CHUNK, ContactSides, Deepest, Partial, Seen};
+use crate::engine::contact::pair::{ContactKinematics, Dissipated, History, Laws, PairForce, contact_response};
+use crate::engine::state::{CHUNK, ChunkSums, ContactSides, Deepest, ParticleView};
 use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
 use pulp::{Simd, WithSimd};
@@ -26,7 +26,7 @@ pub struct Work<'a> {
     pub constants: &'a [f64],
     pub actions: &'a mut [f64],
     pub sides: ContactSides<'a>,
-    pub partial: &'a mut [Partial],
+    pub partial: &'a mut [ChunkSums],
 }
 
 impl<'a> Work<'a> {
@@ -70,7 +70,7 @@ impl<'a> Work<'a> {
 /// The contacts of one chunk.
 pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     pub laws: &'a Laws<N, T>,
-    pub seen: &'a Seen<'a>,
+    pub seen: &'a ParticleView<'a>,
     /// The deepest contact of the run so far.
     pub deepest: Deepest,
     /// See [`closing`](crate::engine::contact::stage::closing).
@@ -89,7 +89,7 @@ struct Sums {
 
 impl Sums {
     #[inline(always)]
-    fn book<S: Simd>(&mut self, simd: S, lane: usize, given: &Given<Lanes<S>>, counts: <Lanes<S> as Real>::Mask) {
+    fn book<S: Simd>(&mut self, simd: S, lane: usize, given: &Dissipated<Lanes<S>>, counts: <Lanes<S> as Real>::Mask) {
         let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| {
             (Lanes::load(simd, sum, lane) + Lanes::select(counts, part, part.splat(0.0))).store(sum, lane);
         };
@@ -99,10 +99,17 @@ impl Sums {
         book(&mut self.damping, given.damping);
     }
 
-    fn partial(&self, deepest: Deepest) -> Partial {
+    fn partial(&self, deepest: Deepest) -> ChunkSums {
         let sum = |lanes: [f64; BLOCK]| lanes.iter().sum();
         let (plastic, thinning) = (sum(self.plastic), sum(self.thinning));
-        Partial { plastic, thinning, friction: sum(self.friction), damping: sum(self.damping), released: 0.0, deepest }
+        ChunkSums {
+            plastic,
+            thinning,
+            friction: sum(self.friction),
+            damping: sum(self.damping),
+            released: 0.0,
+            deepest,
+        }
     }
 }
 
@@ -181,8 +188,8 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let velocity = velocity::<S, T>(simd, self.seen, [i, j], normal, arms);
         let viscosity = Lanes::load(simd, self.work.constants, constants + BLOCK);
         let thinner = first.thinned + second.thinned;
-        let meeting = Meeting { normal, overlap, thinner, velocity, viscosity, dt: self.seen.dt };
-        let (pair, given) = meet(self.laws, &mut history, &meeting);
+        let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity, dt: self.seen.dt };
+        let (pair, given) = contact_response(self.laws, &mut history, &meeting);
         sums.book(simd, lane, &given, pairs);
         history.each_number(|k, number| number.store(record, k * BLOCK + lane));
 
@@ -213,7 +220,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
             let pair = [(i + k) as u32, (j + k) as u32];
             let (reduced, force) = (history.reduced_radius.at(k), history.normal_force.at(k));
             let area = || std::f64::consts::PI * reduced * deep.at(k);
-            self.deepest.meet(pair, deep.at(k), least.at(k), area, force);
+            self.deepest.take_in(pair, deep.at(k), least.at(k), area, force);
         }
     }
 
@@ -272,7 +279,7 @@ fn vector<S: Simd>(simd: S, [x, y, z]: &[&[f64]; 3], p: usize) -> Triple<Lanes<S
 }
 
 #[inline(always)]
-fn ball<S: Simd>(simd: S, seen: &Seen, p: usize) -> Ball<Lanes<S>> {
+fn ball<S: Simd>(simd: S, seen: &ParticleView, p: usize) -> Ball<Lanes<S>> {
     let load = |row: &[f64]| Lanes::load_up_to_end(simd, row, p);
     Ball { x: vector(simd, &seen.x, p), radius: load(seen.radius), thinned: load(seen.thinned) }
 }
@@ -281,7 +288,7 @@ fn ball<S: Simd>(simd: S, seen: &Seen, p: usize) -> Ball<Lanes<S>> {
 #[inline(always)]
 fn velocity<S: Simd, T: TangentialLaw>(
     simd: S,
-    seen: &Seen,
+    seen: &ParticleView,
     [i, j]: [usize; 2],
     normal: Triple<Lanes<S>>,
     arms: [Lanes<S>; 2],

@@ -17,9 +17,9 @@ use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
 use super::stage::{Contacts, closing};
 use crate::base::lanes::BLOCK;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
-use crate::engine::kinds::Kinds;
 use crate::engine::neighbours::PairList;
-use crate::engine::state::{BondActions, CHUNK, Deepest, Partial, State};
+use crate::engine::shared_rows::SharedRows;
+use crate::engine::state::{BondActions, CHUNK, ChunkSums, Deepest, State};
 use crate::engine::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{reduced_mass, reduced_radius};
@@ -38,7 +38,7 @@ struct Store {
     blocks: Vec<Block>,
     records: Vec<f64>,
     /// What does not change from search to search: a row of R* (m), 0 where no candidate is, and one of 2ξ√m* (√kg).
-    constants: Kinds,
+    constants: SharedRows,
 }
 
 /// Contacts between spheres with normal law `N` and tangential law `T`.
@@ -55,7 +55,7 @@ pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     /// either end.
     actions: Vec<f64>,
     places: Places,
-    partial: Vec<Partial>,
+    partial: Vec<ChunkSums>,
     /// The deepest contact so far.
     deepest: Deepest,
     /// See [`closing`].
@@ -204,8 +204,8 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
         if !one_wire || between.clone().all(|slot| state.whole[slot]) {
             return (touching - (state.x.get(j) - state.x.get(i)).length()).max(0.0);
         }
-        let natural = |slot: usize| match state.parted[slot] {
-            parted if parted > 0.0 => parted,
+        let natural = |slot: usize| match state.length_at_break[slot] {
+            length if length > 0.0 => length,
             _ => self.rest_length[slot] / state.bond.get(slot, BondActions::THINNING).powi(2),
         };
         let way: f64 = between.map(natural).sum();
@@ -219,7 +219,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
-    fn rebuild(&mut self, list: &PairList, state: &State) -> Partial {
+    fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums {
         std::mem::swap(&mut self.now, &mut self.old);
         self.keys.clear();
         self.keys.extend(list.pairs.iter().map(|(i, j)| key(*i, *j)));
@@ -234,12 +234,12 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         self.actions.clear();
         self.actions.resize((blocks.len() * kernel::rows::<T>() + 2) * BLOCK, 0.0);
         self.partial.clear();
-        self.partial.resize(chunks, Partial::default());
+        self.partial.resize(chunks, ChunkSums::default());
         self.places.index(blocks, state.len());
-        Partial { friction, ..Partial::default() }
+        ChunkSums { friction, ..ChunkSums::default() }
     }
 
-    fn compute(&mut self, state: &mut State) -> Partial {
+    fn compute(&mut self, state: &mut State) -> ChunkSums {
         let (laws, arch, deepest, closing) = (&self.laws, self.arch, self.deepest, self.closing);
         let (seen, sides) = state.split_contacts();
         let end = self.actions.len() - BLOCK;
@@ -256,7 +256,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         work.share(Self::FIELDS, kernel::rows::<T>(), &|chunk| {
             arch.dispatch(kernel::Chunk { laws, seen: &seen, deepest, closing, work: chunk });
         });
-        let mut sum = Partial::beyond(deepest);
+        let mut sum = ChunkSums::beyond(deepest);
         self.partial.iter().for_each(|p| sum.add(p));
         self.deepest = sum.deepest;
         sum

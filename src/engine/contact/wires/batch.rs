@@ -5,7 +5,7 @@ use super::meeting::Meets;
 use super::record::{Contact, Touch};
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
-use crate::engine::contact::pair::{Given, History};
+use crate::engine::contact::pair::{Dissipated, History};
 use crate::engine::state::State;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::line::CELLS;
@@ -343,7 +343,7 @@ impl Answers {
                 far: std::array::from_fn(|k| vector(OUT_FAR, k)),
                 twist: std::array::from_fn(|k| vector(OUT_TWIST, k)),
             },
-            given: Given {
+            given: Dissipated {
                 plastic: get(OUT_GIVEN),
                 thinning: get(OUT_GIVEN + 1),
                 friction: get(OUT_GIVEN + 2),

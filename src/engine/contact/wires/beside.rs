@@ -12,7 +12,7 @@
 use super::curve::blend;
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
-use crate::engine::contact::pair::{Given, History, Laws, Meeting, press};
+use crate::engine::contact::pair::{ContactKinematics, Dissipated, History, Laws, press};
 use crate::law::contact::line::{CELLS, CellGap, respond_cells};
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::TangentialLaw;
@@ -92,7 +92,7 @@ pub struct Answer<R> {
     /// What it does.
     pub act: Act<R>,
     /// Energies that it gives off.
-    pub given: Given<R>,
+    pub given: Dissipated<R>,
     /// Normal force of its cells (N), and where it acts, in bonds from the expansion (-).
     pub force: R,
     /// See `force`.
@@ -228,7 +228,7 @@ impl<R: Real> Beside<R> {
         let reach = at.touching - history.offset;
         let overlap = deepest.simd_max(zero);
         let thinner = self.reach - reach;
-        let meeting = Meeting { normal, overlap, thinner, velocity, viscosity: self.viscosity, dt };
+        let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity: self.viscosity, dt };
         let (pair, given) = press(laws, history, &meeting, &answer);
         // All that pushes along the normal is spread as the force of the cells is.
         let whole = (pair.friction - pair.force).dot(normal);

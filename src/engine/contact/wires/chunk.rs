@@ -5,7 +5,7 @@ use super::batch::{Answers, Batch, Gaps};
 use super::meeting::{Meets, Sides};
 use super::record::{Contact, Mode};
 use super::spread::{FarSum, NearSum};
-use crate::engine::state::{Deepest, Partial};
+use crate::engine::state::{ChunkSums, Deepest};
 use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
 use pulp::{Arch, Simd, WithSimd};
@@ -30,7 +30,7 @@ pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     /// That of each contact, in a row: most are not looked at.
     pub quiet_until: &'a mut [f64],
     pub near: &'a mut [NearSum],
-    pub sum: Partial,
+    pub sum: ChunkSums,
     pub work: &'a mut Work,
 }
 
@@ -44,17 +44,17 @@ struct Alone<'a, 'b, N: NormalLaw, T: TangentialLaw> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> WithSimd for Alone<'_, '_, N, T> {
-    type Output = Partial;
+    type Output = ChunkSums;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Partial {
+    fn with_simd<S: Simd>(self, _: S) -> ChunkSums {
         self.meets.contact(self.contact, self.act, self.deepest)
     }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
     /// The energies of the step.
-    pub fn compute(mut self) -> Partial {
+    pub fn compute(mut self) -> ChunkSums {
         self.work.acting.clear();
         self.near.fill(NearSum::default());
         for k in 0..self.contacts.len() {
@@ -79,7 +79,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
     }
 
     /// Adds up what contact `k` does, with the energies that it gives off.
-    fn book(&mut self, k: usize, act: &Sides, partial: Partial) {
+    fn book(&mut self, k: usize, act: &Sides, partial: ChunkSums) {
         self.sum.add(&partial);
         let c = &self.contacts[k];
         self.quiet_until[k] = c.quiet_until;
@@ -99,7 +99,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let contact = &mut self.contacts[k];
         let alone = Alone { meets: &self.meets, contact, act: &mut act, deepest: &mut deepest };
         let partial = self.arch.dispatch(alone);
-        self.book(k, &act, Partial { deepest, ..partial });
+        self.book(k, &act, ChunkSums { deepest, ..partial });
     }
 
     /// Puts a contact into the batch, which is run when it is full.
@@ -147,7 +147,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
             let c = &mut self.contacts[k];
             let touch = self.work.answers.at(lane, c);
             let partial = self.meets.finish(c, &touch, 0.0, &mut act, &mut deepest);
-            self.book(k, &act, Partial { deepest, ..partial });
+            self.book(k, &act, ChunkSums { deepest, ..partial });
         }
         self.work.batch.clear();
     }

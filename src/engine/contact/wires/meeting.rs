@@ -7,8 +7,8 @@ use super::record::{Contact, Kind, Mode, Touch};
 use super::spread::{FarSum, NearSum};
 use crate::base::triple::Triple;
 use crate::base::vectors::Vectors;
-use crate::engine::contact::pair::{Laws, Meeting, meet, press};
-use crate::engine::state::{Deepest, Partial, State};
+use crate::engine::contact::pair::{ContactKinematics, Laws, contact_response, press};
+use crate::engine::state::{ChunkSums, Deepest, State};
 use crate::law::contact::line::{CELLS, LineResponse, LineStiffness, Stretch, respond, respond_cells};
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::TangentialLaw;
@@ -263,7 +263,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
     }
 
     /// Takes a stretch beside the other wire through the laws by itself.
-    fn line(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> Partial {
+    fn line(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> ChunkSums {
         let Some((mut beside, shares, look)) = self.beside(c) else { return self.let_go(c) };
         let at = beside.expand(0);
         let reach = at.touching - c.history.offset;
@@ -301,7 +301,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         };
         (c.dents, c.history) = (dents, history);
         let partial = self.finish(c, &touch, look.u, act, deepest);
-        Partial { released, ..partial }
+        ChunkSums { released, ..partial }
     }
 
     /// Stiffness per length (Pa) where the gap has this curvature (1/m).
@@ -318,12 +318,12 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         u: f64,
         act: &mut Sides,
         deepest: &mut Deepest,
-    ) -> Partial {
+    ) -> ChunkSums {
         match *touch {
             Touch::Apart { t, gap } => {
                 c.place.t = t;
                 self.apart(c, gap);
-                Partial::default()
+                ChunkSums::default()
             }
             Touch::Here { ref answer, t, touching, per_length, curvature } => {
                 (c.place.t, c.per_length) = (t, per_length);
@@ -350,7 +350,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
                         let width = (2.0 * c.history.reduced_radius * c.overlap).sqrt();
                         width * answer.stiffness / c.per_length
                     };
-                    deepest.meet([c.i, c.place.j], c.overlap, least, area, answer.force);
+                    deepest.take_in([c.i, c.place.j], c.overlap, least, area, answer.force);
                 }
                 answer.given.partial()
             }
@@ -364,31 +364,31 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
     }
 
     /// Two ends of one wire that broke, of which one has not yet passed the other: they have a contact of their own.
-    fn passing(&self, c: &mut Contact<N, T>, overlap: f64, at_end: bool) -> Partial {
+    fn passing(&self, c: &mut Contact<N, T>, overlap: f64, at_end: bool) -> ChunkSums {
         if !at_end {
             c.end_to_end = false;
             c.history.offset = overlap.max(0.0);
         }
-        Partial::default()
+        ChunkSums::default()
     }
 
     /// Beyond the end of the other wire: what was touching there has let go.
-    fn let_go(&self, c: &mut Contact<N, T>) -> Partial {
+    fn let_go(&self, c: &mut Contact<N, T>) -> ChunkSums {
         if c.end_to_end || !c.history.touching() {
-            return Partial::default();
+            return ChunkSums::default();
         }
-        let meeting = Meeting { dt: self.state.dt, ..Meeting::default() };
+        let meeting = ContactKinematics { dt: self.state.dt, ..ContactKinematics::default() };
         let released = c.energy;
         c.energy = 0.0;
         let (_, given) = press(self.laws, &mut c.history, &meeting, &NormalResponse::default());
-        Partial { released, ..given.partial() }
+        ChunkSums { released, ..given.partial() }
     }
 
     /// The line between a ball, or an end, and the other body.
     fn between(&self, c: &mut Contact<N, T>) -> Line {
         let (i, x) = (c.i as usize, &self.state.x);
         let (point, touching) = if c.kind == Kind::Ends {
-            (x.get(c.place.j as usize), self.state.parted[i])
+            (x.get(c.place.j as usize), self.state.length_at_break[i])
         } else {
             let foot = self.other(c).foot(x.get(i), &mut c.place);
             (foot.point, self.state.radius[i] + c.place.between(&self.state.radius))
@@ -401,7 +401,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
 
     /// Kinematics and response of one contact.
     #[inline(always)]
-    pub fn contact(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> Partial {
+    pub fn contact(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> ChunkSums {
         match (c.kind, c.mode) {
             (Kind::Stretch, Mode::Line) => self.line(c, act, deepest),
             (Kind::Stretch, Mode::Point) => self.crossing(c, act, deepest),
@@ -427,13 +427,13 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
 
     /// A stretch that crosses the other wire.
     #[inline(always)]
-    fn crossing(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> Partial {
+    fn crossing(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> ChunkSums {
         let Some(mut lie) = self.lie(c) else { return self.let_go(c) };
         if c.end_to_end {
             return self.passing(c, lie.stretch.overlap, lie.at_end);
         }
         if self.apart(c, -lie.stretch.overlap) {
-            return Partial::default();
+            return ChunkSums::default();
         }
         if !c.history.touching() {
             c.per_length = self.per_length(c.history.reduced_radius, lie.stretch.curvature);
@@ -448,7 +448,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         if answer.force == 0.0 && !c.history.touching() {
             c.overlap = lie.stretch.overlap.max(0.0);
             c.energy = 0.0;
-            return Partial { plastic: answer.plastic_work, ..Partial::default() };
+            return ChunkSums { plastic: answer.plastic_work, ..ChunkSums::default() };
         }
         c.energy = answer.energy;
         let u = lie.u + (lie.deepest + answer.centre) / lie.bond;
@@ -474,11 +474,11 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
     }
 
     #[inline(always)]
-    fn ball(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> Partial {
+    fn ball(&self, c: &mut Contact<N, T>, act: &mut Sides, deepest: &mut Deepest) -> ChunkSums {
         let line = self.between(c);
         let overlap = line.touching - c.history.offset - line.distance;
         if self.apart(c, -overlap) {
-            return Partial::default();
+            return ChunkSums::default();
         }
         let overlap = overlap.max(0.0);
         let partial = self.act(c, &line, overlap, PI * c.history.reduced_radius * overlap, None, act, deepest);
@@ -498,7 +498,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         answer: Option<&NormalResponse>,
         act: &mut Sides,
         deepest: &mut Deepest,
-    ) -> Partial {
+    ) -> ChunkSums {
         let state = self.state;
         let i = c.i as usize;
         let reach = line.touching - c.history.offset;
@@ -514,10 +514,11 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         let thinner = c.reach - reach;
         let normal = Triple::from(line.normal);
         let viscosity = c.viscosity;
-        let meeting = Meeting { normal, overlap, thinner, velocity: velocity.into(), viscosity, dt: state.dt };
+        let meeting =
+            ContactKinematics { normal, overlap, thinner, velocity: velocity.into(), viscosity, dt: state.dt };
         let (action, given) = match answer {
             Some(answer) => press(self.laws, &mut c.history, &meeting, answer),
-            None => meet(self.laws, &mut c.history, &meeting),
+            None => contact_response(self.laws, &mut c.history, &meeting),
         };
         (c.overlap, c.reach) = (overlap, reach);
         if c.history.touching() {
@@ -537,7 +538,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             };
         }
         let least = state.radius[i].min(line.touching - state.radius[i]);
-        deepest.meet([c.i, c.place.j], overlap, least, || area, c.history.normal_force);
+        deepest.take_in([c.i, c.place.j], overlap, least, || area, c.history.normal_force);
         given.partial()
     }
 }

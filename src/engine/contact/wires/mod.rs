@@ -33,7 +33,7 @@ use super::spheres::second::SecondSides;
 use super::stage::{Contacts, closing};
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::{PairList, apart};
-use crate::engine::state::{CHUNK, Deepest, Partial, State};
+use crate::engine::state::{CHUNK, ChunkSums, Deepest, State};
 use crate::engine::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{reduced_mass, reduced_radius};
@@ -74,7 +74,7 @@ pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
     quiet_until: Vec<f64>,
     spread: Spread,
     work: Vec<Work>,
-    partial: Vec<Partial>,
+    partial: Vec<ChunkSums>,
     /// The deepest contact so far.
     deepest: Deepest,
     /// Directed candidates (particle, other particle), kept for their memory.
@@ -229,11 +229,11 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
-    fn rebuild(&mut self, list: &PairList, state: &State) -> Partial {
+    fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums {
         std::mem::swap(&mut self.contacts, &mut self.old);
         self.contacts.clear();
         self.direct(list, state);
-        let mut lost = Partial::default();
+        let mut lost = ChunkSums::default();
         let mut from = 0;
         for (i, kind, j) in self.runs(state) {
             while from < self.old.len() && self.old[from].i < i {
@@ -263,7 +263,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             }
         }
         for c in self.old.iter().filter(|c| !c.taken && c.history.touching()) {
-            lost.add(&Partial { released: c.energy, friction: leave(&self.laws, &c.history), ..Default::default() });
+            lost.add(&ChunkSums { released: c.energy, friction: leave(&self.laws, &c.history), ..Default::default() });
         }
         let chunks = state.len().div_ceil(CHUNK);
         let contacts = &self.contacts;
@@ -275,11 +275,11 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         self.spread.resize(state.len());
         self.work.resize_with(chunks, Work::default);
         self.partial.clear();
-        self.partial.resize(chunks, Partial::default());
+        self.partial.resize(chunks, ChunkSums::default());
         lost
     }
 
-    fn compute(&mut self, state: &mut State) -> Partial {
+    fn compute(&mut self, state: &mut State) -> ChunkSums {
         let Self {
             laws,
             line,
@@ -304,13 +304,13 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             let (own, others) = contacts.split_at_mut(count);
             let (quiet_until, other_quiet) = quiet.split_at_mut(count);
             (contacts, quiet) = (others, other_quiet);
-            let (first, sum) = (chunk * CHUNK, Partial::beyond(before));
+            let (first, sum) = (chunk * CHUNK, ChunkSums::beyond(before));
             tasks.push(Chunk { meets, arch, first, contacts: own, quiet_until, near, sum, work });
         }
         (tasks, &mut *partial).into_par_iter().for_each(|(task, partial)| *partial = task.compute());
         let acting: Vec<&[FarSum]> = work.iter().map(|work| &work.acting[..]).collect();
         spread.finish(&acting, chains, state, T::ACTIVE);
-        let mut sum = Partial::beyond(before);
+        let mut sum = ChunkSums::beyond(before);
         partial.iter().for_each(|p| sum.add(p));
         *deepest = sum.deepest;
         sum

@@ -7,13 +7,13 @@ use std::collections::HashMap;
 
 /// Each kind of rows once.
 #[derive(Default)]
-pub struct Kinds {
+pub struct SharedRows {
     rows: Vec<f64>,
     /// Place of each kind by its bits.
     places: HashMap<Box<[u64]>, u32>,
 }
 
-impl Kinds {
+impl SharedRows {
     /// Forgets all kinds.
     pub fn clear(&mut self) {
         self.rows.clear();
@@ -47,7 +47,7 @@ mod tests {
 
     #[test]
     fn a_kind_is_kept_once() {
-        let mut kinds = Kinds::default();
+        let mut kinds = SharedRows::default();
         let (a, b) = ([1.0, 2.0], [1.0, -0.0]);
         assert_eq!([kinds.place(&a), kinds.place(&b), kinds.place(&a), kinds.place(&[1.0, 0.0])], [0, 2, 0, 4]);
         assert_eq!(kinds.rows(), [1.0, 2.0, 1.0, -0.0, 1.0, 0.0]);
