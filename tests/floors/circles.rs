@@ -102,9 +102,13 @@ fn paths(code: &str) -> Vec<String> {
     found
 }
 
+/// Place of the next `use`; the word may stand in a text too, where no path follows up to a semicolon.
 fn next_use(code: &str) -> Option<usize> {
-    let starts = |at: &usize| code[..*at].ends_with(['\n', ' ', '{', ';', '}']) || *at == 0;
-    code.match_indices("use ").map(|(at, _)| at).find(starts)
+    let is_tree = |c: char| c.is_alphanumeric() || c.is_whitespace() || "_:{},*".contains(c);
+    code.match_indices("use ").map(|(at, _)| at).find(|at| {
+        let alone = code[..*at].is_empty() || code[..*at].ends_with(|c: char| c.is_whitespace());
+        alone && code[at + 4..].split_once(';').is_some_and(|(tree, _)| tree.chars().all(is_tree))
+    })
 }
 
 fn plain_paths(code: &str) -> Vec<String> {
