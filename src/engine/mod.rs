@@ -436,7 +436,7 @@ impl Engine {
         })
     }
 
-    /// Strain of the body: grip displacement over gauge length, smoothed as stress is, so that the two belong together
+    /// Strain of the body: grip displacement over the free length between the particles held, smoothed as stress is, so that the two belong together
     /// ([`measure::Measures`]) (-).
     pub fn strain(&self) -> f64 {
         self.measures.strain()

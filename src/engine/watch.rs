@@ -1,6 +1,6 @@
-//! What the engine watches while it runs, and makes a finding of once: contacts too deep for their law, a step that
+//! What the engine watches while it runs, and makes findings of: contacts too deep for their law, a step that
 //! shrinks or is not stable, strain that localises in one bond, bonds stretched beyond what a search covers. What makes
-//! results worthless stops the run: wires that pass through each other, bodies that bend though nothing turns.
+//! results worthless stops the run: bodies that pass through each other, or bend though nothing turns.
 //!
 //! All of it rides on work that is done anyway: the contact pass, the bound on the step, the neighbour search.
 
@@ -10,7 +10,8 @@ use super::neighbours::MOST_STRETCH;
 use super::state::Deepest;
 use super::view::{DeepestContact, Findings, StepAt};
 use crate::base::error::{Error, Result};
-use crate::base::finding::{Body, Failure, Finding, FindingKind, Instant, Member, Notice, Once, Relief, Stopped};
+use crate::base::finding::{Body, Failure, Finding, FindingKind, Instant, Member, Notice, Relief, Stopped};
+use crate::base::worst::Worst;
 use crate::scene::caution;
 use crate::scene::plan::ContactPlan;
 use crate::scene::spec::{BondLawSpec, GripKind};
@@ -35,7 +36,7 @@ const FEWEST: usize = 8;
 #[derive(Default)]
 pub struct Watch {
     notices: Vec<Notice>,
-    made: Once,
+    worst: Worst,
     deepest: Option<(Deepest, DeepestContact)>,
     first_step: f64,
     least: StepAt,
@@ -73,6 +74,11 @@ impl Engine {
         std::mem::take(&mut self.watch.notices)
     }
 
+    /// Those of them that have become worse since they were given, as they were at their worst.
+    pub fn take_worse(&mut self) -> Vec<Notice> {
+        self.watch.worst.take_worse()
+    }
+
     /// What was seen over the whole run so far.
     pub fn findings(&self) -> Findings {
         Findings {
@@ -108,12 +114,13 @@ impl Engine {
         Instant { step: self.state.step, time: self.state.time, strain: (high > low).then(|| self.strain()) }
     }
 
-    /// Takes note of a finding, the first time that one of its kind is made.
-    fn found(&mut self, kind: FindingKind, finding: impl FnOnce(&Self) -> Finding) {
-        if self.watch.made.first(kind) {
+    /// Takes note of a finding that is the worst of its kind by `measure`; 0 for what cannot get worse.
+    fn found(&mut self, kind: FindingKind, measure: f64, finding: impl FnOnce(&Self) -> Finding) {
+        if self.watch.worst.tops(kind, measure) {
             let finding = finding(self);
             debug_assert_eq!(finding.kind(), kind);
-            self.watch.notices.push(Notice { at: self.instant(), finding });
+            let notice = Notice { at: self.instant(), finding };
+            self.watch.notices.extend(self.watch.worst.put(measure, notice));
         }
     }
 
@@ -138,11 +145,11 @@ impl Engine {
             pressure,
             step: self.state.step,
             time: self.state.time,
-            strain: self.strain(),
+            strain: self.instant().strain,
         };
         self.watch.deepest = Some((now, at));
         if now.ratio > DEEP {
-            self.found(FindingKind::DeepContact, |engine| Finding::DeepContact {
+            self.found(FindingKind::DeepContact, now.ratio, |engine| Finding::DeepContact {
                 overlap_over_radius: now.ratio,
                 between: now.pair.map(|p| engine.body(p as usize)),
                 z_m: position[2],
@@ -166,7 +173,8 @@ impl Engine {
         let greatest = fresh(&self.watch.greatest, seconds > self.watch.greatest.seconds);
         if least || greatest {
             let limit = self.time_step_limit();
-            let at = StepAt { seconds, step: self.state.step, time: self.state.time, strain: self.strain(), limit };
+            let Instant { step, time, strain } = self.instant();
+            let at = StepAt { seconds, step, time, strain, limit };
             if least {
                 self.watch.least = at.clone();
             }
@@ -175,7 +183,7 @@ impl Engine {
             }
         }
         if self.spec.time.step.is_some_and(|step| step > self.bound.step) {
-            self.found(FindingKind::UnstableStep, |engine| Finding::UnstableStep {
+            self.found(FindingKind::UnstableStep, seconds / self.bound.step, |engine| Finding::UnstableStep {
                 step_s: seconds,
                 bound_s: engine.bound.step,
                 mode: engine.bound.mode,
@@ -183,7 +191,7 @@ impl Engine {
                 body: engine.body(engine.bound.particle),
             });
         } else if stiff && seconds < SHRUNK * self.watch.first_step {
-            self.found(FindingKind::StepShrunk, |engine| Finding::StepShrunk {
+            self.found(FindingKind::StepShrunk, self.watch.first_step / seconds, |engine| Finding::StepShrunk {
                 from_s: engine.watch.first_step,
                 to_s: seconds,
                 limit: engine.time_step_limit(),
@@ -217,7 +225,7 @@ impl Engine {
         }
         if touches && back {
             self.add_contacts();
-            self.found(FindingKind::ContactsAdded, |engine| Finding::ContactsAdded { body: engine.body(slot) });
+            self.found(FindingKind::ContactsAdded, 0.0, |engine| Finding::ContactsAdded { body: engine.body(slot) });
         }
         Ok(())
     }
@@ -231,7 +239,7 @@ impl Engine {
             return;
         };
         // It is said once, so nothing is left to look for.
-        self.found(FindingKind::Necking, |engine| Finding::Necking {
+        self.found(FindingKind::Necking, 0.0, |engine| Finding::Necking {
             bond: engine.member(neck.slot),
             z_m: engine.state.x.z[neck.slot],
             plastic_strain: neck.strain,
@@ -276,15 +284,15 @@ impl Engine {
         found
     }
 
-    /// Wires that passed through each other since the last neighbour search.
+    /// Bodies that passed through each other since the last neighbour search.
     ///
     /// # Errors
-    /// [`Error::Simulation`] when two did: what a run finds after that has nothing to do with the strand.
+    /// [`Error::Simulation`] when two did: what a run finds after that has nothing to do with the bodies.
     pub fn inspect(&self) -> Result<()> {
         let Some(contacts) = &self.contacts else { return Ok(()) };
         let Some(found) = crossing(&contacts.neighbours, &self.state, &self.assembly.wire_of) else { return Ok(()) };
         Err(self.failed(Failure::PassedThrough {
-            bonds: found.bonds.map(|slot| self.member(slot)),
+            between: found.between.map(|slot| self.member(slot)),
             z_m: found.position.z,
             relief: self.relief(),
         }))
@@ -303,7 +311,7 @@ impl Engine {
         let Some(contacts) = &self.contacts else { return };
         let stretched = contacts.neighbours.stretched();
         if stretched > MOST_STRETCH {
-            self.found(FindingKind::BondsStretched, |_| Finding::BondsStretched {
+            self.found(FindingKind::BondsStretched, stretched, |_| Finding::BondsStretched {
                 stretch: stretched,
                 covered: MOST_STRETCH,
             });
