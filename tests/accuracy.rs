@@ -153,7 +153,7 @@ fn verification_cases_show_their_order_and_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["accuracy", "cantilever-shared", "--quick"];
     let first = printed(&strandsnap(folder.path(), &args));
-    assert!(first.contains("1 cases run, 0 kept") && first.contains("Timoshenko"), "{first}");
+    assert!(first.contains("1 case run, 0 kept") && first.contains("Timoshenko"), "{first}");
     let study = folder.path().join("out/accuracy/cantilever-shared");
     let table = rows(&study.join("accuracy.csv"));
     let orders: Vec<f64> = table.iter().filter_map(|row| row["order"].parse().ok()).collect();

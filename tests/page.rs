@@ -37,7 +37,7 @@ fn folder_of(run: &Run, pictures: usize) -> TempDir {
     run.show(&mut summariser).unwrap();
     let steps = run.samples().last().unwrap().step;
     let cost = Cost { steps, wall_s: 12.5, threads: 2, ..Cost::default() };
-    let closing = Closing { stopped: StopReason::Steps(7), cost, ..Closing::default() };
+    let closing = Closing { stopped: StopReason::Steps { limit: 7, reached: 7 }, cost, ..Closing::default() };
     let summary = summariser.summary(&scene.spec, 10_000, closing);
     fs::write(at("summary.json"), serde_json::to_string_pretty(&summary).unwrap()).unwrap();
     fs::create_dir(at("frames")).unwrap();

@@ -11,3 +11,4 @@ pub mod triple;
 pub mod units;
 pub mod vectors;
 pub mod wording;
+pub mod worst;

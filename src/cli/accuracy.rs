@@ -6,6 +6,7 @@ use super::interrupt;
 use super::say::{self, say};
 use super::values::{SceneArgs, Seeds, duration};
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use crate::run::folder;
 use crate::scene::quality::Quality;
 use crate::study::accuracy::{self, Options, Study, Subject, knobs, table, verified};
@@ -89,7 +90,7 @@ fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
     let files = found.write(&shared::command(), &out)?;
     say::print(format_args!("{}", found.table().to_text()));
     say::print(format_args!("\n{}", found.summary()));
-    say!("{} cases run, {} kept from before. Written:", found.made, found.kept);
+    say!("{} run, {} kept from before. Written:", counted(found.made, "case"), found.kept);
     files.iter().for_each(|file| say!("  {}", file.display()));
     Ok(if found.interrupted { Ended::Interrupted } else { Ended::Well })
 }
@@ -152,8 +153,8 @@ fn print(study: &Study, files: &[PathBuf]) {
         say!("Interrupted: the same command goes on with what is missing.");
     }
     if study.other_build > 0 {
-        say!("{} runs were made by another build with the same physics; --fresh makes them again.", study.other_build);
+        say!("Made by another build with the same physics, until --fresh: {}.", counted(study.other_build, "run"));
     }
-    say!("{} runs made, {} kept from before. Written:", study.made, study.kept);
+    say!("{} made, {} kept from before. Written:", counted(study.made, "run"), study.kept);
     files.iter().for_each(|file| say!("  {}", file.display()));
 }

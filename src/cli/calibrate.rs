@@ -6,6 +6,7 @@ use super::interrupt;
 use super::say::say;
 use super::values::{SceneArgs, Seeds};
 use crate::base::error::Result;
+use crate::base::wording::counted;
 use crate::observe::files::write_whole;
 use crate::reference::paper::paper;
 use crate::run::folder;
@@ -118,7 +119,7 @@ pub fn run(args: &Args) -> Result<Ended> {
     say!("\n{}", claim(&best, &seeds, &target));
     let [kept, other] = [|t: &Trial| t.kept, |t: &Trial| t.other_build].map(|of| trials.iter().map(of).sum::<usize>());
     if kept > 0 {
-        say!("{kept} runs were there already, {other} of them by another build; --fresh makes them again.");
+        say!("Already there: {}, {other} by another build; --fresh makes all again.", counted(kept, "run"));
     }
     say!("\nThe scene that reproduces the test:");
     best.setting.overrides().iter().for_each(|option| say!("  --set \"{option}\""));
@@ -174,8 +175,8 @@ fn claim(best: &Trial, seeds: &[u64], target: &Target) -> String {
         format!("{name} {:.2} ± {half:.2} {unit} (the mean of all strands is known to {share:.1} %)", stat.mean)
     };
     format!(
-        "Mean of {} seeds: {}, {}.",
-        seeds.len(),
+        "Mean of {}: {}, {}.",
+        counted(seeds.len(), "seed"),
         told("strength", &best.strength, target.strength, "MPa"),
         told("elongation", &best.elongation, target.elongation, "%")
     )

@@ -3,6 +3,7 @@
 use super::say::say;
 use super::values::SceneArgs;
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use crate::observe::files::write_whole;
 use crate::run;
 use crate::strand::centrelines;
@@ -26,6 +27,6 @@ pub fn export(args: &Args) -> Result<()> {
         return Err(Error::input(format!("{} exists", args.file.display()), "give --overwrite to replace it"));
     }
     write_whole(&args.file, &centrelines::export(&assembly))?;
-    say!("{} wires written to {}", assembly.wires.len(), args.file.display());
+    say!("{} written to {}", counted(assembly.wires.len(), "wire"), args.file.display());
     Ok(())
 }

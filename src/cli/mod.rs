@@ -93,7 +93,7 @@ Exit codes:
     2  bad input
     3  the machine lacks something (graphics adapter, Rerun viewer)
     4  the simulation had to stop, or a case or a check misses what it must give
-  130  interrupted; what was found so far is kept";
+  130  interrupted (Ctrl-C); what was found so far is kept, unless Ctrl-C comes again two seconds later or more";
 
 /// Runs the program on its arguments and answers with one of the exit codes that `--help` lists.
 pub fn main() -> ExitCode {

@@ -1,13 +1,20 @@
 //! The progress bar on standard error.
 
 use crate::base::error::Result;
+<<<<<<< HEAD:src/cli/progress.rs
 use crate::base::finding::Notice;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
 use crate::observe::planned::PlannedEnd;
 use crate::observe::units::{mpa, percent};
+=======
+use crate::base::finding::{FindingKind, Notice};
+use crate::base::wording::counted;
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+>>>>>>> wt-a:src/observe/progress.rs
 use crate::scene::spec::StopSpec;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -23,6 +30,7 @@ pub struct Progress {
     last: (Instant, u64),
     gripped: bool,
     wires: usize,
+    told: BTreeSet<FindingKind>,
 }
 
 impl Progress {
@@ -36,6 +44,7 @@ impl Progress {
             last: (Instant::now(), 0),
             gripped: false,
             wires: 0,
+            told: BTreeSet::new(),
         }
     }
 }
@@ -48,7 +57,7 @@ fn message(sample: &Sample, gripped: bool, wires: usize, steps_per_second: f64) 
     };
     let broken = match wires {
         0 => String::new(),
-        _ => format!("{} of {wires} wires broken, ", sample.wires_broken),
+        _ => format!("{} of {} broken, ", sample.wires_broken, counted(wires, "wire")),
     };
     format!("{state}{broken}{steps_per_second:.0} steps/s")
 }
@@ -81,8 +90,10 @@ impl Observer for Progress {
     }
 
     fn notice(&mut self, notice: &Notice) -> Result<()> {
-        // At once for whoever watches; the report repeats it at its head.
-        self.bar.println(format!("WARNING: {notice}"));
+        // At once for whoever watches; the report has it at its head, at its worst.
+        if self.told.insert(notice.finding.kind()) {
+            self.bar.println(format!("WARNING: {notice}"));
+        }
         Ok(())
     }
 

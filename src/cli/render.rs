@@ -64,7 +64,7 @@ pub fn render(args: Args) -> Result<Ended> {
     let stop = super::interrupt::install()?;
     let shown = run.show(&mut Counted::new(&mut writer, run.count(), !args.quiet), stop)?;
     let timings = writer.timings();
-    say!("{shown} pictures are in {}", out.display());
+    say!("{} in {}", crate::base::wording::counted(shown, "picture"), out.display());
     if let Some(animation) = animation.filter(|_| timings.animation_bytes > 0) {
         say!("{} of animation are in {}", outputs::megabytes(timings.animation_bytes), animation.file.display());
     }

@@ -5,6 +5,7 @@ use super::ended::Ended;
 use super::interrupt;
 use super::say::{self, say};
 use crate::base::error::Result;
+use crate::base::wording::counted;
 use crate::study::stability::outcome::{Outcome, Report};
 use crate::study::stability::{plots, report, run_all, select};
 use std::sync::atomic::Ordering;
@@ -36,10 +37,10 @@ pub fn stability(args: &CaseArgs) -> Result<Ended> {
     }
     if let Some(folder) = args.plots(NAME) {
         let files = plots::write(&reports, &folder)?;
-        say!("plots: {} files in {}", files.len(), folder.display());
+        say!("plots: {} in {}", counted(files.len(), "file"), folder.display());
     }
     if stop.load(Ordering::Relaxed) {
-        say!("interrupted: {} of {} cases were run", reports.len(), cases.len());
+        say!("interrupted after {} of {}", reports.len(), counted(cases.len(), "case"));
         return Ok(Ended::Interrupted);
     }
     Ok(if reports.iter().any(|r| r.outcome == Outcome::Failed) { Ended::Missed } else { Ended::Well })

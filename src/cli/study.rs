@@ -6,6 +6,7 @@ use super::interrupt;
 use super::say::{self, say};
 use super::values::{Seeds, quality};
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use crate::run::folder;
 use crate::scene::quality::Quality;
 use crate::study::cases::workshop::Progress;
@@ -104,7 +105,7 @@ fn list() -> Result<Ended> {
     let wide = definition::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     for (name, text) in definition::list() {
         let study = Definition::parse(text, &format!("{name}.toml"), Path::new("."), &Changes::default())?;
-        say!("{name:wide$}  {} ({} cases)", study.about, study.cases().len());
+        say!("{name:wide$}  {} ({})", study.about, counted(study.cases().len(), "case"));
     }
     Ok(Ended::Well)
 }
@@ -122,7 +123,10 @@ fn dry_run(definition: &Definition, out: &Path, jobs: usize) -> Result<Ended> {
     };
     let done = costs.cases.iter().filter(|cost| **cost == Cost::Done).count();
     let left = cases::time(costs.left() / jobs as f64);
-    say!("{} cases, {done} of them done; about {left} for the others, {jobs} at a time, {by}.", costs.cases.len());
+    say!(
+        "{}, {done} of them done; about {left} for the others, {jobs} at a time, {by}.",
+        counted(costs.cases.len(), "case")
+    );
     Ok(Ended::Well)
 }
 

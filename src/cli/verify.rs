@@ -5,6 +5,7 @@ use super::ended::Ended;
 use super::interrupt;
 use super::say::{self, say};
 use crate::base::error::Result;
+use crate::base::wording::counted;
 use crate::study::verify::{self, CASES, Effort, Report, plots, report};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -36,11 +37,11 @@ pub fn verify(args: &CaseArgs) -> Result<Ended> {
     if let Some(folder) = args.plots(NAME) {
         let files = plots::write(&reports, &folder)?;
         if !files.is_empty() {
-            say!("plots: {} files in {}", files.len(), folder.display());
+            say!("plots: {} in {}", counted(files.len(), "file"), folder.display());
         }
     }
     if stop.load(Ordering::Relaxed) {
-        say!("interrupted: {} of {} cases were run", reports.len(), cases.len());
+        say!("interrupted after {} of {}", reports.len(), counted(cases.len(), "case"));
         return Ok(Ended::Interrupted);
     }
     Ok(if reports.iter().all(Report::passes) { Ended::Well } else { Ended::Missed })

@@ -354,7 +354,7 @@ impl Engine {
         }
     }
 
-    /// Strain of the body: grip displacement over gauge length, smoothed as stress is, so that the two belong together
+    /// Strain of the body: grip displacement over the free length between the particles held, smoothed as stress is, so that the two belong together
     /// ([`measure::Measures`]) (-).
     pub fn strain(&self) -> f64 {
         self.measures.strain()
@@ -430,6 +430,11 @@ impl Engine {
     /// Notices since the last call, in order.
     pub fn take_notices(&mut self) -> Vec<Notice> {
         self.monitor.take_notices()
+    }
+
+    /// Those of them that have become worse since they were given, as they were at their worst.
+    pub fn take_worse(&mut self) -> Vec<Notice> {
+        self.monitor.take_worse()
     }
 
     /// What was seen of the engine's own limits over the whole run so far.

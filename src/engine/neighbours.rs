@@ -226,6 +226,11 @@ impl Neighbours {
         (&self.list, &self.reference)
     }
 
+    /// What touches.
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
     /// Skin (m).
     pub fn skin(&self) -> f64 {
         self.skin

@@ -9,6 +9,9 @@ pub fn wire_number(wire: usize) -> usize {
     wire + 1
 }
 
+/// What the first break of a run is called: another strand has another.
+pub const FIRST_BREAK: &str = "first break in this strand";
+
 /// The line that tells of a rupture, such as
 /// `wire 24, outer layer, snapped at z = 65.7 mm, strain 23.4 %, 294 MPa`: place of the bond when it broke,
 /// strain of the body, true axial stress of the bond just before.

@@ -46,7 +46,7 @@ pub struct Outcome {
 ///
 /// Rows and snapshots come as the scene's `output` says, in the order in which things happen; a rupture comes
 /// before the row that follows it. What a run should not be believed without comes as a notice when it is found,
-/// the error that ends a run included. The first and the last state always come with a snapshot, and ruptures with the
+/// the error that ends a run included, and once more at the end if it became worse. The first and the last state always come with a snapshot, and ruptures with the
 /// state at the last row before them and one soon after ([`Schedule`]). Every observer
 /// that was started is finished, also after an error. Call it inside a rayon pool to choose the threads.
 ///
@@ -153,6 +153,9 @@ impl Driver<'_, '_> {
         let ended = self.run(stop);
         self.guard.finish(matches!(ended, Ok(reason) if reason != StopReason::Interrupted));
         self.notices()?;
+        // What became worse after it was told of, as it was at its worst.
+        let worse = [self.engine.take_worse(), self.guard.take_worse()];
+        worse.iter().flatten().try_for_each(|notice| self.audience.notice(notice))?;
         if let Err(Error::Simulation(stopped)) = &ended {
             let finding = Finding::Failed { failure: stopped.failure.clone() };
             self.audience.notice(&Notice { at: stopped.at, finding })?;

@@ -2,6 +2,7 @@
 
 use crate::base::error::Result;
 use crate::base::finding::StepLimit;
+use crate::base::wording::counted;
 use crate::engine::Engine;
 use crate::engine::memory::StageBytes;
 use crate::scene::plan::Plan;
@@ -99,11 +100,20 @@ fn duration(spec: &Spec, engine: &Engine) -> Option<f64> {
 
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "size: {} wires, {} particles, {} bonds", self.wires, self.particles, self.bonds)?;
         writeln!(
             f,
-            "time step: {:.3e} s at first, {:.3e} s after {} steps, limited by {}",
-            self.first_time_step, self.time_step, self.measured, self.time_step_limit
+            "size: {}, {}, {}",
+            counted(self.wires, "wire"),
+            counted(self.particles, "particle"),
+            counted(self.bonds, "bond")
+        )?;
+        writeln!(
+            f,
+            "time step: {:.3e} s at first, {:.3e} s after {}, limited by {}",
+            self.first_time_step,
+            self.time_step,
+            counted(self.measured, "step"),
+            self.time_step_limit
         )?;
         if let Some(duration) = self.duration {
             writeln!(f, "simulated time: {duration:.3e} s")?;

@@ -68,7 +68,14 @@ pub fn list() -> &'static [(&'static str, &'static str)] {
 pub fn find(name: &str) -> Result<&'static str> {
     match SCENES.iter().chain(VERIFICATION).find(|(known, _)| *known == name) {
         Some((_, text)) => Ok(text),
-        None => Err(Error::input(format!("there is no built-in scene `{name}`"), suggestion(name))),
+        None => {
+            let file = format!("{name}.toml");
+            let help = match Path::new(&file).is_file() {
+                true => format!("did you mean the file {file}?"),
+                false => suggestion(name),
+            };
+            Err(Error::input(format!("there is no built-in scene `{name}`"), help))
+        }
     }
 }
 

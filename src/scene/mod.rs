@@ -25,6 +25,7 @@ pub mod suggest;
 pub mod write;
 
 pub use idle::Idle;
+pub use resolve::can_name_a_folder;
 pub use source::SceneSource;
 
 use crate::base::error::{Error, Result};

@@ -82,12 +82,17 @@ fn refuse_gaps(at: &At, spacing: f64, contact: Option<&ContactSpec>) -> Result<(
     Err(at.key("spacing").error(what, format!("take a spacing below {GAP}, or smooth wires: contact.shape = \"wire\"")))
 }
 
+/// Whether a scene may have this name, and its results a folder of that name.
+pub fn can_name_a_folder(name: &str) -> bool {
+    let allowed = |c: char| c.is_alphanumeric() || "-_.+".contains(c);
+    !name.is_empty() && !name.starts_with(['.', '-']) && name.chars().all(allowed)
+}
+
 fn scene_name(at: &At, raw: &RawScene, file: &str) -> Result<String> {
     let Some(name) = &raw.name else {
         return Ok(file.to_owned());
     };
-    let allowed = |c: char| c.is_alphanumeric() || "-_.+".contains(c);
-    if name.is_empty() || name.starts_with('.') || !name.chars().all(allowed) {
+    if !can_name_a_folder(name) {
         let what = format!("`name` is {name:?}, which cannot name a folder");
         return Err(at.key("name").error(what, "use letters, digits, - and _"));
     }

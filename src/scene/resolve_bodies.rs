@@ -7,6 +7,7 @@ use super::raw::{RawLay, RawLayer, RawSphere, RawStrand, RawWire, Scalar};
 use super::spec::{LayerSpec, PathSpec, SphereSpec, StrandSpec, WireSpec};
 use crate::base::error::Result;
 use crate::base::units::{self, Dimension};
+use crate::base::wording::counted;
 use std::path::{Path, PathBuf};
 
 /// Relative difference up to which two diameters are one, written with other units (-).
@@ -202,7 +203,7 @@ fn chosen_wires(at: &At, raw: &RawWire, len: usize) -> Result<std::ops::Range<us
             match number < len {
                 true => Ok(number..number + 1),
                 false => {
-                    let what = format!("`index` is {number}, but the file has {len} wires");
+                    let what = format!("`index` is {number}, but the file has {}", counted(len, "wire"));
                     Err(at.key("index").error(what, "they are numbered from 0"))
                 }
             }

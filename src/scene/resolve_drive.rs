@@ -104,7 +104,7 @@ fn hold(at: &At, raw: &RawHold, bodies: usize) -> Result<HoldSpec> {
     let body = raw.body.ok_or_else(|| at.missing("body", "0"))?;
     let body = at.key("body").count(body, 0)? as usize;
     if body >= bodies {
-        let what = format!("there is no body {body}: the scene has {bodies}, numbered from 0");
+        let what = format!("there is no body {body}: the scene has {bodies}, numbered from 0 (from 1 in results)");
         return Err(at.key("body").error(what, "strand wires come first, inside out, then [[wire]], then [[sphere]]"));
     }
     let mut fixed = [false; 6];

@@ -358,7 +358,7 @@ pub struct TimeSpec {
 /// When to stop; the first that holds ends the run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StopSpec {
-    /// Grip displacement over gauge length (-).
+    /// Strain of the body, grip displacement over free length (-).
     pub strain: Option<f64>,
     /// Nominal stress has fallen to this fraction of its peak, after a rupture (-).
     pub stress_fraction: Option<f64>,

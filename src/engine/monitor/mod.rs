@@ -1,8 +1,8 @@
 //! The monitor: sees an engine between two steps and says what is wrong with it, or what it needs.
 //!
-//! A finding is made once: contacts too deep for their law, a step that shrinks or is not stable, strain that localises in
-//! one bond, bonds stretched beyond what a search covers. What makes results worthless stops the run: wires that pass
-//! through each other, bodies that bend though nothing turns. All of it rides on work that is done anyway: the contact
+//! Findings are kept at their worst: contacts too deep for their law, a step that shrinks or is not stable, strain that localises in
+//! one bond, bonds stretched beyond what a search covers. What makes results worthless stops the run: bodies that
+//! pass through each other, or bend though nothing turns. All of it rides on work that is done anyway: the contact
 //! pass, the bound on the step, the neighbour search.
 
 mod crossing;
@@ -14,7 +14,8 @@ use super::state::Deepest;
 use super::step_choice;
 use super::step_view::StepView;
 use super::view::{DeepestContact, Findings, StepAt};
-use crate::base::finding::{Failure, Finding, FindingKind, Notice, Once, Relief};
+use crate::base::finding::{Failure, Finding, FindingKind, Instant, Notice, Relief};
+use crate::base::worst::Worst;
 use crate::scene::plan::ContactPlan;
 use crate::scene::spec::{GripKind, Spec};
 use crate::strand::assembly::Assembly;
@@ -44,7 +45,7 @@ pub enum Action {
 #[derive(Default)]
 pub struct Monitor {
     notices: Vec<Notice>,
-    made: Once,
+    worst: Worst,
     deepest: Option<(Deepest, DeepestContact)>,
     first_step: f64,
     least: StepAt,
@@ -61,6 +62,11 @@ impl Monitor {
     /// Notices since the last call, in order.
     pub fn take_notices(&mut self) -> Vec<Notice> {
         std::mem::take(&mut self.notices)
+    }
+
+    /// Those of them that have become worse since they were given, as they were at their worst.
+    pub fn take_worse(&mut self) -> Vec<Notice> {
+        self.worst.take_worse()
     }
 
     /// What was seen over the whole run so far.
@@ -103,11 +109,11 @@ impl Monitor {
             pressure,
             step: view.state.step,
             time: view.state.time,
-            strain: view.strain(),
+            strain: view.instant().strain,
         };
         self.deepest = Some((now, at));
         if now.ratio > DEEP {
-            self.found(view, FindingKind::DeepContact, || Finding::DeepContact {
+            self.found(view, FindingKind::DeepContact, now.ratio, || Finding::DeepContact {
                 overlap_over_radius: now.ratio,
                 between: now.pair.map(|p| view.body(p as usize)),
                 z_m: position[2],
@@ -131,7 +137,8 @@ impl Monitor {
         let greatest = fresh(&self.greatest, seconds > self.greatest.seconds);
         if least || greatest {
             let limit = step_choice::limit(view);
-            let at = StepAt { seconds, step: view.state.step, time: view.state.time, strain: view.strain(), limit };
+            let Instant { step, time, strain } = view.instant();
+            let at = StepAt { seconds, step, time, strain, limit };
             if least {
                 self.least = at.clone();
             }
@@ -140,7 +147,7 @@ impl Monitor {
             }
         }
         if view.spec.time.step.is_some_and(|step| step > view.bound.step) {
-            self.found(view, FindingKind::UnstableStep, || Finding::UnstableStep {
+            self.found(view, FindingKind::UnstableStep, seconds / view.bound.step, || Finding::UnstableStep {
                 step_s: seconds,
                 bound_s: view.bound.step,
                 mode: view.bound.mode,
@@ -149,7 +156,7 @@ impl Monitor {
             });
         } else if stiff && seconds < SHRUNK * self.first_step {
             let from_s = self.first_step;
-            self.found(view, FindingKind::StepShrunk, || Finding::StepShrunk {
+            self.found(view, FindingKind::StepShrunk, from_s / seconds, || Finding::StepShrunk {
                 from_s,
                 to_s: seconds,
                 limit: step_choice::limit(view),
@@ -162,7 +169,7 @@ impl Monitor {
         let stretch = view.neighbours.map_or(0.0, |neighbours| neighbours.stretched());
         if stretch > MOST_STRETCH {
             let found = || Finding::BondsStretched { stretch, covered: MOST_STRETCH };
-            self.found(view, FindingKind::BondsStretched, found);
+            self.found(view, FindingKind::BondsStretched, stretch, found);
         }
     }
 
@@ -188,7 +195,7 @@ impl Monitor {
         }
         (touches && back).then(|| {
             let body = || Finding::ContactsAdded { body: view.body(slot) };
-            self.found(view, FindingKind::ContactsAdded, body);
+            self.found(view, FindingKind::ContactsAdded, 0.0, body);
             Action::AddContacts
         })
     }
@@ -198,7 +205,7 @@ impl Monitor {
         let Some(necking) = &mut self.necking else { return };
         let (maximum_load, Some(neck)) = (necking.from, necking.look(view)) else { return };
         self.necking = None;
-        self.found(view, FindingKind::Necking, || Finding::Necking {
+        self.found(view, FindingKind::Necking, 0.0, || Finding::Necking {
             bond: view.member(neck.slot),
             z_m: view.state.x.z[neck.slot],
             plastic_strain: neck.strain,
@@ -207,22 +214,22 @@ impl Monitor {
         });
     }
 
-    /// Takes note of a finding, the first time that one of its kind is made.
-    fn found(&mut self, view: &StepView, kind: FindingKind, finding: impl FnOnce() -> Finding) {
-        if self.made.first(kind) {
+    /// Takes note of a finding that is the worst of its kind by `measure`; 0 for what cannot get worse.
+    fn found(&mut self, view: &StepView, kind: FindingKind, measure: f64, finding: impl FnOnce() -> Finding) {
+        if self.worst.tops(kind, measure) {
             let finding = finding();
             debug_assert_eq!(finding.kind(), kind);
-            self.notices.push(Notice { at: view.instant(), finding });
+            self.notices.extend(self.worst.put(measure, Notice { at: view.instant(), finding }));
         }
     }
 }
 
-/// Wires that passed through each other since the last neighbour search: what a run finds after that has nothing to do
-/// with the strand.
+/// Bodies that passed through each other since the last neighbour search: what a run finds after that has nothing to do
+/// with them.
 pub fn crossed(view: &StepView) -> Option<Failure> {
     let found = crossing(view.neighbours?, view.state, &view.assembly.wire_of)?;
     Some(Failure::PassedThrough {
-        bonds: found.bonds.map(|slot| view.member(slot)),
+        between: found.between.map(|slot| view.member(slot)),
         z_m: found.position.z,
         relief: relief(view),
     })

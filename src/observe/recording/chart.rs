@@ -126,9 +126,8 @@ impl Chart {
         let [x, y] = self.place(percent(first.strain), mpa(first.body_stress));
         let colour = Color::from_u32(paint::FIRST);
         let text = format!(
-            "1st break: wire {}, {}\n{:.2} %, {:.0} MPa",
-            wire_number(first.wire),
-            names::layer_name(info, first.layer),
+            "{}\n{:.2} %, {:.0} MPa",
+            names::first_break(info, first),
             percent(first.strain),
             mpa(first.body_stress)
         );

@@ -4,6 +4,8 @@ use super::stream::Stream;
 use super::{RERUN_VERSION, names};
 use crate::base::error::Result;
 use crate::base::finding::Notice;
+use crate::base::wording::counted;
+use crate::base::worst::renew;
 use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::summary::RunSummary;
 use crate::observe::units::{mm, mpa, percent};
@@ -37,7 +39,7 @@ impl Headline {
     /// Takes note of a notice.
     pub fn notice(&mut self, notice: &Notice) {
         self.changed = true;
-        self.notices.push(notice.clone());
+        renew(&mut self.notices, notice);
     }
 
     /// Sends the words when they have changed. They hold at all times, so that they can be read
@@ -135,8 +137,7 @@ fn result(summary: &RunSummary, warnings: usize) -> String {
     }
     match warnings {
         0 => {}
-        1 => parts.push("**1 warning, below**".into()),
-        n => parts.push(format!("**{n} warnings, below**")),
+        n => parts.push(format!("**{}, below**", counted(n, "warning"))),
     }
     let mut text = String::new();
     if !parts.is_empty() {
@@ -154,17 +155,17 @@ fn result(summary: &RunSummary, warnings: usize) -> String {
 pub(super) fn about(info: &RunInfo) -> String {
     let wires = info.layers.iter().enumerate().map(|(layer, name)| {
         let count = super::map::wires_of(info, layer).count();
-        format!("- {name}: {count} wires\n")
+        format!("- {name}: {}\n", counted(count, "wire"))
     });
     let wires: String = wires.collect();
     format!(
-        "# {}\n\n{}\n\n{wires}\n{} particles; positions in mm, stress in MPa. \
+        "# {}\n\n{}\n\n{wires}\n{}; positions in mm, stress in MPa. \
          The timeline `{}` counts strain in µm/m: 10,000 is 1 %.\n\n\
          Colours: from {:.0} to {:.0} MPa of true axial stress where stress colours; red at broken bonds.\n\n\
          strandsnap {}, Rerun {RERUN_VERSION}\n",
         info.name,
         info.about,
-        info.particles,
+        counted(info.particles, "particle"),
         super::STRAIN,
         info.stress_range[0],
         info.stress_range[1],

@@ -6,6 +6,7 @@ use super::knobs::Role;
 use super::pareto::staircase;
 use super::rows::Row;
 use crate::base::error::Result;
+use crate::base::wording::counted;
 use crate::study::cases::stat::Stat;
 use crate::study::plot::{self, Axis, Figure, Highlight, Legend, Limit, Mark, Series};
 use std::path::{Path, PathBuf};
@@ -42,7 +43,7 @@ fn on_one_core(study: &Study) -> bool {
 fn figure(study: &Study, quantity: &str, which: usize, error: fn(&Errors) -> f64) -> Figure {
     let time = match on_one_core(study) {
         true => "processor time on one core [s]".to_string(),
-        false => format!("run time on {} threads [s]", study.threads),
+        false => format!("run time on {} [s]", counted(study.threads, "thread")),
     };
     let title = format!("{}: error of {quantity} against run time", study.scene);
     let mut figure = Figure::new(title, Axis::log(time), Axis::log(format!("|error of {quantity}| [%]")));

@@ -6,6 +6,7 @@ use super::errors::Errors;
 use super::reference::Along;
 use super::rows::{Outcome, Row};
 use super::{Reference, Study, Subject};
+use crate::base::wording::counted;
 use crate::study::cases::measured::Measured;
 use crate::study::cases::stat::Stat;
 use crate::study::table::Table;
@@ -216,7 +217,9 @@ fn along(all: &[(u64, Along)]) -> Vec<String> {
             let known: Vec<f64> = here().filter_map(|along| along.order[k]).collect();
             match Stat::of(&known) {
                 Some(order) if known.len() == here().count() => format!("order {:.2}", order.mean),
-                Some(order) => format!("order {:.2} in {} of {} seeds", order.mean, known.len(), here().count()),
+                Some(order) => {
+                    format!("order {:.2} in {} of {}", order.mean, known.len(), counted(here().count(), "seed"))
+                }
                 None => "no order observed".into(),
             }
         };

@@ -23,7 +23,7 @@ pub const STRAIN: Invariant =
 
 pub const PULL: Invariant = Invariant {
     name: "strain-unit",
-    about: "strain in per cent is the grip's way over the gauge length, before the pull gets faster",
+    about: "strain in per cent is the grip's way over the free length, the gauge but for a particle, before the pull gets faster",
     check: pull,
 };
 

@@ -104,7 +104,7 @@ pub fn judge(case: &Case, ended: Ended, steps: u64, wall_s: f64) -> Report {
             match case.expect {
                 Expect::Stable => {}
                 Expect::Refused => wrong.push("it ran, and should have been refused".into()),
-                Expect::PassesThrough => wrong.push("it ran, and wires should have passed through each other".into()),
+                Expect::PassesThrough => wrong.push("it ran, and bodies should have passed through each other".into()),
             }
             if let Some(residual) = residual.filter(|r| r.is_nan() || *r > case.residual.0) {
                 wrong.push(format!("the energy ledger is open by {:.2} %", 100.0 * residual));
@@ -173,7 +173,7 @@ mod tests {
         let at = Instant { step: 5, time: 1e-6, strain: None };
         let stopped = |failure| Ended::Stopped(Box::new(Stopped { at, failure, kept: None }));
         let bond = Member { number: Some(2), body: Body::Wire { wire: 1, layer: "core".into() } };
-        let through = Failure::PassedThrough { bonds: [bond.clone(), bond], z_m: 0.0, relief: Relief::Speed };
+        let through = Failure::PassedThrough { between: [bond.clone(), bond], z_m: 0.0, relief: Relief::Speed };
         let outcome = |case: &Case, ended| judge(case, ended, 0, 0.0).outcome;
         let expected = case().passes_through();
         assert_eq!(outcome(&expected, stopped(through.clone())), Outcome::Stopped);

@@ -4,6 +4,7 @@ use super::case::Case;
 use super::measure::Answer;
 use super::outcome::{Outcome, Report};
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use crate::observe::files::write_whole;
 use serde::Serialize;
 use std::path::Path;
@@ -60,8 +61,8 @@ pub fn summary(reports: &[Report], seconds: f64) -> String {
     let steps: u64 = reports.iter().map(|report| report.steps).sum();
     let tail = if failed.is_empty() { String::new() } else { format!(": {}", failed.join(", ")) };
     format!(
-        "{} cases, {:.1} million steps in {seconds:.1} s: {} stable, {} refused, {} stopped, {} FAILED{tail}",
-        reports.len(),
+        "{}, {:.1} million steps in {seconds:.1} s: {} stable, {} refused, {} stopped, {} FAILED{tail}",
+        counted(reports.len(), "case"),
         steps as f64 * 1e-6,
         count(Outcome::Stable),
         count(Outcome::Refused),

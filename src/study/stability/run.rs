@@ -5,6 +5,7 @@ use super::critical;
 use super::measure::Seen;
 use super::outcome::{Ended, Report, judge};
 use crate::base::error::{Error, Result};
+use crate::base::worst::renew;
 use crate::engine::Engine;
 use crate::engine::view::Energy;
 use crate::observe::guard::Guard;
@@ -132,6 +133,9 @@ pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
     watched.row()?;
     watched.guard.finish(true);
     watched.notices();
+    for notice in watched.engine.take_worse().iter().chain(&watched.guard.take_worse()) {
+        renew(&mut watched.seen.notices, notice);
+    }
     watched.seen.finish(&watched.engine);
     Ok(watched.seen)
 }

@@ -5,6 +5,7 @@ use super::conflicts;
 use super::quantity::{self, Quantity};
 use super::raw::{RawDesign, RawQuality, RawSeeds, RawStudy};
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use crate::scene::quality::Quality;
 use crate::scene::spec::Spec;
 use crate::scene::suggest::nearest;
@@ -144,7 +145,11 @@ impl Definition {
         let model = design.map(|design| model(&design.interactions, &axes, &source)).transpose()?;
         let points = points(&axes, model.as_ref(), raw.design.as_ref(), &source)?;
         if points.len() * seeds.len() > MOST_CASES {
-            let what = format!("{} points and {} seeds are more than {MOST_CASES} cases", points.len(), seeds.len());
+            let what = format!(
+                "{} and {} are more than {MOST_CASES} cases",
+                counted(points.len(), "point"),
+                counted(seeds.len(), "seed")
+            );
             return Err(source.error("axis", what, "vary less, or pick points with [design]"));
         }
         let stem = Path::new(file_name).file_stem().map_or_else(|| "study".into(), |stem| stem.to_string_lossy());

@@ -5,6 +5,7 @@ use super::super::breaks;
 use super::super::definition::Definition;
 use super::super::gather::{CaseResult, Gathered, State, construction};
 use super::super::quantity::{self, Quantity};
+use crate::base::wording::counted;
 use crate::study::cases::measured::Measured;
 use crate::study::cases::stat::Stat;
 use crate::study::table::Table;
@@ -97,7 +98,7 @@ pub fn breaks(definition: &Definition, gathered: &Gathered) -> Table {
             let order: Vec<String> = layer.places.iter().chain([&layer.never]).map(usize::to_string).collect();
             let broke = runs - layer.never;
             cells.extend([
-                format!("{} ({} wires)", layer.layer, layer.wires),
+                format!("{} ({})", layer.layer, counted(layer.wires, "wire")),
                 format!("{} of {runs}", layer.places[0]),
                 order.join(" / "),
                 mean(layer.broken_percent, 0),
@@ -134,11 +135,11 @@ pub fn frequencies(gathered: &Gathered) -> String {
     let whole = |name: &str| quantity::find(name).expect("it is one of them").of;
     let (outer, below) = (whole("outer-broken"), whole("below-broken"));
     format!(
-        "Over all {} runs in which wires of several layers broke, the first was in the outermost layer in {}, in the innermost in \
+        "Over {} in which wires of several layers broke, the first was in the outermost layer in {}, in the innermost in \
          {}, between in {}; in the middle third of the gauge in {}. At their ends all outer wires were broken in {}, all \
          wires below them in {}, all outer ones with some below still whole in {}, and some outer ones whole with all below \
          broken in {}.\n",
-        broken.len(),
+        counted(broken.len(), "run"),
         first(&|layer, last| layer == last),
         first(&|layer, _| layer == 0),
         first(&|layer, last| layer > 0 && layer < last),
@@ -168,8 +169,8 @@ pub fn state(definition: &Definition, gathered: &Gathered) -> String {
             .collect();
     let _ = writeln!(
         text,
-        "{} cases at {} quality: {}.",
-        gathered.cases.len(),
+        "{} at {} quality: {}.",
+        counted(gathered.cases.len(), "case"),
         definition.quality.word(),
         kinds.join(", ")
     );
@@ -182,8 +183,8 @@ pub fn state(definition: &Definition, gathered: &Gathered) -> String {
     if gathered.other_build > 0 {
         let _ = writeln!(
             text,
-            "{} cases were run by another build with the same physics; --fresh runs them again.",
-            gathered.other_build
+            "Run by another build with the same physics, until --fresh: {}.",
+            counted(gathered.other_build, "case")
         );
     }
     text
