@@ -1,17 +1,12 @@
 //! The progress bar on standard error.
 
 use crate::base::error::Result;
-<<<<<<< HEAD:src/cli/progress.rs
-use crate::base::finding::Notice;
+use crate::base::finding::{FindingKind, Notice};
+use crate::base::wording::counted;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
 use crate::observe::planned::PlannedEnd;
 use crate::observe::units::{mpa, percent};
-=======
-use crate::base::finding::{FindingKind, Notice};
-use crate::base::wording::counted;
-use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
->>>>>>> wt-a:src/observe/progress.rs
 use crate::scene::spec::StopSpec;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeSet;
