@@ -2,7 +2,7 @@
 //! place where laws and shape are chosen.
 
 pub mod pair;
-pub mod spheres;
+pub(super) mod spheres;
 mod stage;
 mod wires;
 
