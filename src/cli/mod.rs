@@ -24,7 +24,7 @@ mod values;
 mod verify;
 mod view;
 
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -57,7 +57,7 @@ enum Command {
     Export(export::Args),
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
-    /// Say what accuracy each second buys: error against run time, knob by knob
+    /// Say what accuracy each second buys: error against run time, parameter by parameter
     Accuracy(accuracy::Args),
     /// Vary a scene: pitch, wire diameter, seeds, or what a file says; gather, fit, and set beside the paper and theory
     Study(study::Args),
@@ -83,8 +83,6 @@ enum Command {
 /// How a command ended when nothing went wrong.
 enum Ended {
     Well,
-    /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
-    Interrupted,
     /// A study or a check ran, and a case of it misses what it must give.
     Missed,
 }
@@ -104,7 +102,8 @@ pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(Ended::Well) => ExitCode::SUCCESS,
         Ok(Ended::Missed) => ExitCode::from(4),
-        Ok(Ended::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
+        // Whoever pressed Ctrl-C was told what is kept.
+        Err(error @ Error::Interrupted) => ExitCode::from(error.exit_code()),
         Err(error) => {
             let code = error.exit_code();
             eprintln!("{:?}", miette::Report::new(error));

@@ -2,7 +2,7 @@
 
 use super::columns::Means;
 use super::ensemble::{self, Quantity, Spread};
-use super::rows::{Outcome, Row};
+use super::rows::Row;
 use super::table;
 use super::{Study, reference::Along};
 use crate::base::error::{Error, Result};
@@ -51,14 +51,14 @@ struct Refinement<'a> {
 
 #[derive(Serialize)]
 struct Absent<'a> {
-    knob: &'a str,
+    parameter: &'a str,
     reason: &'a str,
 }
 
 /// Means over seeds.
 #[derive(Serialize)]
 struct RowOut<'a> {
-    knob: Option<&'a str>,
+    parameter: Option<&'a str>,
     key: Option<&'a str>,
     value: &'a str,
     number: Option<f64>,
@@ -88,7 +88,7 @@ struct RunOut<'a> {
 pub fn write(study: &Study, command: &str, path: &Path) -> Result<()> {
     let reference = &study.reference;
     let exact = reference.closed_form;
-    let base = study.rows.iter().find(|row| row.knob.is_none());
+    let base = study.rows.iter().find(|row| row.parameter.is_none());
     let document = Document {
         scene: &study.scene,
         command,
@@ -108,7 +108,7 @@ pub fn write(study: &Study, command: &str, path: &Path) -> Result<()> {
         },
         rows: study.rows.iter().map(|one| row(one, base)).collect(),
         left_out: table::left_out(study),
-        absent: study.absent.iter().map(|(knob, reason)| Absent { knob, reason }).collect(),
+        absent: study.absent.iter().map(|(parameter, reason)| Absent { parameter, reason }).collect(),
         summary: summary(study),
         tables: [table::costs_and_errors(study), table::histories_and_checks(study)],
     };
@@ -131,14 +131,14 @@ fn summary(study: &Study) -> String {
 }
 
 fn row<'a>(row: &'a Row, base: Option<&Row>) -> RowOut<'a> {
-    let knob = row.knob.as_ref();
+    let parameter = row.parameter.as_ref();
     RowOut {
-        knob: knob.map(|knob| knob.name),
-        key: knob.map(|knob| knob.key),
+        parameter: parameter.map(|parameter| parameter.name),
+        key: parameter.map(|parameter| parameter.key),
         value: &row.value,
-        number: knob.and_then(|knob| knob.number),
-        role: knob.map(|knob| knob.role.word()),
-        default: knob.is_none(),
+        number: parameter.and_then(|parameter| parameter.number),
+        role: parameter.map(|parameter| parameter.role.word()),
+        default: parameter.is_none(),
         means: Means(row),
         told_from_scatter: Quantity::ALL.map(|quantity| ensemble::mean_is_told(row, quantity)),
         spread: Quantity::ALL.map(|quantity| base.and_then(|base| ensemble::spread(row, base, quantity))),
@@ -148,11 +148,8 @@ fn row<'a>(row: &'a Row, base: Option<&Row>) -> RowOut<'a> {
             .map(|run| RunOut {
                 seed: run.seed,
                 outcome: run.word(),
-                cause: run.cause().map(String::as_str),
-                errors: match &run.outcome {
-                    Outcome::Ran { errors, .. } => errors.as_ref(),
-                    _ => None,
-                },
+                cause: run.cause(),
+                errors: run.ran().and_then(|run| run.errors.as_ref()),
             })
             .collect(),
     }

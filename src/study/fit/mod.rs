@@ -7,7 +7,7 @@ mod polynomial;
 
 pub use comparison::{Compared, Comparison, CrossValidation, compare};
 
-use crate::study::cases::stat::t_95;
+use crate::study::statistics::t_95;
 use nalgebra::{DMatrix, DVector};
 use serde::{Serialize, Serializer};
 

@@ -2,7 +2,7 @@
 //! variance (Montgomery, *Design and Analysis of Experiments*, 8th ed. 2013, chapters 3, 5 and 10).
 
 use super::model::Model;
-use crate::study::cases::stat::t_95;
+use crate::study::statistics::t_95;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};

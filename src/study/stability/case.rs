@@ -143,16 +143,15 @@ impl Case {
         self
     }
 
-    /// Reads the scene with the case's options and `more`.
+    /// Reads the scene with the case's options.
     ///
     /// # Errors
     /// What [`scene::load`] refuses.
-    pub fn scene(&self, quick: bool, more: &[String]) -> Result<Scene> {
+    pub fn scene(&self, quick: bool) -> Result<Scene> {
         let mut options = self.set.clone();
         if quick {
             options.extend_from_slice(&self.quick);
         }
-        options.extend_from_slice(more);
         match self.base {
             Base::Builtin(name) => scene::load(name, &options),
             Base::Text(text) => scene::parse(text, &format!("{}.toml", self.name), Path::new("."), &options),

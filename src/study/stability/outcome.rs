@@ -3,12 +3,10 @@
 use super::case::{Case, Expect};
 use super::measure::Answer;
 use crate::base::finding::{Failure, FindingKind, Notice, Stopped};
-use serde::Serialize;
 use std::fmt;
 
 /// How a case ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// Ran to its end: every value finite, ledger closed, the known number met.
     Stable,
@@ -20,14 +18,21 @@ pub enum Outcome {
     Failed,
 }
 
-impl fmt::Display for Outcome {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
+impl Outcome {
+    /// In a word, for programs.
+    pub fn word(self) -> &'static str {
+        match self {
             Self::Stable => "stable",
             Self::Refused => "refused",
             Self::Stopped => "stopped",
-            Self::Failed => "FAILED",
-        })
+            Self::Failed => "failed",
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(if *self == Self::Failed { "FAILED" } else { self.word() })
     }
 }
 

@@ -28,7 +28,8 @@ pub(super) struct RawStudy {
     /// Quantities that curves are fitted to, over the only axis.
     #[serde(default)]
     pub fits: Vec<String>,
-    /// What the results stand beside: "paper", "strand-theory".
+    /// What the results are compared with: a data set of `assets/reference/` by name, such as "zhao-2025", and
+    /// "strand-theory", which is calibrated on its experiment.
     #[serde(default)]
     pub compare: Vec<String>,
 }

@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::finding::{Finding, Point, Spent};
-use super::support::{Lab, set};
+use super::support::{Context, set};
 use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::reference::beam::RoundBar;
@@ -47,29 +47,29 @@ fn tip(engine: &Engine) -> f64 {
 }
 
 /// Tip deflection (m) after the ramp; the window holds several periods of the first mode.
-fn settled_tip(lab: &Lab, scene: &str, options: &[String]) -> Result<(RoundBar, f64, Spent)> {
-    let mut trial = lab.trial(scene, options)?;
-    let from = trial.spec.holds.iter().map(|h| h.ramp).fold(0.0, f64::max);
-    let to = trial.spec.stop.time.unwrap_or(from);
-    let deflection = trial.settled(from, to, tip)?;
-    Ok((trial.bar(), deflection, trial.finish()))
+fn settled_tip(context: &Context, scene: &str, options: &[String]) -> Result<(RoundBar, f64, Spent)> {
+    let mut simulation = context.simulation(scene, options)?;
+    let from = simulation.spec.holds.iter().map(|h| h.ramp).fold(0.0, f64::max);
+    let to = simulation.spec.stop.time.unwrap_or(from);
+    let deflection = simulation.settled(from, to, tip)?;
+    Ok((simulation.bar(), deflection, simulation.finish()))
 }
 
 /// A bond is Timoshenko's beam, exact between its ends: a force at the tip gives the exact deflection at any spacing.
-fn cantilever_tip(lab: &Lab) -> Result<Vec<Finding>> {
+fn cantilever_tip(context: &Context) -> Result<Vec<Finding>> {
     let mut findings = Vec::new();
-    for spacing in lab.pick(&[20.0, 5.0, 2.0][..], &[20.0, 10.0, 5.0, 2.0, 1.0]) {
-        let (bar, deflection, spent) = settled_tip(lab, "verify/tip-load", &[set("spacing", spacing)])?;
+    for spacing in context.pick(&[20.0, 5.0, 2.0][..], &[20.0, 10.0, 5.0, 2.0, 1.0]) {
+        let (bar, deflection, spent) = settled_tip(context, "verify/tip-load", &[set("spacing", spacing)])?;
         let what = format!("tip deflection, worst: a/L = {}", spacing / LENGTH);
         findings.push(Finding::new(what, "m", deflection, bar.cantilever_tip(LOAD), spent).within(1e-4));
     }
     Ok(vec![Finding::worst(findings)])
 }
 
-fn cantilever_stocky(lab: &Lab) -> Result<Vec<Finding>> {
+fn cantilever_stocky(context: &Context) -> Result<Vec<Finding>> {
     let options =
         [set("wire.0.to", r#"["0 mm", "0 mm", "1.6 mm"]"#), set("hold.1.ramp", "100 us"), set("stop.time", "400 us")];
-    let (bar, deflection, spent) = settled_tip(lab, "verify/tip-load", &options)?;
+    let (bar, deflection, spent) = settled_tip(context, "verify/tip-load", &options)?;
     let bending = LOAD * bar.length.powi(3) / (3.0 * bar.young * bar.second_moment());
     let exact = bar.cantilever_tip(LOAD);
     Ok(vec![
@@ -80,11 +80,11 @@ fn cantilever_stocky(lab: &Lab) -> Result<Vec<Finding>> {
 
 /// A load shared equally by n + 1 particles is that of the continuum up to order a/L: the end particles stand for half
 /// a spacing and carry a whole share. The model's own sum over its particles is met at every spacing.
-fn cantilever_shared(lab: &Lab) -> Result<Vec<Finding>> {
+fn cantilever_shared(context: &Context) -> Result<Vec<Finding>> {
     let (mut sums, mut points, mut tips) = (Vec::new(), Vec::new(), Vec::new());
     let mut exact = f64::NAN;
-    for spacing in lab.pick(&[2.0, 1.0, 0.5][..], &[4.0, 2.0, 1.0, 0.5, 0.25]) {
-        let (bar, deflection, spent) = settled_tip(lab, "verify/shared-load", &[set("spacing", spacing)])?;
+    for spacing in context.pick(&[2.0, 1.0, 0.5][..], &[4.0, 2.0, 1.0, 0.5, 0.25]) {
+        let (bar, deflection, spent) = settled_tip(context, "verify/shared-load", &[set("spacing", spacing)])?;
         let n = (LENGTH / spacing) as usize;
         let (l, share) = (bar.length, LOAD / (n + 1) as f64);
         let stiffness = bar.young * bar.second_moment();
@@ -106,19 +106,19 @@ fn cantilever_shared(lab: &Lab) -> Result<Vec<Finding>> {
 }
 
 /// The angle is the spin summed up, as the bonds do.
-fn torsion_bar(lab: &Lab) -> Result<Vec<Finding>> {
+fn torsion_bar(context: &Context) -> Result<Vec<Finding>> {
     let mut findings = Vec::new();
-    for spacing in lab.pick(&[10.0, 2.0][..], &[10.0, 2.0, 1.0]) {
-        let mut trial = lab.trial("verify/torque", &[set("spacing", spacing)])?;
-        let end = trial.bonds();
+    for spacing in context.pick(&[10.0, 2.0][..], &[10.0, 2.0, 1.0]) {
+        let mut simulation = context.simulation("verify/torque", &[set("spacing", spacing)])?;
+        let end = simulation.bonds();
         let mut angle = 0.0;
-        let mean = trial.settled(100e-6, 500e-6, |engine| {
+        let mean = simulation.settled(100e-6, 500e-6, |engine| {
             angle += engine.state().w.z[end] * engine.state().dt;
             angle
         })?;
-        let exact = trial.bar().twist(0.12e-3);
+        let exact = simulation.bar().twist(0.12e-3);
         let what = format!("angle of the end, worst: a/L = {}", spacing / LENGTH);
-        findings.push(Finding::new(what, "rad", mean, exact, trial.finish()).within(1e-4));
+        findings.push(Finding::new(what, "rad", mean, exact, simulation.finish()).within(1e-4));
     }
     Ok(vec![Finding::worst(findings)])
 }

@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::finding::{Finding, Spent};
-use super::support::{Lab, set};
+use super::support::{Context, set};
 use crate::base::error::{Error, Result};
 use crate::reference::stability::{Ends, critical_step};
 
@@ -54,15 +54,15 @@ impl Edge {
 }
 
 /// Bisection between 0.5 and 2 times the bound; without an edge there, the edge is NaN.
-fn edge(lab: &Lab, scene: &str, options: &[String]) -> Result<Edge> {
-    let bound = lab.trial(scene, options)?.engine.time_step_bound();
+fn edge(context: &Context, scene: &str, options: &[String]) -> Result<Edge> {
+    let bound = context.simulation(scene, options)?.engine.time_step_bound();
     let mut spent = Spent::default();
     let mut explodes = |step: f64| {
         let mut options = options.to_vec();
         options.push(set("time.step", format!("{step:e} s")));
-        let mut trial = lab.trial(scene, &options)?;
-        let result = trial.run_steps(STEPS, |_| {});
-        spent = spent + trial.spent();
+        let mut simulation = context.simulation(scene, &options)?;
+        let result = simulation.run_steps(STEPS, |_| {});
+        spent = spent + simulation.spent();
         match result {
             Ok(()) => Ok(false),
             Err(Error::Simulation(_)) => Ok(true),
@@ -80,12 +80,12 @@ fn edge(lab: &Lab, scene: &str, options: &[String]) -> Result<Edge> {
     Ok(Edge { step: low, bound, spent })
 }
 
-fn chain(lab: &Lab) -> Result<Vec<Finding>> {
-    let still = lab.trial("verify/chain", &[])?;
+fn chain(context: &Context) -> Result<Vec<Finding>> {
+    let still = context.simulation("verify/chain", &[])?;
     let (a, bar) = (still.engine.assembly(), still.bar());
     let exact =
         critical_step(Ends::FixedFixed, a.wires[0].len - 2, bar.young * bar.area() / a.rest_length[0], a.mass[1]);
-    let edge = edge(lab, "verify/chain", &[])?;
+    let edge = edge(context, "verify/chain", &[])?;
     Ok(vec![
         Finding::new("greatest stable step", "s", edge.step, exact, edge.spent).within(5e-4),
         Finding::new("the engine's bound", "s", edge.bound, exact, edge.spent).between(-0.2, 0.0),
@@ -93,12 +93,12 @@ fn chain(lab: &Lab) -> Result<Vec<Finding>> {
 }
 
 /// Which mode limits changes with the spacing.
-fn cantilever(lab: &Lab) -> Result<Vec<Finding>> {
+fn cantilever(context: &Context) -> Result<Vec<Finding>> {
     let mut findings = Vec::new();
-    for spacing in lab.pick(&[0.5, 2.0][..], &[0.5, 1.0, 2.0, 3.0]) {
+    for spacing in context.pick(&[0.5, 2.0][..], &[0.5, 1.0, 2.0, 3.0]) {
         let options =
             [set("spacing", spacing), set("wire.0.to", r#"["0 mm", "0 mm", "6 mm"]"#), set("stop.time", "1 s")];
-        let edge = edge(lab, "verify/free-vibration", &options)?;
+        let edge = edge(context, "verify/free-vibration", &options)?;
         findings.push(edge.bound_below(format!("the engine's bound, worst spacing: {spacing} d"), 0.2));
     }
     Ok(vec![Finding::worst(findings)])
@@ -106,23 +106,23 @@ fn cantilever(lab: &Lab) -> Result<Vec<Finding>> {
 
 /// Its end particles have half the mass. A gentle throw: turning fast, the wire would be pulled stiffer than the bound
 /// knows at the start.
-fn free_wire(lab: &Lab) -> Result<Vec<Finding>> {
+fn free_wire(context: &Context) -> Result<Vec<Finding>> {
     let mut findings = Vec::new();
     for spacing in [1.0, 2.0] {
         let options = [set("spacing", spacing), set("wire.0.spin", r#"["2 rad/s", "1 rad/s", "-1 rad/s"]"#)];
-        let edge = edge(lab, "verify/free-wire", &options)?;
+        let edge = edge(context, "verify/free-wire", &options)?;
         findings.push(edge.bound_below(format!("the engine's bound, worst spacing: {spacing} d"), 0.2));
     }
     Ok(vec![Finding::worst(findings)])
 }
 
-fn damped(lab: &Lab) -> Result<Vec<Finding>> {
+fn damped(context: &Context) -> Result<Vec<Finding>> {
     [0.05, 0.3]
         .into_iter()
         .map(|damping| {
             let options =
                 [set("bond.damping", damping), set("wire.0.to", r#"["0 mm", "0 mm", "6 mm"]"#), set("spacing", 1)];
-            let edge = edge(lab, "verify/free-vibration", &options)?;
+            let edge = edge(context, "verify/free-vibration", &options)?;
             let finding = edge.bound_below(format!("the engine's bound at {damping} of critical damping"), 1.0);
             Ok(finding.note("the bound counts every bond's damping at its worst, and may lie well below"))
         })

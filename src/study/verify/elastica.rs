@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::finding::{Finding, Point, Spent};
-use super::support::{Lab, set};
+use super::support::{Context, set};
 use crate::base::error::Result;
 use crate::reference::elastica;
 use crate::scene;
@@ -16,39 +16,39 @@ pub const ELASTICA: Case = Case {
     run: elastica,
 };
 
-/// Hann's window over `from..to`, that of [`super::support::Trial::settled`].
+/// Hann's window over `from..to`, that of [`super::support::Simulation::settled`].
 fn window(time: f64, from: f64, to: f64) -> f64 {
     let phase = ((time - from) / (to - from)).clamp(0.0, 1.0);
     (PI * phase).sin().powi(2)
 }
 
 /// Tip over the length, across and along the clamp, under P L²/(E I) = `load` with a spacing of `spacing` diameters.
-fn tip(lab: &Lab, load: f64, spacing: f64) -> Result<(DVec2, Spent)> {
+fn tip(context: &Context, load: f64, spacing: f64) -> Result<(DVec2, Spent)> {
     let mut spec = scene::load("verify/elastica", &[set("spacing", spacing)])?.spec;
-    let bar = lab.trial_of(spec.clone())?.bar();
+    let bar = context.simulation_of(spec.clone())?.bar();
     spec.holds[1].force.x = load * bar.young * bar.second_moment() / bar.length.powi(2);
     let (from, to) = (spec.holds[1].ramp, spec.stop.time.expect("the scene says when it ends"));
-    let mut trial = lab.trial_of(spec)?;
-    let end = trial.bonds();
+    let mut simulation = context.simulation_of(spec)?;
+    let end = simulation.bonds();
     let (mut along, mut weights) = (0.0, 0.0);
-    let across = trial.settled(from, to, |engine| {
+    let across = simulation.settled(from, to, |engine| {
         let (s, weight) = (engine.state(), window(engine.time(), from, to) * engine.time_step());
         (along, weights) = (along + weight * s.x.z[end], weights + weight);
         s.x.x[end]
     })?;
-    Ok((DVec2::new(across, along / weights) / bar.length, trial.finish()))
+    Ok((DVec2::new(across, along / weights) / bar.length, simulation.finish()))
 }
 
 /// Chords of a polygon with the curve's corners on it: order 2 in the spacing.
-fn elastica(lab: &Lab) -> Result<Vec<Finding>> {
+fn elastica(context: &Context) -> Result<Vec<Finding>> {
     let mut found = Vec::new();
-    for load in lab.pick(&[10.0][..], &[1.0, 3.0, 10.0]) {
+    for load in context.pick(&[10.0][..], &[1.0, 3.0, 10.0]) {
         let exact = elastica::tip(*load);
         let exact = DVec2::new(exact.deflection, exact.reach);
         let mut points = Vec::new();
         let mut finest = DVec2::NAN;
-        for bonds in lab.pick(&[5.0, 10.0][..], &[5.0, 10.0, 20.0]) {
-            let (at, spent) = tip(lab, *load, 160.0 / bonds)?;
+        for bonds in context.pick(&[5.0, 10.0][..], &[5.0, 10.0, 20.0]) {
+            let (at, spent) = tip(context, *load, 160.0 / bonds)?;
             points.push(Point { resolution: 1.0 / bonds, error: at.distance(exact), spent });
             finest = at;
         }

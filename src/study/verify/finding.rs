@@ -80,11 +80,21 @@ impl Order {
 
 /// Whether a finding agrees with its closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Verdict {
     /// Error and order are within their targets.
     Pass,
     /// One of them is not, or is not a number.
     Miss,
+}
+
+impl Verdict {
+    /// In a word, for programs.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Pass => "pass",
+            Verdict::Miss => "miss",
+        }
+    }
 }
 
 /// A computed number beside its closed form.
@@ -179,11 +189,11 @@ impl Finding {
     }
 
     /// Pass when error and order are within their targets.
-    pub fn outcome(&self) -> Outcome {
+    pub fn verdict(&self) -> Verdict {
         let [low, high] = self.allowed;
         let error = self.error();
         let near = low <= error && error <= high;
-        if near && self.order.is_none_or(|order| order.holds()) { Outcome::Pass } else { Outcome::Miss }
+        if near && self.order.is_none_or(|order| order.holds()) { Verdict::Pass } else { Verdict::Miss }
     }
 
     /// Of several findings of one kind the one that uses most of what it is allowed, with what all of them took.
@@ -213,13 +223,13 @@ mod tests {
 
     #[test]
     fn outcome_follows_from_the_numbers() {
-        assert_eq!(finding(1.004, 1.0).within(5e-3).outcome(), Outcome::Pass);
-        assert_eq!(finding(0.994, 1.0).within(5e-3).outcome(), Outcome::Miss);
-        assert_eq!(finding(1.01, 1.0).between(-0.2, 0.0).outcome(), Outcome::Miss);
-        assert_eq!(finding(f64::NAN, 1.0).within(1.0).outcome(), Outcome::Miss);
-        assert_eq!(finding(0.0, 0.0).within(1.0).outcome(), Outcome::Miss, "zero needs a scale");
-        assert_eq!(finding(1e-9, 0.0).relative_to(1.0).within(1e-8).outcome(), Outcome::Pass);
-        assert_eq!(finding(1.0 + 1e-15, 1.0).outcome(), Outcome::Miss, "nothing is allowed until it is said");
+        assert_eq!(finding(1.004, 1.0).within(5e-3).verdict(), Verdict::Pass);
+        assert_eq!(finding(0.994, 1.0).within(5e-3).verdict(), Verdict::Miss);
+        assert_eq!(finding(1.01, 1.0).between(-0.2, 0.0).verdict(), Verdict::Miss);
+        assert_eq!(finding(f64::NAN, 1.0).within(1.0).verdict(), Verdict::Miss);
+        assert_eq!(finding(0.0, 0.0).within(1.0).verdict(), Verdict::Miss, "zero needs a scale");
+        assert_eq!(finding(1e-9, 0.0).relative_to(1.0).within(1e-8).verdict(), Verdict::Pass);
+        assert_eq!(finding(1.0 + 1e-15, 1.0).verdict(), Verdict::Miss, "nothing is allowed until it is said");
     }
 
     #[test]
@@ -229,7 +239,7 @@ mod tests {
         let f = finding(0.98, 1.0).within(0.05).converging("a/L", points, 2.0, 0.1);
         assert!((f.order.unwrap().observed - 1.0).abs() < 1e-12);
         assert_eq!(f.spent, Spent { steps: 3, wall_s: 1.5 });
-        assert_eq!(f.outcome(), Outcome::Miss);
+        assert_eq!(f.verdict(), Verdict::Miss);
         assert!(!Order::worst(&[], 2.0, 1.0).holds());
     }
 

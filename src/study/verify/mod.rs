@@ -3,7 +3,6 @@
 
 mod beams;
 mod capstan;
-
 mod conservation;
 mod contacts;
 mod critical_step;
@@ -28,15 +27,14 @@ mod waves;
 mod wires;
 mod written;
 
-use crate::base::error::Result;
-use crate::run::in_pool;
+use crate::base::error::{Error, Result};
+use crate::study::runner::{self, CaseRunner, Status};
 use crate::study::select;
-use finding::{Finding, Outcome};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use finding::{Finding, Verdict};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use support::Context;
 pub use support::Effort;
-use support::Lab;
 
 /// A case: one claim about the engine that a closed form decides.
 pub struct Case {
@@ -47,7 +45,7 @@ pub struct Case {
     /// Where the equation comes from.
     pub source: &'static str,
     /// Runs what the case needs and compares.
-    pub run: fn(&Lab) -> Result<Vec<Finding>>,
+    pub run: fn(&Context) -> Result<Vec<Finding>>,
 }
 
 /// All cases, by theme.
@@ -129,56 +127,52 @@ pub struct Report {
 impl Report {
     /// Whether the case ran and every finding agrees with its closed form.
     pub fn passes(&self) -> bool {
-        self.result.as_ref().is_ok_and(|findings| findings.iter().all(|f| f.outcome() == Outcome::Pass))
+        self.result.as_ref().is_ok_and(|findings| findings.iter().all(|f| f.verdict() == Verdict::Pass))
     }
 }
 
-/// Runs one case on the present thread pool. `stop` ends it early, as an error.
-pub fn run_one(case: &'static Case, effort: Effort, stop: &AtomicBool) -> Report {
+/// Runs one case on the present thread pool.
+///
+/// # Errors
+/// [`Error::Interrupted`] when `stop` ended it early.
+pub fn run_one(case: &'static Case, effort: Effort, stop: &AtomicBool) -> Result<Report> {
     let began = Instant::now();
-    let lab = Lab::new(effort, stop);
-    let result = (case.run)(&lab).map(|mut findings| {
-        findings.extend(lab.ledger());
-        findings
-    });
-    Report { case, result, wall_s: began.elapsed().as_secs_f64() }
+    let context = Context::new(effort, stop);
+    let result = match (case.run)(&context) {
+        Err(Error::Interrupted) => return Err(Error::Interrupted),
+        other => other.map(|mut findings| {
+            findings.extend(context.ledger());
+            findings
+        }),
+    };
+    Ok(Report { case, result, wall_s: began.elapsed().as_secs_f64() })
 }
 
-/// Runs cases side by side, each on a thread of its own: they are small, and sharing one out over threads would only
-/// cost. Calls `done` after each. Reports come in the order of `cases`; those that `stop` cut short are left out.
+/// A case as a [`CaseRunner`] takes it.
+struct ToRun {
+    case: &'static Case,
+    effort: Effort,
+}
+
+impl runner::Case for ToRun {
+    type Output = Report;
+
+    fn name(&self) -> String {
+        self.case.name.into()
+    }
+
+    fn run(&self, stop: &AtomicBool) -> Result<Report> {
+        run_one(self.case, self.effort, stop)
+    }
+}
+
+/// Runs cases; they are small, so a runner with several jobs, each on one thread, is fastest. The statuses come in the
+/// order of `cases`.
 ///
 /// # Errors
 /// When a thread cannot be started.
-pub fn run_all(
-    cases: &[&'static Case],
-    effort: Effort,
-    threads: usize,
-    stop: &AtomicBool,
-    done: &(dyn Fn(&Report) + Sync),
-) -> Result<Vec<Report>> {
-    let next = AtomicUsize::new(0);
-    let reports = Mutex::new(Vec::new());
-    let work = || -> Result<()> {
-        while !stop.load(Ordering::Relaxed) {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(case) = cases.get(index) else { break };
-            let report = in_pool(Some(1), || run_one(case, effort, stop))?;
-            if report.result.is_ok() || !stop.load(Ordering::Relaxed) {
-                done(&report);
-                reports.lock().unwrap_or_else(PoisonError::into_inner).push((index, report));
-            }
-        }
-        Ok(())
-    };
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads.clamp(1, cases.len().max(1))).map(|_| scope.spawn(work)).collect();
-        workers
-            .into_iter()
-            .try_for_each(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-    })?;
-    let mut reports = reports.into_inner().unwrap_or_else(PoisonError::into_inner);
-    reports.sort_by_key(|(index, _)| *index);
-    Ok(reports.into_iter().map(|(_, report)| report).collect())
+pub fn run_all(cases: &[&'static Case], effort: Effort, runner: &CaseRunner) -> Result<Vec<Status<Report>>> {
+    runner.run(&cases.iter().map(|case| ToRun { case, effort }).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

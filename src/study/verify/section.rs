@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::finding::Finding;
-use super::support::Lab;
+use super::support::Context;
 use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::reference::beam::RoundBar;
@@ -58,7 +58,7 @@ struct Path {
 }
 
 /// What the bond carries at the end and how it flowed in the second half, against the yield surface and its normal.
-fn follow(lab: &Lab, path: &Path) -> Result<Vec<Finding>> {
+fn follow(context: &Context, path: &Path) -> Result<Vec<Finding>> {
     let mut spec = scene::load("verify/section", &[])?.spec;
     let BondLawSpec::ElastoPlastic(hardening) = &spec.bond.law else { unreachable!("the scene is plastic") };
     let yield_stress = hardening.stress(0.0);
@@ -68,13 +68,13 @@ fn follow(lab: &Lab, path: &Path) -> Result<Vec<Finding>> {
     (spec.holds[0].spin, spec.holds[1].spin) = (-spin, spin);
     spec.holds[1].force.z = axial;
     let end = spec.stop.time.expect("the scene says when it ends");
-    let mut trial = lab.trial_of(spec)?;
-    let bar = trial.bar();
-    trial.run_to(0.6 * end, |_| {})?;
-    let a = look(&trial.engine, &bar, yield_stress, rates);
-    trial.run_to(end, |_| {})?;
-    let b = look(&trial.engine, &bar, yield_stress, rates);
-    let spent = trial.finish();
+    let mut simulation = context.simulation_of(spec)?;
+    let bar = simulation.bar();
+    simulation.run_to(0.6 * end, |_| {})?;
+    let a = look(&simulation.engine, &bar, yield_stress, rates);
+    simulation.run_to(end, |_| {})?;
+    let b = look(&simulation.engine, &bar, yield_stress, rates);
+    let spent = simulation.finish();
     let exact = b.section.flow(axial, path.twist);
     let [before, after] = [a, b].map(|i| i.section.flow(axial, path.twist).elongation);
     let Path { share, twist } = path;
@@ -103,12 +103,12 @@ fn worst(found: &[Finding], what: &str) -> Finding {
     Finding::worst(found.iter().filter(|f| f.what.starts_with(what)).cloned().collect())
 }
 
-fn section(lab: &Lab) -> Result<Vec<Finding>> {
+fn section(context: &Context) -> Result<Vec<Finding>> {
     let twists = [0.0, 0.7, f64::INFINITY];
     let mut found = Vec::new();
-    for share in lab.pick(&[0.0, 0.6][..], &[0.0, 0.2, 0.4, 0.6, 0.8]) {
+    for share in context.pick(&[0.0, 0.6][..], &[0.0, 0.2, 0.4, 0.6, 0.8]) {
         for twist in twists {
-            found.extend(follow(lab, &Path { share: *share, twist })?);
+            found.extend(follow(context, &Path { share: *share, twist })?);
         }
     }
     let unit = Section { radius: 1.0, yield_stress: 1.0 };

@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::finding::Finding;
-use super::support::Lab;
+use super::support::Context;
 use crate::base::error::Result;
 use crate::base::vectors::Vectors;
 use crate::engine::Engine;
@@ -24,15 +24,15 @@ fn collide(a: &mut Assembly, middle: usize) {
     }
 }
 
-fn snapped_bond(lab: &Lab) -> Result<Vec<Finding>> {
+fn snapped_bond(context: &Context) -> Result<Vec<Finding>> {
     let scene = "verify/snapped-wire";
     let middle = |a: &Assembly| a.wires[0].len / 2 - 1;
-    let mut breaking = lab.changed(scene, &[], |a| {
+    let mut breaking = context.changed(scene, &[], |a| {
         let slot = middle(a);
         collide(a, slot);
         a.rest_length[slot] *= 0.9;
     })?;
-    let mut without = lab.changed(scene, &[], |a| {
+    let mut without = context.changed(scene, &[], |a| {
         let slot = middle(a);
         collide(a, slot);
         let whole = a.wires[0];
@@ -42,7 +42,7 @@ fn snapped_bond(lab: &Lab) -> Result<Vec<Finding>> {
     })?;
     let broken = breaking.engine.take_ruptures().len();
     let mut touching = 0;
-    let steps = lab.pick(20_000, 100_000);
+    let steps = context.pick(20_000, 100_000);
     breaking.run_steps(steps, |engine| touching = touching.max(engine.contact_counts().2))?;
     without.run_steps(steps, |_| {})?;
     let differing = differing_bits(&breaking.engine, &without.engine);

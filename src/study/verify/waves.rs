@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::finding::{Convergence, Finding, Point};
-use super::support::{Lab, set};
+use super::support::{Context, set};
 use crate::base::error::Result;
 
 pub const PULLED_BAR: Case = Case {
@@ -16,15 +16,16 @@ pub const PULLED_BAR: Case = Case {
 /// the stress is σ = E ε = ρ c v. The work is force times way, W = σ A v t = ρ A c v² t = σ² A c t/E. Of it,
 /// ½ ρ v² per volume of the A c t behind the front is motion, and ½ E ε² = ½ ρ v² is strain: one half each.
 /// The chain of particles smears the front over a length that grows more slowly than its way.
-fn pulled_bar(lab: &Lab) -> Result<Vec<Finding>> {
+fn pulled_bar(context: &Context) -> Result<Vec<Finding>> {
     let speed = 1.0;
     let (mut points, mut last) = (Vec::new(), Vec::new());
-    for spacing in lab.pick(&[2.0, 1.0, 0.5][..], &[4.0, 2.0, 1.0, 0.5, 0.25]) {
-        let mut trial = lab.trial("verify/pulled-bar", &[set("spacing", spacing), set("time.safety", 0.2)])?;
-        let bar = trial.bar();
-        trial.run_to(0.8 * bar.length / bar.axial_wave_speed(), |_| {})?;
-        let (energy, time) = (trial.engine.energy(), trial.engine.time());
-        let spent = trial.finish();
+    for spacing in context.pick(&[2.0, 1.0, 0.5][..], &[4.0, 2.0, 1.0, 0.5, 0.25]) {
+        let mut simulation =
+            context.simulation("verify/pulled-bar", &[set("spacing", spacing), set("time.safety", 0.2)])?;
+        let bar = simulation.bar();
+        simulation.run_to(0.8 * bar.length / bar.axial_wave_speed(), |_| {})?;
+        let (energy, time) = (simulation.engine.energy(), simulation.engine.time());
+        let spent = simulation.finish();
         let stress = bar.young * speed / bar.axial_wave_speed();
         let work = stress.powi(2) * bar.area() * bar.axial_wave_speed() * time / bar.young;
         let share = energy.kinetic / energy.work;

@@ -3,10 +3,10 @@
 use super::Case;
 use super::finding::{Finding, Spent};
 use super::plasticity::hardening;
-use super::support::{Lab, set};
+use super::support::{Context, set};
 use crate::base::error::{Error, Result};
 use crate::reference::plasticity::tension_at;
-use crate::run::{RunOptions, run_watched};
+use crate::run::{RunOptions, StopReason, run_watched};
 use crate::scene;
 use std::path::Path;
 
@@ -22,12 +22,15 @@ const STRAINS: [f64; 5] = [2e-4, 4e-4, 6e-4, 1e-3, 1.4e-3];
 
 /// The built-in wire at the speed that it is shipped with: 0.15 % take as long as an elastic wave from grip to grip, and what
 /// smooths stress must not shift it against strain.
-fn curve_as_written(lab: &Lab) -> Result<Vec<Finding>> {
+fn curve_as_written(context: &Context) -> Result<Vec<Finding>> {
     let scene = scene::load("single-wire", &[set("stop.strain", "0.15 %"), set("output.samples", 300)])?;
     let (law, young) = (hardening(&scene.spec), scene.spec.material.young);
     let folder = tempfile::tempdir().map_err(|e| Error::io("cannot make a folder in", std::env::temp_dir(), e))?;
     let out = folder.path().join("run");
-    let summary = run_watched(&scene, &options(&out), Vec::new(), lab.stop())?;
+    let summary = run_watched(&scene, &options(&out), Vec::new(), context.stop())?;
+    if summary.stopped == StopReason::Interrupted {
+        return Err(Error::Interrupted);
+    }
     let spent = Spent { steps: summary.cost.steps, wall_s: summary.cost.wall_s };
     let curve = read(&out.join("curve.csv"))?;
     let stress = |strain: f64| {

@@ -5,7 +5,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// A number over several seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Stat {
+pub struct Statistics {
     /// Mean.
     pub mean: f64,
     /// Standard deviation from seed to seed; `None` for one seed.
@@ -18,7 +18,7 @@ pub struct Stat {
     pub count: usize,
 }
 
-impl Stat {
+impl Statistics {
     /// Of values; `None` when there is none.
     pub fn of(values: &[f64]) -> Option<Self> {
         let n = values.len();
@@ -46,7 +46,7 @@ mod tests {
 
     #[test]
     fn mean_and_interval_of_three() {
-        let stat = Stat::of(&[1.0, 2.0, 3.0]).unwrap();
+        let stat = Statistics::of(&[1.0, 2.0, 3.0]).unwrap();
         assert_eq!((stat.mean, stat.count), (2.0, 3));
         assert!((stat.standard_error.unwrap() - 1.0 / 3f64.sqrt()).abs() < 1e-12);
         assert_eq!(stat.standard_deviation, Some(1.0));
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn one_value_has_no_interval_and_none_no_mean() {
-        assert_eq!(Stat::of(&[4.0]).unwrap().interval_95, None);
-        assert_eq!(Stat::of(&[]), None);
+        assert_eq!(Statistics::of(&[4.0]).unwrap().interval_95, None);
+        assert_eq!(Statistics::of(&[]), None);
     }
 }
