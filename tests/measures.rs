@@ -3,7 +3,7 @@
 #[path = "common/rows.rs"]
 mod rows;
 
-use rows::{column, rows};
+use rows::{column, column as column_of, rows};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -132,7 +132,7 @@ fn modulus_and_yield_are_read_from_the_curve_as_written() {
     let curve = rows(&out.join("curve.csv"));
     let strain = column(&curve, "strain_percent");
     for column in ["stress_mpa", "stress_wire_mpa"] {
-        let stress = curve.column(column);
+        let stress = column_of(&curve, column);
         for (percent, right) in [(0.02, 22.9), (0.04, 45.9), (0.06, 68.8), (0.1, 100.3)] {
             let closed = 1e-6 * tension_at(0.01 * percent, |p| law.stress(p), 115e9).engineering_stress;
             assert!((closed - right).abs() < 0.3, "{closed} MPa at {percent} %");

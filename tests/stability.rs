@@ -2,11 +2,11 @@
 
 use std::sync::atomic::AtomicBool;
 use strandsnap::study::runner::{CaseRunner, all_outputs, cores};
-use strandsnap::study::stability::case::Case;
+use strandsnap::study::stability::case::StabilityCase;
 use strandsnap::study::stability::outcome::{Outcome, Report};
 use strandsnap::study::stability::{self, select};
 
-fn run_all(cases: &[Case]) -> Vec<Report> {
+fn run_all(cases: &[StabilityCase]) -> Vec<Report> {
     let stop = AtomicBool::new(false);
     let runner = CaseRunner { jobs: cores(), threads: Some(1), budget: None, stop: &stop, tell: &|_| {} };
     all_outputs(stability::run_all(cases, true, &runner).unwrap()).unwrap()

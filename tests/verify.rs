@@ -4,11 +4,11 @@ use std::sync::atomic::AtomicBool;
 use strandsnap::run::in_pool;
 use strandsnap::scene::{self, builtin};
 use strandsnap::strand;
-use strandsnap::study::verify::finding::{Finding, Verdict};
+use strandsnap::study::verify::comparison::{Comparison, Verdict};
 use strandsnap::study::verify::{CASES, Effort, run_one, select};
 
 /// What is wrong with a finding, for people.
-fn miss(f: &Finding) -> String {
+fn miss(f: &Comparison) -> String {
     let order = f
         .order
         .map_or(String::new(), |o| format!(", order {:.3} instead of {} ± {}", o.observed, o.theory, o.tolerance));

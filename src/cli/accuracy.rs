@@ -10,7 +10,7 @@ use crate::run::folder;
 use crate::scene::quality::Quality;
 use crate::study::accuracy::{self, Study, Subject, parameters, table, verified};
 use crate::study::runner::{CaseRunner, CaseStore};
-use crate::study::verify::{Case, Effort};
+use crate::study::verify::{Effort, VerificationCase};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -54,7 +54,7 @@ pub fn accuracy(args: &Args) -> Result<Ended> {
 }
 
 /// Of verification cases, which vary what they vary.
-fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
+fn of_cases(args: &Args, cases: &[&'static VerificationCase]) -> Result<Ended> {
     let name = args.scene.scene.replace('/', "-");
     let given = [
         ("--quality", args.scene.quality != Quality::Standard),

@@ -135,9 +135,9 @@ const COLUMNS: [(usize, &str, Cell); 8] = [
     (7, "Q [MPa]", |one| format!("{:.1}", one.setting.saturation)),
     (7, "H [MPa]", |one| format!("{:.1}", one.setting.linear)),
     (7, "p_f [%]", |one| format!("{:.3}", one.setting.rupture_strain)),
-    (25, "strength [MPa]", |one| spread(&one.strength)),
+    (25, "strength [MPa]", |one| one.strength.with_deviation(2)),
     (9, "error [%]", |one| format!("{:+.2}", 100.0 * one.error[0])),
-    (25, "elongation [%]", |one| spread(&one.elongation)),
+    (25, "elongation [%]", |one| one.elongation.with_deviation(2)),
     (9, "error [%]", |one| format!("{:+.2}", 100.0 * one.error[1])),
 ];
 
@@ -148,15 +148,6 @@ fn row(iteration: Option<&Iteration>) -> String {
         format!("{text:>width$}")
     };
     COLUMNS.iter().map(cell).collect::<Vec<_>>().join("  ")
-}
-
-/// Mean ± interval (standard deviation); the number alone with one seed.
-fn spread(stat: &Statistics) -> String {
-    let Statistics { mean, interval_95, standard_deviation, .. } = stat;
-    match interval_95.zip(*standard_deviation) {
-        Some((half, deviation)) => format!("{mean:.2} ± {half:.2} ({deviation:.2})"),
-        None => format!("{mean:.2}"),
-    }
 }
 
 /// What the fit can claim.

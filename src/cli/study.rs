@@ -120,7 +120,7 @@ fn dry_run(definition: &Definition, out: &Path, jobs: usize) -> Result<Ended> {
 /// Runs a case alone, and says what became of it.
 fn one(definition: &Definition, number: usize, store: &CaseStore, runner: &CaseRunner) -> Result<Ended> {
     let (point, seed) = sweep::numbered(definition, number)?;
-    let case = definition.case((point, seed), 1.0, store, runner.jobs);
+    let case = definition.case((point, seed), 1.0, store);
     let record = all_outputs(runner.run(&[case])?)?.remove(0);
     let name = definition.case_name(point, seed);
     match &record.result {

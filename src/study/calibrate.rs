@@ -17,7 +17,7 @@ use crate::scene::plan::Plan;
 use crate::scene::spec::{BondLawSpec, HardeningSpec, NormalSpec, RuptureCriterion, Spec};
 use crate::study::runner::{CaseRunner, CaseStore, all_outputs};
 use crate::study::statistics::Statistics;
-use crate::study::tensile::{CpuClock, TensileCase, TensileOutcome, TensileResult, count_kept};
+use crate::study::tensile::{TensileCase, TensileOutcome, TensileResult, count_kept};
 use glam::{DMat2, DVec2};
 use serde::Serialize;
 
@@ -271,7 +271,6 @@ impl Calibration<'_> {
             leads: false,
             writes: false,
             threads: None,
-            clock: CpuClock::for_jobs(jobs),
         };
         let statuses = runner.run(&seeds.iter().map(case).collect::<Vec<_>>())?;
         let [kept, other_build] = count_kept(&statuses);

@@ -39,40 +39,24 @@ pub enum Value {
     Json(serde_json::Value),
 }
 
-impl From<f64> for Value {
-    fn from(value: f64) -> Self {
-        Value::Number(value)
-    }
+macro_rules! value_from {
+    ($($from:ty => $value:expr),* $(,)?) => {
+        $(impl From<$from> for Value {
+            fn from(value: $from) -> Self {
+                let make: fn($from) -> Value = $value;
+                make(value)
+            }
+        })*
+    };
 }
 
-impl From<usize> for Value {
-    fn from(value: usize) -> Self {
-        Value::Count(value as u64)
-    }
-}
-
-impl From<u64> for Value {
-    fn from(value: u64) -> Self {
-        Value::Count(value)
-    }
-}
-
-impl From<&str> for Value {
-    fn from(value: &str) -> Self {
-        Value::Text(value.into())
-    }
-}
-
-impl From<String> for Value {
-    fn from(value: String) -> Self {
-        Value::Text(value)
-    }
-}
-
-impl From<serde_json::Value> for Value {
-    fn from(value: serde_json::Value) -> Self {
-        Value::Json(value)
-    }
+value_from! {
+    f64 => Value::Number,
+    u64 => Value::Count,
+    usize => |count| Value::Count(count as u64),
+    &str => |text| Value::Text(text.into()),
+    String => Value::Text,
+    serde_json::Value => Value::Json,
 }
 
 impl<T: Into<Value>> From<Option<T>> for Value {

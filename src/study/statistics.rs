@@ -32,6 +32,18 @@ impl Statistics {
         let interval_95 = standard_error.map(|error| t_95(n - 1) * error);
         Some(Self { mean, standard_deviation, standard_error, interval_95, count: n })
     }
+
+    /// Mean ± half the 95 % interval; the mean alone with one seed.
+    pub fn with_interval(&self, decimals: usize) -> String {
+        let half = self.interval_95.map_or(String::new(), |half| format!(" ± {half:.decimals$}"));
+        format!("{:.decimals$}{half}", self.mean)
+    }
+
+    /// The same, with the standard deviation in brackets.
+    pub fn with_deviation(&self, decimals: usize) -> String {
+        let deviation = self.standard_deviation.map_or(String::new(), |deviation| format!(" ({deviation:.decimals$})"));
+        self.with_interval(decimals) + &deviation
+    }
 }
 
 /// Student's t for a two-sided interval of 95 % and `freedom` degrees of freedom, at least 1.

@@ -170,27 +170,9 @@ impl TensileOutcome {
     }
 }
 
-/// How processor time is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CpuClock {
-    /// That of the whole program: one run at a time.
-    Process,
-    /// That of the calling thread: several runs side by side, each on one.
-    Thread,
-}
-
-impl CpuClock {
-    /// The clock for so many runs side by side.
-    pub fn for_jobs(jobs: usize) -> Self {
-        if jobs > 1 { CpuClock::Thread } else { CpuClock::Process }
-    }
-
-    fn now(self) -> Option<f64> {
-        match self {
-            CpuClock::Process => cost::cpu_time(),
-            CpuClock::Thread => cost::thread_cpu_time(),
-        }
-    }
+/// Processor time so far (s): of this thread where a run has no other, so that runs side by side are told apart.
+fn cpu_time() -> Option<f64> {
+    if rayon::current_num_threads() == 1 { cost::thread_cpu_time() } else { cost::cpu_time() }
 }
 
 /// A run of a scene that a grip pulls, kept in the store of its study.
@@ -211,8 +193,6 @@ pub struct TensileCase<'a> {
     pub writes: bool,
     /// Threads of the engine where the cost of the run is what is studied.
     pub threads: Option<usize>,
-    /// How processor time is measured.
-    pub clock: CpuClock,
 }
 
 /// A scene with another seed of the scatter.
@@ -295,7 +275,7 @@ impl TensileCase<'_> {
     /// Runs the scene; `None` when it has no strength.
     fn measure(&self, scene: &Scene, stop: &AtomicBool) -> Result<Option<TensileResult>> {
         let mut recorder = HistoryRecorder::default();
-        let begin = self.clock.now();
+        let begin = cpu_time();
         let summary = if self.writes {
             let folder = self.store.folder();
             let out = tempfile::tempdir_in(folder).map_err(|e| Error::io("cannot write into", folder, e))?;
@@ -317,7 +297,7 @@ impl TensileCase<'_> {
         if summary.stopped == StopReason::Interrupted {
             return Err(Error::Interrupted);
         }
-        let cpu = self.clock.now().zip(begin).map(|(now, begin)| now - begin);
+        let cpu = cpu_time().zip(begin).map(|(now, begin)| now - begin);
         Ok(TensileResult::new(summary, recorder, cpu))
     }
 }

@@ -6,7 +6,6 @@ use super::rows::{Compared, Row};
 use crate::study::column::Column;
 use crate::study::statistics::Statistics;
 use crate::study::tensile::TensileResult;
-use serde::{Serialize, Serializer, ser::SerializeMap};
 use std::sync::LazyLock;
 
 /// A number of a run, and how its mean over seeds is written.
@@ -101,15 +100,4 @@ pub fn signed(value: f64) -> String {
 /// When there is none of that name, which a test of every table sees.
 pub fn named(name: &str) -> &'static MeanColumn {
     COLUMNS.iter().find(|one| one.column.name == name).unwrap_or_else(|| panic!("no column {name}"))
-}
-
-/// The means of a row by the names of their columns.
-pub struct Means<'a>(pub &'a Row);
-
-impl Serialize for Means<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(COLUMNS.len()))?;
-        COLUMNS.iter().try_for_each(|one| map.serialize_entry(&*one.column.name, &one.of_row(self.0)))?;
-        map.end()
-    }
 }

@@ -129,13 +129,13 @@ pub fn note(row: &Row, seeds: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rows::{Compared, Outcome, Run};
+    use super::super::rows::{Compared, Run, RunStatus};
     use super::*;
 
     fn row(strengths: &[f64], errors: &[f64]) -> Row {
         let run = |(k, (strength, error)): (usize, (&f64, &f64))| Run {
             seed: k as u64,
-            outcome: Outcome::Ran(Compared {
+            outcome: RunStatus::Ran(Compared {
                 result: Box::new(TensileResult { strength_mpa: *strength, ..TensileResult::default() }),
                 errors: Some(Errors { strength_percent: *error, ..Errors::default() }),
             }),

@@ -26,11 +26,11 @@ use crate::scene::plan::Plan;
 use crate::scene::spec::{DriveSpec, Spec};
 use crate::study::runner::{CaseRunner, CaseStore, Record, Status};
 use crate::study::statistics::Statistics;
-use crate::study::tensile::{CpuClock, TensileCase, TensileOutcome, TensileResult, count_kept, with_seed};
+use crate::study::tensile::{TensileCase, TensileOutcome, TensileResult, count_kept, with_seed};
 use errors::{Errors, Truth};
 use parameters::{Parameter, Role};
 use reference::{Along, OfSeed, Refined, Series};
-use rows::{Compared, Outcome, Row, Run};
+use rows::{Compared, Row, Run, RunStatus};
 use schedule::{PlannedRun, Varied};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -159,7 +159,6 @@ impl Subject {
             leads: run.place.is_none(),
             writes: run.writes,
             threads: Some(runner.threads_per_case()),
-            clock: CpuClock::for_jobs(runner.jobs),
         }
     }
 }
@@ -292,12 +291,12 @@ fn rows(subject: &Subject, runs: &mut Runs, references: &BTreeMap<u64, Against>)
                             Some(_) => subject.truth(place, *seed).map(|truth| Errors::new(&result, &truth)),
                             None => Some(Errors::new(&result, &against.refined.truth)),
                         });
-                        Outcome::Ran(Compared { result, errors })
+                        RunStatus::Ran(Compared { result, errors })
                     }
-                    TensileOutcome::Failed(cause) | TensileOutcome::Refused(cause) => Outcome::Failed(cause),
+                    TensileOutcome::Failed(cause) | TensileOutcome::Refused(cause) => RunStatus::Failed(cause),
                 },
-                Some(Status::LeftOut(seconds)) => Outcome::LeftOut(seconds),
-                Some(Status::Interrupted) | None => Outcome::NotReached,
+                Some(Status::LeftOut(seconds)) => RunStatus::LeftOut(seconds),
+                Some(Status::Interrupted) | None => RunStatus::NotReached,
             };
             row.runs.push(Run { seed: *seed, outcome });
         }

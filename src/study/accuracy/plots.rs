@@ -22,9 +22,7 @@ pub fn write(study: &Study, folder: &Path) -> Result<Vec<PathBuf>> {
         figure(study, "strength", 0, |errors| errors.strength_percent),
         figure(study, "elongation", 1, |errors| errors.elongation_percent),
     ];
-    let files: Vec<PathBuf> = ["svg", "png"].iter().map(|end| folder.join(format!("accuracy.{end}"))).collect();
-    files.iter().try_for_each(|path| plot::write(&figures, 1, path))?;
-    Ok(files)
+    plot::write_pair(&figures, 1, folder, "accuracy")
 }
 
 /// A row as it is drawn: time (s), size of the error and half the height of its bar (%).

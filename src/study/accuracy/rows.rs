@@ -38,11 +38,11 @@ pub struct Run {
     /// Seed of the scatter.
     pub seed: u64,
     /// What became of it.
-    pub outcome: Outcome,
+    pub outcome: RunStatus,
 }
 
 /// What became of a run.
-pub enum Outcome {
+pub enum RunStatus {
     /// It ran.
     Ran(Compared),
     /// It was refused or had to stop: why.
@@ -82,7 +82,7 @@ impl Row {
 
     /// Whether it has nothing to show but that it was not run.
     pub fn is_missing(&self) -> bool {
-        self.runs.iter().all(|run| matches!(run.outcome, Outcome::LeftOut(_) | Outcome::NotReached))
+        self.runs.iter().all(|run| matches!(run.outcome, RunStatus::LeftOut(_) | RunStatus::NotReached))
     }
 
     /// Whether its differences are those of another model, no errors.
@@ -99,11 +99,11 @@ impl Row {
         if failed > 0 {
             notes.push(told(failed, "failed, see below".into()));
         }
-        let out = self.runs.iter().filter(|run| matches!(run.outcome, Outcome::LeftOut(_))).count();
+        let out = self.runs.iter().filter(|run| matches!(run.outcome, RunStatus::LeftOut(_))).count();
         if out > 0 {
             notes.push(told(out, "left out: over the budget".into()));
         }
-        let cut = self.runs.iter().filter(|run| matches!(run.outcome, Outcome::NotReached)).count();
+        let cut = self.runs.iter().filter(|run| matches!(run.outcome, RunStatus::NotReached)).count();
         if cut > 0 {
             notes.push(told(cut, "not reached".into()));
         }
@@ -118,7 +118,7 @@ impl Run {
     /// What it gave, if it came to its end.
     pub fn ran(&self) -> Option<&Compared> {
         match &self.outcome {
-            Outcome::Ran(compared) => Some(compared),
+            RunStatus::Ran(compared) => Some(compared),
             _ => None,
         }
     }
@@ -126,7 +126,7 @@ impl Run {
     /// Why it failed, if it did.
     pub fn cause(&self) -> Option<&str> {
         match &self.outcome {
-            Outcome::Failed(cause) => Some(cause),
+            RunStatus::Failed(cause) => Some(cause),
             _ => None,
         }
     }
@@ -134,10 +134,10 @@ impl Run {
     /// In a word.
     pub fn word(&self) -> &'static str {
         match self.outcome {
-            Outcome::Ran(_) => "ran",
-            Outcome::Failed(_) => "failed",
-            Outcome::LeftOut(_) => "left-out",
-            Outcome::NotReached => "not-reached",
+            RunStatus::Ran(_) => "ran",
+            RunStatus::Failed(_) => "failed",
+            RunStatus::LeftOut(_) => "left-out",
+            RunStatus::NotReached => "not-reached",
         }
     }
 }

@@ -4,7 +4,7 @@ use super::columns::{MeanColumn, named, signed};
 use super::ensemble::{self, Quantity};
 use super::errors::Errors;
 use super::reference::Along;
-use super::rows::{Outcome, Row};
+use super::rows::{Row, RunStatus};
 use super::{Reference, Study, Subject};
 use crate::study::statistics::Statistics;
 use crate::study::table::Table;
@@ -245,7 +245,7 @@ pub fn left_out(study: &Study) -> Vec<String> {
     for row in &study.rows {
         let parameter = row.parameter.as_ref().map_or("", |parameter| parameter.name);
         for run in &row.runs {
-            let Outcome::LeftOut(seconds) = run.outcome else { continue };
+            let RunStatus::LeftOut(seconds) = run.outcome else { continue };
             let seed = if study.seeds.len() > 1 { format!(" (seed {})", run.seed) } else { String::new() };
             let value = format!("{}{seed}", row.value);
             match by_parameter.last_mut().filter(|(last, ..)| *last == parameter) {

@@ -9,7 +9,7 @@ use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series, Slope};
 use crate::study::runner::store::build;
 use crate::study::runner::{Case, CaseRunner, CaseStore, Identity, Status};
 use crate::study::table::Table;
-use crate::study::verify::finding::{Convergence, Finding};
+use crate::study::verify::comparison::{Comparison, Convergence};
 use crate::study::verify::{self, CASES, Effort, run_one};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -19,11 +19,11 @@ use std::sync::atomic::AtomicBool;
 const SIZE: [u32; 2] = [760, 480];
 
 /// The verification cases that a name means: `hertz`, `verify/hertz`, or the beginning of several, `cantilever`.
-pub fn select(name: &str) -> Vec<&'static verify::Case> {
+pub fn select(name: &str) -> Vec<&'static verify::VerificationCase> {
     let name = name.strip_prefix("verify/").unwrap_or(name);
     let exact = CASES.iter().filter(|case| case.name == name);
     let family = format!("{name}-");
-    let mut cases: Vec<&verify::Case> = exact.collect();
+    let mut cases: Vec<&verify::VerificationCase> = exact.collect();
     if cases.is_empty() {
         cases = CASES.iter().filter(|case| case.name.starts_with(&family)).collect();
     }
@@ -70,7 +70,7 @@ pub struct CaseLevels {
 
 /// A verification case whose levels are kept.
 struct KeptCase<'a> {
-    case: &'static verify::Case,
+    case: &'static verify::VerificationCase,
     effort: Effort,
     store: &'a CaseStore,
     identity: Identity,
@@ -88,7 +88,7 @@ impl Case for KeptCase<'_> {
     }
 
     fn run(&self, stop: &AtomicBool) -> Result<CaseLevels> {
-        let verify::Case { name, about, source, .. } = self.case;
+        let verify::VerificationCase { name, about, source, .. } = self.case;
         let (levels, failed) = match run_one(self.case, self.effort, stop)?.result {
             Ok(comparisons) => (comparisons.iter().flat_map(|found| levels(self.case, found)).collect(), None),
             Err(error) => (Vec::new(), Some(error.to_string())),
@@ -117,13 +117,13 @@ pub struct Verified {
 /// When the folder cannot be written.
 pub fn study(
     name: &str,
-    cases: &[&'static verify::Case],
+    cases: &[&'static verify::VerificationCase],
     effort: Effort,
     store: &CaseStore,
     runner: &CaseRunner,
 ) -> Result<Verified> {
     let build = build();
-    let kept_case = |case: &&'static verify::Case| {
+    let kept_case = |case: &&'static verify::VerificationCase| {
         // A case is code, scenes and options included, so another build may be another case.
         let definition = format!("verification case {}, {effort:?}, build {build}", case.name);
         KeptCase { case, effort, store, identity: Identity::new(definition, Some(1), false) }
@@ -138,7 +138,7 @@ pub fn study(
 }
 
 /// The levels of a finding: one for each resolution, or one alone.
-fn levels(case: &verify::Case, finding: &Finding) -> Vec<Level> {
+fn levels(case: &verify::VerificationCase, finding: &Comparison) -> Vec<Level> {
     let finite = |value: f64| value.is_finite().then_some(value);
     let level = |axis: Option<&str>, resolution, error: f64, order, steps, wall_s| Level {
         case: case.name.into(),
@@ -205,10 +205,7 @@ impl Verified {
         write_whole(&files[1], &(text + "\n"))?;
         let figures = self.figures();
         if !figures.is_empty() {
-            for extension in ["svg", "png"] {
-                files.push(folder.join(format!("accuracy.{extension}")));
-                plot::write(&figures, 1, &folder.join(format!("accuracy.{extension}")))?;
-            }
+            files.extend(plot::write_pair(&figures, 1, folder, "accuracy")?);
         }
         Ok(files)
     }

@@ -5,7 +5,7 @@ mod comparison;
 mod exponential;
 mod polynomial;
 
-pub use comparison::{Compared, Comparison, CrossValidation, compare};
+pub use comparison::{Compared, CrossValidation, ModelComparison, compare};
 
 use crate::study::statistics::t_95;
 use nalgebra::{DMatrix, DVector};

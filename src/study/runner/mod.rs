@@ -45,6 +45,21 @@ pub trait Case: Sync {
     }
 }
 
+/// A case that nothing is kept of: its name, and what runs it.
+pub struct Named<F>(pub String, pub F);
+
+impl<T: Send, F: Fn(&AtomicBool) -> Result<T> + Sync> Case for Named<F> {
+    type Output = T;
+
+    fn name(&self) -> String {
+        self.0.clone()
+    }
+
+    fn run(&self, stop: &AtomicBool) -> Result<T> {
+        (self.1)(stop)
+    }
+}
+
 /// Runs cases: how many at a time, for how long, and who hears of it.
 pub struct CaseRunner<'a> {
     /// Cases side by side, each on one thread when there are several.

@@ -38,7 +38,7 @@ pub enum Kind {
 
 /// One row of the matrix.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct StabilityCase {
     /// Name, by which it can be asked for.
     pub name: String,
     /// What is extreme about it, in a few words.
@@ -70,7 +70,7 @@ const RESIDUAL: f64 = 0.01;
 /// Wall time after which a run counts as hung (s); the longest case takes about a minute on a core of its own.
 const PATIENCE: f64 = 400.0;
 
-impl Case {
+impl StabilityCase {
     /// A run of `base` that must be stable.
     pub fn new(name: impl Into<String>, about: impl Into<String>, base: Base) -> Self {
         Self {

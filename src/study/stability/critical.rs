@@ -4,7 +4,7 @@
 //! bound: a run may be unstable without exploding, because plastic flow, friction and damping swallow what a wrong step
 //! feeds in. The prediction is the least bound that the engine gives during a run that follows it.
 
-use super::case::Case;
+use super::case::StabilityCase;
 use super::measure::{Accept, Answer, CompletedRun};
 use super::outcome::Ended;
 use super::run::{RunControl, watch};
@@ -36,7 +36,7 @@ impl Critical {
 ///
 /// # Errors
 /// What the scene or the engine refuse; a run at half of the bound that does not hold.
-pub fn search(case: &Case, critical: &Critical, quick: bool, control: &RunControl) -> Result<Ended> {
+pub fn search(case: &StabilityCase, critical: &Critical, quick: bool, control: &RunControl) -> Result<Ended> {
     let bound = least_bound(case, quick, control)?;
     let run = |step: f64| -> Result<f64> {
         let mut scene = case.scene(quick)?;
@@ -81,7 +81,7 @@ pub fn search(case: &Case, critical: &Critical, quick: bool, control: &RunContro
 }
 
 /// The least bound on the step during a run that follows it (s).
-fn least_bound(case: &Case, quick: bool, control: &RunControl) -> Result<f64> {
+fn least_bound(case: &StabilityCase, quick: bool, control: &RunControl) -> Result<f64> {
     watch(&case.scene(quick)?, control).map(|seen| seen.least_bound)
 }
 

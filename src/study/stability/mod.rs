@@ -24,9 +24,9 @@ pub mod report;
 pub mod run;
 
 use crate::base::error::Result;
-use crate::study::runner::{self, CaseRunner, Status};
+use crate::study::runner::{CaseRunner, Named, Status};
 use crate::study::select;
-use case::Case;
+use case::StabilityCase;
 use outcome::Report;
 use std::sync::atomic::AtomicBool;
 
@@ -34,38 +34,24 @@ use std::sync::atomic::AtomicBool;
 ///
 /// # Errors
 /// A name that no case has; the nearest is suggested.
-pub fn select(names: &[String]) -> Result<Vec<Case>> {
+pub fn select(names: &[String]) -> Result<Vec<StabilityCase>> {
     let all = matrix::cases();
     let chosen = select::select(names, &all, |case| &case.name, "stability case", "strandsnap stability --list")?;
     Ok(chosen.into_iter().cloned().collect())
-}
-
-/// A case as a [`CaseRunner`] takes it.
-struct ToRun<'a> {
-    case: &'a Case,
-    quick: bool,
-}
-
-impl runner::Case for ToRun<'_> {
-    type Output = Report;
-
-    fn name(&self) -> String {
-        self.case.name.clone()
-    }
-
-    fn run(&self, stop: &AtomicBool) -> Result<Report> {
-        run::run_case(self.case, self.quick, stop)
-    }
 }
 
 /// Runs cases, the long ones first. The statuses come in the order of `cases`.
 ///
 /// # Errors
 /// When a thread cannot be started.
-pub fn run_all(cases: &[Case], quick: bool, runner: &CaseRunner) -> Result<Vec<Status<Report>>> {
+pub fn run_all(cases: &[StabilityCase], quick: bool, runner: &CaseRunner) -> Result<Vec<Status<Report>>> {
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by_key(|index| !cases[*index].long);
-    let statuses = runner.run(&order.iter().map(|k| ToRun { case: &cases[*k], quick }).collect::<Vec<_>>())?;
+    let named = |index: &usize| {
+        let case = &cases[*index];
+        Named(case.name.clone(), move |stop: &AtomicBool| run::run_case(case, quick, stop))
+    };
+    let statuses = runner.run(&order.iter().map(named).collect::<Vec<_>>())?;
     let mut placed: Vec<_> = order.into_iter().zip(statuses).collect();
     placed.sort_by_key(|(index, _)| *index);
     Ok(placed.into_iter().map(|(_, status)| status).collect())

@@ -1,6 +1,6 @@
 //! How a case ended. Outcomes are worked out from what happened; nobody writes one by hand.
 
-use super::case::{Case, Expect};
+use super::case::{Expect, StabilityCase};
 use super::measure::Answer;
 use crate::base::finding::{Failure, FindingKind, Notice, Stopped};
 use std::fmt;
@@ -40,7 +40,7 @@ impl fmt::Display for Outcome {
 #[derive(Debug, Clone)]
 pub struct Report {
     /// The case.
-    pub case: Case,
+    pub case: StabilityCase,
     /// How it ended.
     pub outcome: Outcome,
     /// The number asked of it, when one is known.
@@ -83,7 +83,7 @@ pub enum Ended {
 }
 
 /// Judges what happened by what the case expects.
-pub fn judge(case: &Case, ended: Ended, steps: u64, wall_s: f64) -> Report {
+pub fn judge(case: &StabilityCase, ended: Ended, steps: u64, wall_s: f64) -> Report {
     let report =
         |outcome, message| Report { case: case.clone(), outcome, answer: None, residual: None, steps, wall_s, message };
     match ended {
@@ -144,8 +144,8 @@ mod tests {
     use crate::base::finding::{Body, Finding, Instant, Member, Relief};
     use crate::study::stability::case::Base;
 
-    fn case() -> Case {
-        Case::new("x", "a test", Base::Text(""))
+    fn case() -> StabilityCase {
+        StabilityCase::new("x", "a test", Base::Text(""))
     }
 
     fn ran(residual: f64, wrong: Vec<String>) -> Ended {
@@ -164,7 +164,7 @@ mod tests {
     fn a_refusal_counts_when_it_is_expected_and_names_a_remedy() {
         let refused =
             |help: Option<&str>| Ended::Refused { what: "spheres 1 and 2 overlap".into(), help: help.map(Into::into) };
-        let outcome = |case: &Case, ended| judge(case, ended, 0, 0.0).outcome;
+        let outcome = |case: &StabilityCase, ended| judge(case, ended, 0, 0.0).outcome;
         let expected = case().refused();
         assert_eq!(outcome(&expected, refused(Some("move them apart"))), Outcome::Refused);
         assert_eq!(outcome(&expected, refused(None)), Outcome::Failed);
@@ -179,7 +179,7 @@ mod tests {
         let stopped = |failure| Ended::Stopped(Box::new(Stopped { at, failure, kept: None }));
         let bond = Member { number: Some(2), body: Body::Wire { wire: 1, layer: "core".into() } };
         let through = Failure::PassedThrough { bonds: [bond.clone(), bond], z_m: 0.0, relief: Relief::Speed };
-        let outcome = |case: &Case, ended| judge(case, ended, 0, 0.0).outcome;
+        let outcome = |case: &StabilityCase, ended| judge(case, ended, 0, 0.0).outcome;
         let expected = case().passes_through();
         assert_eq!(outcome(&expected, stopped(through.clone())), Outcome::Stopped);
         assert_eq!(outcome(&expected, stopped(Failure::UnstableMotion)), Outcome::Failed);

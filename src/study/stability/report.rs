@@ -1,6 +1,6 @@
 //! The results as a table for people and as JSON for programs.
 
-use super::case::Case;
+use super::case::StabilityCase;
 use super::measure::Answer;
 use super::outcome::{Outcome, Report};
 use crate::base::error::Result;
@@ -9,7 +9,7 @@ use crate::study::column::{self, Column, Value};
 use std::path::Path;
 
 /// Names and claims of cases, one to a line.
-pub fn list(cases: &[Case]) -> String {
+pub fn list(cases: &[StabilityCase]) -> String {
     let width = cases.iter().map(|case| case.name.len()).max().unwrap_or(0);
     cases.iter().map(|case| format!("{:width$}  {}\n", case.name, case.about)).collect()
 }

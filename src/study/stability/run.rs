@@ -1,6 +1,6 @@
 //! One case on one thread: runs the engine as a run does, watches more closely, and survives what goes wrong.
 
-use super::case::{Case, Kind};
+use super::case::{Kind, StabilityCase};
 use super::critical;
 use super::measure::CompletedRun;
 use super::outcome::{Ended, Report, judge};
@@ -33,7 +33,7 @@ pub struct RunControl {
 ///
 /// # Errors
 /// [`Error::Interrupted`] when `stop` ended it early.
-pub fn run_case(case: &Case, quick: bool, stop: &AtomicBool) -> Result<Report> {
+pub fn run_case(case: &StabilityCase, quick: bool, stop: &AtomicBool) -> Result<Report> {
     let control = Arc::new(RunControl::default());
     let (send, receive) = mpsc::channel();
     let (job, held) = (case.clone(), control.clone());
@@ -73,7 +73,7 @@ fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without words".into())
 }
 
-fn end_of(case: &Case, quick: bool, control: &RunControl) -> Ended {
+fn end_of(case: &StabilityCase, quick: bool, control: &RunControl) -> Ended {
     let ended = match &case.kind {
         Kind::Run => case.scene(quick).and_then(|scene| once(case, &scene, control)),
         Kind::Critical(critical) => critical::search(case, critical, quick, control),
@@ -92,7 +92,7 @@ fn from_error(error: Error) -> Ended {
 }
 
 /// A run to its end, with what must hold in every run.
-fn once(case: &Case, scene: &Scene, control: &RunControl) -> Result<Ended> {
+fn once(case: &StabilityCase, scene: &Scene, control: &RunControl) -> Result<Ended> {
     let seen = watch(scene, control)?;
     let mut wrong = Vec::new();
     let answer = case.check.map(|check| check(&seen));

@@ -13,7 +13,7 @@ use crate::scene::suggest::nearest;
 use crate::scene::{self, Scene, SceneSource};
 use crate::study::runner::{CaseStore, Identity};
 use crate::study::screening::{self, Model};
-use crate::study::tensile::{CpuClock, TensileCase, definition};
+use crate::study::tensile::{TensileCase, definition};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -237,14 +237,8 @@ impl Definition {
         self.common.iter().cloned().chain(of_axes).collect()
     }
 
-    /// A case as a runner takes it, for so many `jobs` side by side. `work` is what it costs, in any unit that all share.
-    pub fn case<'a>(
-        &'a self,
-        (point, seed): (usize, u64),
-        work: f64,
-        store: &'a CaseStore,
-        jobs: usize,
-    ) -> TensileCase<'a> {
+    /// A case as a runner takes it; `work` is what it costs, in any unit that all share.
+    pub fn case<'a>(&'a self, (point, seed): (usize, u64), work: f64, store: &'a CaseStore) -> TensileCase<'a> {
         TensileCase {
             name: self.case_name(point, seed),
             scene: self.scenes[point].as_ref().map_err(String::as_str),
@@ -255,7 +249,6 @@ impl Definition {
             writes: false,
             // What is studied is the answer, not the time: any number of threads gives the same.
             threads: None,
-            clock: CpuClock::for_jobs(jobs),
         }
     }
 

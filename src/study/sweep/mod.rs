@@ -100,7 +100,7 @@ pub fn run(
 ) -> Result<Vec<Status<Record<TensileOutcome>>>> {
     let case = |(case, cost): ((usize, u64), &Cost)| {
         let work = if let Cost::Takes(seconds) = cost { *seconds } else { 0.0 };
-        definition.case(case, work, store, runner.jobs)
+        definition.case(case, work, store)
     };
     runner.run(&definition.cases().into_iter().zip(&costs.cases).map(case).collect::<Vec<_>>())
 }

@@ -1,7 +1,7 @@
 //! A wire that slides round another.
 
-use super::Case;
-use super::finding::{Finding, Point, Spent};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, set};
 use crate::base::error::Result;
 use crate::reference::capstan::{Wrapped, string_ratio};
@@ -10,7 +10,7 @@ use crate::scene::spec::PathSpec;
 use crate::strand::helix::Helix;
 use glam::DVec3;
 
-pub const CAPSTAN: Case = Case {
+pub const CAPSTAN: VerificationCase = VerificationCase {
     name: "capstan",
     about: "a thin wire slides round a thick one: growth of its tension",
     source: "Euler 1769, T2 = T1 e^(mu phi); Kirchhoff's equations of a rod for the wire's thickness",
@@ -63,7 +63,7 @@ fn slide(context: &Context, friction: f64, spacing: f64) -> Result<Slide> {
     Ok(Slide { ratio, wire, length, corner, spent: simulation.finish() })
 }
 
-fn capstan(context: &Context) -> Result<Vec<Finding>> {
+fn capstan(context: &Context) -> Result<Vec<Comparison>> {
     let mut found = Vec::new();
     for friction in context.pick(&[0.2][..], &[0.1, 0.2, 0.4]) {
         let mut points = Vec::new();
@@ -78,7 +78,7 @@ fn capstan(context: &Context) -> Result<Vec<Finding>> {
         let angle = s.wire.curvature * s.length;
         let string = string_ratio(*friction, angle);
         found.push(
-            Finding::new(format!("T2/T1 over {angle:.2} rad, mu = {friction}"), "-", s.ratio, exact, s.spent)
+            Comparison::new(format!("T2/T1 over {angle:.2} rad, mu = {friction}"), "-", s.ratio, exact, s.spent)
                 .within(2e-2)
                 .over("angle of a corner", points)
                 .note(format!(

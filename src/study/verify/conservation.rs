@@ -1,7 +1,7 @@
 //! Momentum and angular momentum of free bodies, energy of undamped motion.
 
-use super::Case;
-use super::finding::{Convergence, Finding, Point};
+use super::VerificationCase;
+use super::comparison::{Comparison, Convergence, Point};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;
 use crate::base::random::uniform;
@@ -10,28 +10,28 @@ use crate::strand::assembly::Assembly;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-pub const WIRE: Case = Case {
+pub const WIRE: VerificationCase = VerificationCase {
     name: "momenta-wire",
     about: "a free wire thrown and spun, undamped and damped, keeps its momenta",
     source: "Newton's third law",
     run: free_wire,
 };
 
-pub const COLLISION: Case = Case {
+pub const COLLISION: VerificationCase = VerificationCase {
     name: "momenta-collision",
     about: "two wires that collide, rub and yield keep their momenta, any shape and tangential law",
     source: "Newton's third law",
     run: collision,
 };
 
-pub const STRAND: Case = Case {
+pub const STRAND: VerificationCase = VerificationCase {
     name: "momenta-strand",
     about: "an isolated strand that turns, rings, rubs and yields keeps its momenta over 10⁶ steps",
     source: "Newton's third law",
     run: isolated_strand,
 };
 
-pub const ENERGY: Case = Case {
+pub const ENERGY: VerificationCase = VerificationCase {
     name: "energy-drift",
     about: "undamped swing of a few per cent of the length over 10⁶ steps: energy bounded, its trend vanishes with the step",
     source: "symplectic integration: Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, chapter IX",
@@ -77,22 +77,22 @@ fn follow(simulation: &mut Simulation, steps: u64, interval: u64) -> Result<([f6
 }
 
 /// Change of both momenta over what the bodies carry.
-fn changes(worst: [f64; 2], what: &str, simulation: Simulation) -> [Finding; 2] {
+fn changes(worst: [f64; 2], what: &str, simulation: Simulation) -> [Comparison; 2] {
     let spent = simulation.finish();
     let finding = |k: usize, name: &str| {
         let what = format!("change of {name} over its size{what}");
-        Finding::new(what, "-", worst[k], 0.0, spent).relative_to(1.0).within(ROUNDING)
+        Comparison::new(what, "-", worst[k], 0.0, spent).relative_to(1.0).within(ROUNDING)
     };
     [finding(0, "momentum"), finding(1, "angular momentum")]
 }
 
 /// The worst of each momentum.
-fn worst_of_each(all: Vec<[Finding; 2]>) -> Vec<Finding> {
+fn worst_of_each(all: Vec<[Comparison; 2]>) -> Vec<Comparison> {
     let (p, l): (Vec<_>, Vec<_>) = all.into_iter().map(|[p, l]| (p, l)).unzip();
-    vec![Finding::worst(p), Finding::worst(l)]
+    vec![Comparison::worst(p), Comparison::worst(l)]
 }
 
-fn free_wire(context: &Context) -> Result<Vec<Finding>> {
+fn free_wire(context: &Context) -> Result<Vec<Comparison>> {
     let mut all = Vec::new();
     for damping in [0.0, 0.1] {
         let mut simulation = context.simulation("verify/free-wire", &[set("bond.damping", damping)])?;
@@ -102,7 +102,7 @@ fn free_wire(context: &Context) -> Result<Vec<Finding>> {
     Ok(worst_of_each(all))
 }
 
-fn collision(context: &Context) -> Result<Vec<Finding>> {
+fn collision(context: &Context) -> Result<Vec<Comparison>> {
     let (mut all, mut fewest) = (Vec::new(), usize::MAX);
     for shape in ["sphere", "wire"] {
         for law in ["mindlin", "mindlin-deresiewicz", "none"] {
@@ -114,30 +114,35 @@ fn collision(context: &Context) -> Result<Vec<Finding>> {
             all.push(changes(worst, ", worst of 6", simulation));
         }
     }
-    let mut findings = worst_of_each(all);
-    findings.push(touched(fewest, 1, &findings[0]));
-    Ok(findings)
+    let mut comparisons = worst_of_each(all);
+    comparisons.push(touched(fewest, 1, &comparisons[0]));
+    Ok(comparisons)
 }
 
 /// That bodies touched at all, or the case says nothing about contacts.
-fn touched(count: usize, least: usize, like: &Finding) -> Finding {
-    Finding::at_least("contacts at once", "-", count as f64, least as f64, like.spent)
+fn touched(count: usize, least: usize, like: &Comparison) -> Comparison {
+    Comparison::at_least("contacts at once", "-", count as f64, least as f64, like.spent)
 }
 
 /// Seven helical wires, each thrown on its own way on top of the strand's: they ring, rub, yield, and hold each other by
 /// their lay. A quarter of the default step resolves their first impacts, so that the ledger closes.
-fn isolated_strand(context: &Context) -> Result<Vec<Finding>> {
+fn isolated_strand(context: &Context) -> Result<Vec<Comparison>> {
     let steps = context.pick(100_000, 1_000_000);
     let mut simulation = context.changed("verify/free-strand", &[set("time.safety", 0.2)], throw)?;
     let (worst, touching) = follow(&mut simulation, steps, 100)?;
     let energy = simulation.engine.energy();
     let yielded = energy.plastic_bonds > 0.0 && energy.plastic_contacts > 0.0 && energy.friction > 0.0;
-    let mut findings = Vec::from(changes(worst, &format!(", {steps} steps"), simulation));
-    findings.push(touched(touching, 6, &findings[0]));
-    let lost =
-        Finding::new("bonds and contacts yield and rub (1: all do)", "-", f64::from(yielded), 1.0, findings[0].spent);
-    findings.push(lost);
-    Ok(findings)
+    let mut comparisons = Vec::from(changes(worst, &format!(", {steps} steps"), simulation));
+    comparisons.push(touched(touching, 6, &comparisons[0]));
+    let lost = Comparison::new(
+        "bonds and contacts yield and rub (1: all do)",
+        "-",
+        f64::from(yielded),
+        1.0,
+        comparisons[0].spent,
+    );
+    comparisons.push(lost);
+    Ok(comparisons)
 }
 
 /// A common velocity and spin of the whole strand, and waves of random direction up to 5 m/s in every wire.
@@ -196,7 +201,7 @@ fn drift(context: &Context, finer: u64, steps: u64) -> Result<Drift> {
 }
 
 /// The same time is run again with finer steps, so that a trend shows where it comes from.
-fn energy_drift(context: &Context) -> Result<Vec<Finding>> {
+fn energy_drift(context: &Context) -> Result<Vec<Comparison>> {
     let steps = context.pick(100_000, 1_000_000);
     let mut drifts = Vec::new();
     for finer in context.pick(&[1][..], &[1, 2, 4]) {
@@ -204,10 +209,10 @@ fn energy_drift(context: &Context) -> Result<Vec<Finding>> {
     }
     let Drift { worst, trend: (rise, _), point } = &drifts[0];
     let over = |what: &str, value: f64| {
-        Finding::new(format!("{what} over {steps} steps"), "-", value, 0.0, point.spent).relative_to(1.0)
+        Comparison::new(format!("{what} over {steps} steps"), "-", value, 0.0, point.spent).relative_to(1.0)
     };
     let rises: Vec<String> = drifts.iter().map(|d| format!("{:.1e} ± {:.1e}", d.trend.0, 2.0 * d.trend.1)).collect();
-    let mut findings = vec![
+    let mut comparisons = vec![
         over("greatest change of energy", *worst).within(1e-3),
         over("trend of energy", *rise).within(1e-5).note(format!(
             "rise of a straight line through means of {WINDOWS} windows, ± two standard errors, each at half the step of \
@@ -218,11 +223,11 @@ fn energy_drift(context: &Context) -> Result<Vec<Finding>> {
     if let [_, .., Drift { trend: (rise, _), point, .. }] = &drifts[..] {
         let part = drifts[0].point.resolution / point.resolution;
         let what = format!("trend of energy over the same time at 1/{part:.0} of that step");
-        let mut finest = Finding::new(what, "-", *rise, 0.0, point.spent).relative_to(1.0).within(1e-6);
+        let mut finest = Comparison::new(what, "-", *rise, 0.0, point.spent).relative_to(1.0).within(1e-6);
         finest.convergence = Some(Convergence { axis: "dt/T", points: drifts.iter().map(|d| d.point).collect() });
-        findings.push(finest);
+        comparisons.push(finest);
     }
-    Ok(findings)
+    Ok(comparisons)
 }
 
 /// Rise of the straight line through equally spaced values, from the first to the last, and its standard error (least

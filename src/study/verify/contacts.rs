@@ -1,7 +1,7 @@
 //! Two spheres: Hertz, Thornton, friction at constant normal force, sliding into rolling.
 
-use super::Case;
-use super::finding::{Finding, Point, Spent};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;
 use crate::engine::Engine;
@@ -10,28 +10,28 @@ use crate::reference::mindlin::{Held, effective_shear_modulus};
 use crate::reference::{sliding, thornton};
 use crate::scene::spec::NormalSpec;
 
-pub const HERTZ: Case = Case {
+pub const HERTZ: VerificationCase = VerificationCase {
     name: "hertz",
     about: "two elastic spheres collide head-on: duration, depth and rebound",
     source: "Hertz 1882; Johnson, Contact Mechanics, 1985, section 11.4",
     run: hertz,
 };
 
-pub const THORNTON: Case = Case {
+pub const THORNTON: VerificationCase = VerificationCase {
     name: "thornton",
     about: "two elastoplastic spheres collide head-on: restitution over V/V_y",
     source: "Thornton, J. Appl. Mech. 64 (1997) 383",
     run: thornton_restitution,
 };
 
-pub const TANGENTIAL: Case = Case {
+pub const TANGENTIAL: VerificationCase = VerificationCase {
     name: "friction-constant-load",
     about: "tangential force over displacement at constant normal force, both laws",
     source: "Mindlin 1949; Mindlin & Deresiewicz 1953",
     run: constant_load,
 };
 
-pub const ROLLING: Case = Case {
+pub const ROLLING: VerificationCase = VerificationCase {
     name: "sliding-to-rolling",
     about: "a sphere thrown to slide ends up rolling: when, and how fast, both laws",
     source: "Timoshenko & Young, Advanced Dynamics, 1948: 2 v₀/(7 μ g′), (5/7) v₀",
@@ -67,7 +67,7 @@ fn collide(simulation: &mut Simulation) -> Result<(f64, f64)> {
 }
 
 /// Leapfrog is of order 2; the smooth 3/2 power of Hertz's law does not spoil it.
-fn hertz(context: &Context) -> Result<Vec<Finding>> {
+fn hertz(context: &Context) -> Result<Vec<Comparison>> {
     let speed = 1.0;
     let (mut points, mut finest) = (Vec::new(), None);
     for step in context.pick(&[400.0, 200.0, 100.0][..], &[800.0, 400.0, 200.0, 100.0, 50.0]) {
@@ -84,16 +84,16 @@ fn hertz(context: &Context) -> Result<Vec<Finding>> {
     let (time, depth, rebound, exact) = finest.expect("there are steps");
     let spent = points.last().map_or(Spent::default(), |p| p.spent);
     Ok(vec![
-        Finding::new("contact time", "s", time, exact.contact_time(speed), spent)
+        Comparison::new("contact time", "s", time, exact.contact_time(speed), spent)
             .within(1e-3)
             .converging("dt/T", points, 2.0, 0.1),
-        Finding::new("greatest overlap", "m", depth, exact.greatest_overlap(speed), spent).within(1e-3),
-        Finding::new("speed of rebound", "m/s", rebound, speed, spent).within(1e-6),
+        Comparison::new("greatest overlap", "m", depth, exact.greatest_overlap(speed), spent).within(1e-3),
+        Comparison::new("speed of rebound", "m/s", rebound, speed, spent).within(1e-6),
     ])
 }
 
 /// An elastic contact of each speed in 2000 steps; elastoplastic ones take longer.
-fn thornton_restitution(context: &Context) -> Result<Vec<Finding>> {
+fn thornton_restitution(context: &Context) -> Result<Vec<Comparison>> {
     let still = context.simulation("verify/thornton", &[])?;
     let exact = pair(&still);
     let pressure = match still.spec.contact.as_ref().map(|c| &c.normal) {
@@ -115,13 +115,13 @@ fn thornton_restitution(context: &Context) -> Result<Vec<Finding>> {
         let v = &simulation.engine.state().v;
         let restitution = (v.z[1] - v.z[0]) / speed;
         let what = format!("restitution at V/V_y = {ratio}");
-        Ok(Finding::new(what, "-", restitution, thornton::restitution(ratio), simulation.finish()).within(1e-3))
+        Ok(Comparison::new(what, "-", restitution, thornton::restitution(ratio), simulation.finish()).within(1e-3))
     };
     [0.9, 1.5, 3.0, 10.0, 100.0].into_iter().map(collide_at).collect()
 }
 
 /// At every tenth of the displacement at which the whole contact slides, up to 1.3 of it.
-fn constant_load(context: &Context) -> Result<Vec<Finding>> {
+fn constant_load(context: &Context) -> Result<Vec<Comparison>> {
     let of_law = |law: &'static str| {
         let mut simulation = context.simulation("verify/tangential", &[set("contact.tangential", law)])?;
         let (spec, exact) = (&simulation.spec, pair(&simulation));
@@ -146,16 +146,16 @@ fn constant_load(context: &Context) -> Result<Vec<Finding>> {
         let compare = |(slip, force): (f64, f64)| {
             let exact = if law == "mindlin" { held.no_slip_force(slip) } else { held.partial_slip_force(slip) };
             let what = format!("{law}: force, worst of {points}: {:.1} of sliding", slip / whole);
-            Finding::new(what, "N", force, exact, Spent::default()).within(5e-3)
+            Comparison::new(what, "N", force, exact, Spent::default()).within(5e-3)
         };
-        Ok(Finding { spent, ..Finding::worst(seen.into_iter().map(compare).collect()) })
+        Ok(Comparison { spent, ..Comparison::worst(seen.into_iter().map(compare).collect()) })
     };
     TANGENTIAL_LAWS.into_iter().map(of_law).collect()
 }
 
 /// Slip ends at 2v₀/(7μg′); from then on the speed is (5/7)v₀ in the mean over the ringing of the tangential spring.
-fn sliding_to_rolling(context: &Context) -> Result<Vec<Finding>> {
-    let mut findings = Vec::new();
+fn sliding_to_rolling(context: &Context) -> Result<Vec<Comparison>> {
+    let mut comparisons = Vec::new();
     for law in TANGENTIAL_LAWS {
         let (radius, floor, force, speed, friction) = (0.5e-3, 1.0, 10e-3, 0.5, 0.2);
         let m = context.simulation("verify/rolling", &[])?.spec.material;
@@ -181,8 +181,8 @@ fn sliding_to_rolling(context: &Context) -> Result<Vec<Finding>> {
         })?;
         let (mean, spent) = (sum / f64::from(count), simulation.finish());
         let exact = sliding::rolling_speed(speed);
-        findings.push(Finding::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2));
-        findings.push(Finding::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3));
+        comparisons.push(Comparison::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2));
+        comparisons.push(Comparison::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3));
     }
-    Ok(findings)
+    Ok(comparisons)
 }

@@ -1,7 +1,7 @@
 //! Decay of the first axial and bending mode under the bonds' viscous damping, and that it does not depend on the step.
 
-use super::Case;
-use super::finding::{Convergence, Finding, Point};
+use super::VerificationCase;
+use super::comparison::{Comparison, Convergence, Point};
 use super::modes::{first_axial_mode, first_bending_curvature, first_bending_mode, project};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;
@@ -11,14 +11,14 @@ use crate::law::damping::viscous_coefficient;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-pub const AXIAL: Case = Case {
+pub const AXIAL: VerificationCase = VerificationCase {
     name: "damping-axial",
     about: "first axial mode decays by ζ of the bonds' dashpots, whatever the step",
     source: "Rayleigh quotient of the dashpots: ζ = Σ c Δφ²/(2 ω Σ m φ²); logarithmic decrement 2πζ/√(1 − ζ²)",
     run: axial,
 };
 
-pub const BENDING: Case = Case {
+pub const BENDING: VerificationCase = VerificationCase {
     name: "damping-bending",
     about: "first bending mode decays by ζ of the bonds' dashpots, whatever the step",
     source: "Rayleigh quotient of the dashpots: ζ = (ω/2) Σ c κ²/Σ k κ²; logarithmic decrement 2πζ/√(1 − ζ²)",
@@ -84,7 +84,7 @@ fn decrement(simulation: &mut Simulation, mode: &Mode, frequency: f64) -> Result
 
 /// Leapfrog with the dashpots' velocities half a step old multiplies amplitudes by √(1 − 2ζωΔt) per step: that is e^(−ζωΔt)
 /// up to a share ζωΔt of the decay.
-fn decays(context: &Context, mode: &Mode) -> Result<Vec<Finding>> {
+fn decays(context: &Context, mode: &Mode) -> Result<Vec<Comparison>> {
     let (mut points, mut found) = (Vec::new(), Vec::new());
     let mut exact = f64::NAN;
     let safety = context.pick(&[0.8, 0.4][..], &[0.8, 0.4, 0.2]);
@@ -101,13 +101,13 @@ fn decays(context: &Context, mode: &Mode) -> Result<Vec<Finding>> {
     let [coarse, .., fine] = found[..] else { unreachable!("there are several steps") };
     let part = safety[0] / safety[safety.len() - 1];
     let mut decrement =
-        Finding::new(format!("logarithmic decrement at 1/{part:.0} of that step"), "-", fine, exact, spent)
+        Comparison::new(format!("logarithmic decrement at 1/{part:.0} of that step"), "-", fine, exact, spent)
             .within(5e-3);
     decrement.convergence = Some(Convergence { axis: "dt/T", points });
     Ok(vec![
-        Finding::new("logarithmic decrement at the default step", "-", coarse, exact, spent).within(5e-3),
+        Comparison::new("logarithmic decrement at the default step", "-", coarse, exact, spent).within(5e-3),
         decrement,
-        Finding::new("the one over the other", "-", coarse / fine, 1.0, spent).within(5e-3),
+        Comparison::new("the one over the other", "-", coarse / fine, 1.0, spent).within(5e-3),
     ])
 }
 
@@ -117,7 +117,7 @@ fn coefficients(simulation: &Simulation, fraction: f64, stiffness: f64, inertia:
     (0..simulation.bonds()).map(|i| viscous_coefficient(fraction, reduced(i), stiffness)).collect()
 }
 
-fn axial(context: &Context) -> Result<Vec<Finding>> {
+fn axial(context: &Context) -> Result<Vec<Comparison>> {
     let theory = |simulation: &Simulation| {
         let (bar, a, n) = (simulation.bar(), simulation.engine.assembly(), simulation.bonds());
         let stiffness = bar.young * bar.area() / a.rest_length[0];
@@ -142,7 +142,7 @@ fn axial(context: &Context) -> Result<Vec<Finding>> {
     decays(context, &mode)
 }
 
-fn bending(context: &Context) -> Result<Vec<Finding>> {
+fn bending(context: &Context) -> Result<Vec<Comparison>> {
     let theory = |simulation: &Simulation| {
         let (bar, a, n) = (simulation.bar(), simulation.engine.assembly(), simulation.bonds());
         let stiffness = bar.young * bar.second_moment() / a.rest_length[0];

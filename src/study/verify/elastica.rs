@@ -1,7 +1,7 @@
 //! Large deflection of a cantilever.
 
-use super::Case;
-use super::finding::{Finding, Point, Spent};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, set};
 use crate::base::error::Result;
 use crate::reference::elastica;
@@ -9,7 +9,7 @@ use crate::scene;
 use glam::DVec2;
 use std::f64::consts::PI;
 
-pub const ELASTICA: Case = Case {
+pub const ELASTICA: VerificationCase = VerificationCase {
     name: "elastica",
     about: "a slender cantilever is bent far round by a force at its tip: where the tip goes",
     source: "Bisshopp & Drucker, Q. Appl. Math. 3 (1945) 272",
@@ -40,7 +40,7 @@ fn tip(context: &Context, load: f64, spacing: f64) -> Result<(DVec2, Spent)> {
 }
 
 /// Chords of a polygon with the curve's corners on it: order 2 in the spacing.
-fn elastica(context: &Context) -> Result<Vec<Finding>> {
+fn elastica(context: &Context) -> Result<Vec<Comparison>> {
     let mut found = Vec::new();
     for load in context.pick(&[10.0][..], &[1.0, 3.0, 10.0]) {
         let exact = elastica::tip(*load);
@@ -54,9 +54,9 @@ fn elastica(context: &Context) -> Result<Vec<Finding>> {
         }
         let what = |what: &str| format!("{what} of the tip over L, P L^2/(E I) = {load}");
         let spent = points.iter().map(|p| p.spent).sum();
-        found.push(Finding::new(what("deflection"), "-", finest.x, exact.x, spent).within(5e-3));
+        found.push(Comparison::new(what("deflection"), "-", finest.x, exact.x, spent).within(5e-3));
         found.push(
-            Finding::new(what("distance from the exact place"), "-", finest.distance(exact), 0.0, spent)
+            Comparison::new(what("distance from the exact place"), "-", finest.distance(exact), 0.0, spent)
                 .relative_to(1.0)
                 .within(5e-3)
                 .converging("a/L", points, 2.0, 0.3),

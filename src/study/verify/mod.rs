@@ -3,12 +3,12 @@
 
 mod beams;
 mod capstan;
+pub mod comparison;
 mod conservation;
 mod contacts;
 mod critical_step;
 mod damping;
 mod elastica;
-pub mod finding;
 mod frame;
 mod known_strands;
 mod modes;
@@ -28,16 +28,16 @@ mod wires;
 mod written;
 
 use crate::base::error::{Error, Result};
-use crate::study::runner::{self, CaseRunner, Status};
+use crate::study::runner::{CaseRunner, Named, Status};
 use crate::study::select;
-use finding::{Finding, Verdict};
+use comparison::{Comparison, Verdict};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use support::Context;
 pub use support::Effort;
 
 /// A case: one claim about the engine that a closed form decides.
-pub struct Case {
+pub struct VerificationCase {
     /// What the user calls it.
     pub name: &'static str,
     /// The claim in one line.
@@ -45,11 +45,11 @@ pub struct Case {
     /// Where the equation comes from.
     pub source: &'static str,
     /// Runs what the case needs and compares.
-    pub run: fn(&Context) -> Result<Vec<Finding>>,
+    pub run: fn(&Context) -> Result<Vec<Comparison>>,
 }
 
 /// All cases, by theme.
-pub const CASES: &[Case] = &[
+pub const CASES: &[VerificationCase] = &[
     // Bars and beams
     beams::CANTILEVER,
     beams::STOCKY,
@@ -110,16 +110,16 @@ pub const CASES: &[Case] = &[
 ///
 /// # Errors
 /// A name that no case has; the nearest is suggested.
-pub fn select(names: &[String]) -> Result<Vec<&'static Case>> {
+pub fn select(names: &[String]) -> Result<Vec<&'static VerificationCase>> {
     select::select(names, CASES, |case| case.name, "verification case", "strandsnap verify --list")
 }
 
 /// What became of one case.
 pub struct Report {
     /// The case.
-    pub case: &'static Case,
+    pub case: &'static VerificationCase,
     /// What it found, its energy ledger last; or why it could not be run.
-    pub result: Result<Vec<Finding>>,
+    pub result: Result<Vec<Comparison>>,
     /// Wall time (s).
     pub wall_s: f64,
 }
@@ -127,7 +127,7 @@ pub struct Report {
 impl Report {
     /// Whether the case ran and every finding agrees with its closed form.
     pub fn passes(&self) -> bool {
-        self.result.as_ref().is_ok_and(|findings| findings.iter().all(|f| f.verdict() == Verdict::Pass))
+        self.result.as_ref().is_ok_and(|comparisons| comparisons.iter().all(|f| f.verdict() == Verdict::Pass))
     }
 }
 
@@ -135,35 +135,17 @@ impl Report {
 ///
 /// # Errors
 /// [`Error::Interrupted`] when `stop` ended it early.
-pub fn run_one(case: &'static Case, effort: Effort, stop: &AtomicBool) -> Result<Report> {
+pub fn run_one(case: &'static VerificationCase, effort: Effort, stop: &AtomicBool) -> Result<Report> {
     let began = Instant::now();
     let context = Context::new(effort, stop);
     let result = match (case.run)(&context) {
         Err(Error::Interrupted) => return Err(Error::Interrupted),
-        other => other.map(|mut findings| {
-            findings.extend(context.ledger());
-            findings
+        other => other.map(|mut comparisons| {
+            comparisons.extend(context.ledger());
+            comparisons
         }),
     };
     Ok(Report { case, result, wall_s: began.elapsed().as_secs_f64() })
-}
-
-/// A case as a [`CaseRunner`] takes it.
-struct ToRun {
-    case: &'static Case,
-    effort: Effort,
-}
-
-impl runner::Case for ToRun {
-    type Output = Report;
-
-    fn name(&self) -> String {
-        self.case.name.into()
-    }
-
-    fn run(&self, stop: &AtomicBool) -> Result<Report> {
-        run_one(self.case, self.effort, stop)
-    }
 }
 
 /// Runs cases; they are small, so a runner with several jobs, each on one thread, is fastest. The statuses come in the
@@ -171,8 +153,16 @@ impl runner::Case for ToRun {
 ///
 /// # Errors
 /// When a thread cannot be started.
-pub fn run_all(cases: &[&'static Case], effort: Effort, runner: &CaseRunner) -> Result<Vec<Status<Report>>> {
-    runner.run(&cases.iter().map(|case| ToRun { case, effort }).collect::<Vec<_>>())
+pub fn run_all(
+    cases: &[&'static VerificationCase],
+    effort: Effort,
+    runner: &CaseRunner,
+) -> Result<Vec<Status<Report>>> {
+    let named = |case: &&'static VerificationCase| {
+        let case = *case;
+        Named(case.name.into(), move |stop: &AtomicBool| run_one(case, effort, stop))
+    };
+    runner.run(&cases.iter().map(named).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

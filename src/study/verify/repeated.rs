@@ -1,7 +1,7 @@
 //! Repeated loading of an elastoplastic contact.
 
-use super::Case;
-use super::finding::Finding;
+use super::VerificationCase;
+use super::comparison::Comparison;
 use super::support::Context;
 use crate::base::error::Result;
 use crate::reference::hertz::Pair;
@@ -9,7 +9,7 @@ use crate::reference::thornton;
 use crate::scene::spec::{DriveSpec, NormalSpec};
 use std::f64::consts::TAU;
 
-pub const REPEATED: Case = Case {
+pub const REPEATED: VerificationCase = VerificationCase {
     name: "thornton-repeated",
     about: "an elastoplastic contact is loaded, unloaded and loaded again, deeper each time: force and lost energy",
     source: "Thornton, J. Appl. Mech. 64 (1997) 383",
@@ -17,7 +17,7 @@ pub const REPEATED: Case = Case {
 };
 
 /// The overlap is prescribed, v t + A sin ωt: the force is compared at every step, the energy after every cycle.
-fn repeated(context: &Context) -> Result<Vec<Finding>> {
+fn repeated(context: &Context) -> Result<Vec<Comparison>> {
     let mut simulation = context.simulation("verify/repeated", &[])?;
     let NormalSpec::Thornton { limiting_pressure } = simulation.spec.contact.as_ref().expect("it touches").normal
     else {
@@ -56,12 +56,12 @@ fn repeated(context: &Context) -> Result<Vec<Finding>> {
     let lost = (0..energies.len())
         .map(|k| {
             let what = format!("energy lost in cycle {}", k + 1);
-            Finding::new(what, "J", per_cycle(k, 0), per_cycle(k, 1), spent).within(1e-3)
+            Comparison::new(what, "J", per_cycle(k, 0), per_cycle(k, 1), spent).within(1e-3)
         })
         .collect();
     let what = format!("force, furthest off in {cycles} cycles");
     Ok(vec![
-        Finding::new(what, "N", worst[0], worst[1], spent).relative_to(strongest).within(1e-6),
-        Finding { spent, ..Finding::worst(lost) },
+        Comparison::new(what, "N", worst[0], worst[1], spent).relative_to(strongest).within(1e-6),
+        Comparison { spent, ..Comparison::worst(lost) },
     ])
 }

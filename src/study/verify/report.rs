@@ -1,27 +1,27 @@
 //! What verification found, as a table for people and as JSON for programs.
 
 use super::Report;
-use super::finding::{Convergence, Finding, Point, Verdict};
+use super::comparison::{Comparison, Convergence, Point, Verdict};
 use crate::base::error::Result;
 use crate::observe::files::write_whole;
 use crate::study::column::{self, Column, Value};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A line of the results: a finding of a case, or that the case could not be run.
-type Line<'a> = (&'a Report, Option<&'a Finding>);
+/// A line of the results: a comparison of a case, or that the case could not be run.
+type Line<'a> = (&'a Report, Option<&'a Comparison>);
 
 /// The lines of a report.
 fn lines(report: &Report) -> Vec<Line<'_>> {
     match &report.result {
-        Ok(findings) => findings.iter().map(|finding| (report, Some(finding))).collect(),
+        Ok(comparisons) => comparisons.iter().map(|finding| (report, Some(finding))).collect(),
         Err(_) => vec![(report, None)],
     }
 }
 
 /// The columns of a line, in JSON and for people. Numbers that are not finite are null.
 fn columns<'a>() -> Vec<Column<'a, Line<'a>>> {
-    fn of<'a, V: Into<Value> + 'static>(of: fn(&Finding) -> V) -> impl Fn(&Line<'a>) -> Value {
+    fn of<'a, V: Into<Value> + 'static>(of: fn(&Comparison) -> V) -> impl Fn(&Line<'a>) -> Value {
         move |(_, finding): &Line<'a>| finding.map_or(Value::Missing, |finding| of(finding).into())
     }
     vec![
@@ -72,28 +72,28 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 /// What was computed, with its unit.
-fn quantity(f: &Finding) -> String {
+fn quantity(f: &Comparison) -> String {
     if f.unit == "-" { f.what.clone() } else { format!("{} [{}]", f.what, f.unit) }
 }
 
 /// Whether the finding asks for a least value, which has no error.
-fn is_least(f: &Finding) -> bool {
+fn is_least(f: &Comparison) -> bool {
     f.allowed[1].is_infinite()
 }
 
-fn exact(f: &Finding) -> String {
+fn exact(f: &Comparison) -> String {
     if is_least(f) { format!("≥ {}", number(f.exact)) } else { number(f.exact) }
 }
 
-fn error(f: &Finding) -> String {
+fn error(f: &Comparison) -> String {
     if is_least(f) { String::new() } else { percent(100.0 * f.error()) }
 }
 
-fn order(f: &Finding) -> String {
+fn order(f: &Comparison) -> String {
     f.order.map_or(String::new(), |o| format!("{:.2} ({:.2})", o.observed, o.theory))
 }
 
-fn verdict(f: &Finding) -> String {
+fn verdict(f: &Comparison) -> String {
     let [low, high] = f.allowed.map(|limit| 100.0 * limit);
     let target = if -low == high { format!("±{high:.2}") } else { format!("{low:.2} to {high:.2}") };
     let target = if target == "±0.00" { format!("±{high:.0e}") } else { target };
@@ -134,7 +134,7 @@ pub fn table(reports: &[Report]) -> String {
     table
 }
 
-/// Why findings differ from their closed forms by design, and what those that miss would have had to be.
+/// Why comparisons differ from their closed forms by design, and what those that miss would have had to be.
 pub fn notes(reports: &[Report]) -> String {
     let mut text = String::new();
     for report in reports {
@@ -183,18 +183,18 @@ mod tests {
     use super::*;
     use crate::base::error::Error;
     use crate::study::verify::CASES;
-    use crate::study::verify::finding::Spent;
+    use crate::study::verify::comparison::Spent;
 
     fn reports() -> Vec<Report> {
         let spent = Spent { steps: 1200, wall_s: 0.25 };
         let point = |resolution: f64, error: f64| Point { resolution, error, spent };
-        let good = Finding::new("contact time", "s", 3.0001e-5, 3e-5, spent).within(1e-3).converging(
+        let good = Comparison::new("contact time", "s", 3.0001e-5, 3e-5, spent).within(1e-3).converging(
             "dt/T",
             vec![point(0.1, 0.04), point(0.05, 0.01)],
             2.0,
             0.1,
         );
-        let bad = Finding::new("depth", "m", f64::NAN, 0.5, spent).within(1e-3).note("because");
+        let bad = Comparison::new("depth", "m", f64::NAN, 0.5, spent).within(1e-3).note("because");
         let error = Error::input("no such scene", "");
         vec![
             Report { case: &CASES[0], result: Ok(vec![good, bad]), wall_s: 1.0 },

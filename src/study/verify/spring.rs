@@ -1,12 +1,12 @@
 //! A helix pulled as a spring.
 
-use super::Case;
-use super::finding::{Finding, Point};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;
 use crate::reference::spring::Spring;
 
-pub const SPRING: Case = Case {
+pub const SPRING: VerificationCase = VerificationCase {
     name: "spring",
     about: "an open-coiled helical spring is pulled along its axis, ends held or free to turn: stiffness",
     source: "Love, Mathematical Theory of Elasticity, 1927, section 271; Timoshenko, Strength of Materials II, section 56",
@@ -38,7 +38,7 @@ fn stiffness(simulation: &mut Simulation) -> Result<f64> {
     Ok(force * moved.1 / moved.0)
 }
 
-fn spring(context: &Context) -> Result<Vec<Finding>> {
+fn spring(context: &Context) -> Result<Vec<Comparison>> {
     let mut found = Vec::new();
     for free in [false, true] {
         let mut points = Vec::new();
@@ -68,7 +68,7 @@ fn spring(context: &Context) -> Result<Vec<Finding>> {
             100.0 * (central / exact - 1.0),
         );
         found.push(
-            Finding::new(format!("stiffness, ends {ends}"), "N/m", value, exact, spent)
+            Comparison::new(format!("stiffness, ends {ends}"), "N/m", value, exact, spent)
                 .within(context.pick(1e-2, 5e-3))
                 .converging("a/R", points, 2.0, 0.2)
                 .note(note),

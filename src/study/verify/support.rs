@@ -1,6 +1,6 @@
 //! What all cases share: scenes, engines, averages, frequencies, the ledger.
 
-use super::finding::{Finding, Spent};
+use super::comparison::{Comparison, Spent};
 use crate::base::error::{Error, Result};
 use crate::engine::Engine;
 use crate::reference::beam::RoundBar;
@@ -98,14 +98,14 @@ impl<'a> Context<'a> {
     }
 
     /// The worst energy ledger of the simulations that were finished, if any: what is missing over the work done.
-    pub(super) fn ledger(&self) -> Option<Finding> {
+    pub(super) fn ledger(&self) -> Option<Comparison> {
         let Ledger { runs, worst, spent } = self.ledger.get();
         let what = match runs {
             0 => return None,
             1 => "energy ledger: missing over work".into(),
             _ => format!("energy ledger: missing over work, worst of {runs}"),
         };
-        Some(Finding::new(what, "-", worst, 0.0, spent).relative_to(1.0).within(LEDGER_TARGET))
+        Some(Comparison::new(what, "-", worst, 0.0, spent).relative_to(1.0).within(LEDGER_TARGET))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Smooth wires beside chains of spheres, under a sphere, and across each other.
 
-use super::Case;
-use super::finding::{Finding, Point, Spent};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, set};
 use crate::base::error::Result;
 use crate::law::contact::line::LINE;
@@ -9,21 +9,21 @@ use crate::reference::hertz::{Pair, elliptical_factor};
 use crate::reference::thornton;
 use crate::scene;
 
-pub const SLIDING_WIRES: Case = Case {
+pub const SLIDING_WIRES: VerificationCase = VerificationCase {
     name: "sliding-wires",
     about: "a wire is dragged along another: smooth ones feel friction alone, chains of spheres interlock",
     source: "Coulomb; a sphere of radius r rolls from crest to saddle of two touching ones: height 2r to sqrt(3) r",
     run: sliding_wires,
 };
 
-pub const SPHERE_ON_WIRE: Case = Case {
+pub const SPHERE_ON_WIRE: VerificationCase = VerificationCase {
     name: "sphere-on-wire",
     about: "a sphere pressed into a smooth wire: normal force",
     source: "Hertz 1882; Johnson, Contact Mechanics, 1985, section 4.2",
     run: sphere_on_wire,
 };
 
-pub const CROSSED_WIRES: Case = Case {
+pub const CROSSED_WIRES: VerificationCase = VerificationCase {
     name: "crossed-wires",
     about: "two smooth wires pressed together, parallel and crossed, particles at any spacing: force",
     source: "Hertz's ellipse, Johnson, Contact Mechanics, 1985, section 4.2; Thornton 1997; 0.3 E* per length for parallel wires",
@@ -73,18 +73,18 @@ fn drag(context: &Context, options: &[String]) -> Result<Drag> {
     Ok(Drag { spent: simulation.finish(), ..drag })
 }
 
-fn sliding_wires(context: &Context) -> Result<Vec<Finding>> {
+fn sliding_wires(context: &Context) -> Result<Vec<Comparison>> {
     let smooth = drag(context, &[])?;
     let rough = drag(context, &[set("contact.tangential", "mindlin"), set("contact.friction", 0.2)])?;
     // A little further, so that the next crest is passed.
     let beads = drag(context, &[set("contact.shape", "sphere"), set("stop.time", "4 ms")])?;
     let [off, exact] = beads.furthest;
     Ok(vec![
-        Finding::new("smooth, no friction: greatest drag over load", "-", smooth.greatest, 0.0, smooth.spent)
+        Comparison::new("smooth, no friction: greatest drag over load", "-", smooth.greatest, 0.0, smooth.spent)
             .relative_to(1.0)
             .within(1e-5),
-        Finding::new("smooth, mu = 0.2: drag over load", "-", -rough.last, 0.2, rough.spent).within(2e-2),
-        Finding::new(
+        Comparison::new("smooth, mu = 0.2: drag over load", "-", -rough.last, 0.2, rough.spent).within(2e-2),
+        Comparison::new(
             "spheres, no friction: push over load towards the saddle, furthest off",
             "-",
             off,
@@ -93,13 +93,13 @@ fn sliding_wires(context: &Context) -> Result<Vec<Finding>> {
         )
         .relative_to(1.0 / 3f64.sqrt())
         .within(2e-2),
-        Finding::new("spheres: rise from saddle to crest over r", "-", beads.rise, 2.0 - 3f64.sqrt(), beads.spent)
+        Comparison::new("spheres: rise from saddle to crest over r", "-", beads.rise, 2.0 - 3f64.sqrt(), beads.spent)
             .within(5e-3)
             .note("Real wires are smooth; shape = \"sphere\" adds this geometric friction, shape = \"wire\" does not."),
     ])
 }
 
-fn sphere_on_wire(context: &Context) -> Result<Vec<Finding>> {
+fn sphere_on_wire(context: &Context) -> Result<Vec<Comparison>> {
     let (mut own, mut points) = (Vec::new(), Vec::new());
     let mut finest = None;
     for diameter in [1.0, 4.0, 16.0] {
@@ -119,7 +119,7 @@ fn sphere_on_wire(context: &Context) -> Result<Vec<Finding>> {
         let force = s.force_from_contacts(s.len() - 1).x;
         let spent = simulation.finish();
         let what = "force at the geometric mean of the radii of curvature";
-        own.push(Finding::new(what, "N", force, pair.force(depth), spent).within(1e-9));
+        own.push(Comparison::new(what, "N", force, pair.force(depth), spent).within(1e-9));
         let exact = pair.force(depth) * elliptical_factor(sphere / round);
         points.push(Point { resolution: sphere / wire, error: force / exact - 1.0, spent });
         finest = Some((force, exact, spent));
@@ -128,8 +128,8 @@ fn sphere_on_wire(context: &Context) -> Result<Vec<Finding>> {
     // Relative radii of curvature 1/R sphere and 1/R sphere + 1/R wire.
     let ellipse = |sphere: f64, wire: f64| 100.0 * (1.0 - 1.0 / elliptical_factor(1.0 + sphere / wire));
     Ok(vec![
-        Finding::worst(own),
-        Finding::new("force of the elliptical contact, wire of 16 mm", "N", force, exact, spent)
+        Comparison::worst(own),
+        Comparison::new("force of the elliptical contact, wire of 16 mm", "N", force, exact, spent)
             .within(5e-3)
             .converging("R sphere/R wire", points, 2.0, 0.4)
             .note(format!(
@@ -172,8 +172,8 @@ fn crossed(context: &Context, angle: f64, spacing: f64, options: &[String]) -> R
     Ok((force, (2.0 * half - (first - second).abs()) * 1e-3, simulation.finish()))
 }
 
-fn crossed_wires(context: &Context) -> Result<Vec<Finding>> {
-    let mut findings = Vec::new();
+fn crossed_wires(context: &Context) -> Result<Vec<Comparison>> {
+    let mut comparisons = Vec::new();
     let m = scene::load("verify/crossed-wires", &[])?.spec;
     let (radius, m) = (0.5 * m.wires[0].diameter, m.material);
     let ball = Pair { radius, ..Pair::equal_spheres(1.0, m.young, m.poisson, m.density) };
@@ -188,20 +188,20 @@ fn crossed_wires(context: &Context) -> Result<Vec<Finding>> {
                 let pair = Pair { radius: radius / sine, ..ball };
                 pair.force(APPROACH) * elliptical_factor((1.0 + cosine) / (1.0 - cosine))
             };
-            own.push(Finding::new(format!("force at {angle} degrees"), "N", force, exact, spent).within(1e-2));
+            own.push(Comparison::new(format!("force at {angle} degrees"), "N", force, exact, spent).within(1e-2));
             forces.push((force, spent));
         }
-        findings.push(Finding::worst(own));
+        comparisons.push(Comparison::worst(own));
         let (most, least) = forces.iter().fold((0.0f64, f64::MAX), |(a, b), (f, _)| (a.max(*f), b.min(*f)));
         let what = format!("force at {angle} degrees, greatest over least for a/d from 2 to 0.25");
-        findings.push(Finding::new(what, "-", most / least, 1.0, forces[0].1).within(1e-2));
+        comparisons.push(Comparison::new(what, "-", most / least, 1.0, forces[0].1).within(1e-2));
     }
-    findings.extend(pressed_wires(context, &ball)?);
-    Ok(findings)
+    comparisons.extend(pressed_wires(context, &ball)?);
+    Ok(comparisons)
 }
 
 /// The same with a limiting pressure, at right angles: Thornton's law for spheres of the wires' radius in pairs.
-fn pressed_wires(context: &Context, ball: &Pair) -> Result<Vec<Finding>> {
+fn pressed_wires(context: &Context, ball: &Pair) -> Result<Vec<Comparison>> {
     let mut own = Vec::new();
     for pressure in [0.5e9, 2e9, 8e9] {
         for spacing in [2.0, 0.25] {
@@ -210,11 +210,11 @@ fn pressed_wires(context: &Context, ball: &Pair) -> Result<Vec<Finding>> {
             let (force, _, spent) = crossed(context, 90.0, spacing, &options)?;
             let exact = thornton::force(ball, pressure, APPROACH, APPROACH);
             own.push(
-                Finding::new("force at 90 degrees under a limiting pressure", "N", force, exact, spent).within(2e-2),
+                Comparison::new("force at 90 degrees under a limiting pressure", "N", force, exact, spent).within(2e-2),
             );
         }
     }
-    Ok(vec![Finding::worst(own).note(
+    Ok(vec![Comparison::worst(own).note(
         "Force per length on the limit is Abel's inversion of Thornton's law, whose series is cut off: within 0.8 %; four \
          points per stretch integrate an ellipse to 0.6 %.",
     )])

@@ -3,7 +3,6 @@
 use super::super::comparison::{PointComparison, QUANTITIES, Trend};
 use super::super::definition::Definition;
 use super::Findings;
-use crate::study::statistics::Statistics;
 use crate::study::table::Table;
 
 /// Computed values beside published ones and theory's, point by point, and the trends; empty when the study compares with
@@ -38,7 +37,7 @@ fn values(definition: &Definition, points: &[PointComparison]) -> Table {
             let value = |other: Option<[f64; 2]>| other.map_or(String::new(), |other| format!("{:.2}", other[k]));
             let error = |other| one.error(k, other).map_or(String::new(), |error| format!("{error:+.2}"));
             cells.extend([
-                one.computed[k].map_or(String::new(), with_interval),
+                one.computed[k].map_or(String::new(), |stat| stat.with_interval(2)),
                 value(one.simulation),
                 error(one.simulation),
                 value(one.theory),
@@ -96,12 +95,5 @@ fn verdict(trend: &Trend, other: Option<f64>) -> String {
         Some(half) if trend.computed.abs() <= half => "within scatter of none".into(),
         _ if trend.computed * other > 0.0 => "yes".into(),
         _ => "no".into(),
-    }
-}
-
-fn with_interval(stat: Statistics) -> String {
-    match stat.interval_95 {
-        Some(half) => format!("{:.2} ± {half:.2}", stat.mean),
-        None => format!("{:.2}", stat.mean),
     }
 }

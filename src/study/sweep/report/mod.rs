@@ -17,7 +17,7 @@ use super::quantity::Quantity;
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
 use crate::run::folder::{STUDY, STUDY_PAGE};
-use crate::study::fit::{self, Comparison, Fit, Model};
+use crate::study::fit::{self, Fit, Model, ModelComparison};
 use crate::study::screening::Effects;
 use crate::study::table::Table;
 use serde::Serialize;
@@ -42,7 +42,7 @@ pub struct Fitted {
     /// Name of the quantity.
     pub quantity: &'static str,
     /// All models, each with its cross-validation.
-    pub comparison: Comparison,
+    pub comparison: ModelComparison,
 }
 
 /// What the factors of a design do to a quantity.

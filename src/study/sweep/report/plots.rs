@@ -35,11 +35,7 @@ pub fn write(definition: &Definition, gathered: &Gathered, findings: &Findings, 
     sheets.extend(super::effects::figures(definition, findings));
     let mut files = Vec::new();
     for (name, figures) in sheets {
-        for end in ["svg", "png"] {
-            let path = folder.join(format!("{name}.{end}"));
-            plot::write(&figures, 1, &path)?;
-            files.push(path);
-        }
+        files.extend(plot::write_pair(&figures, 1, folder, name)?);
     }
     Ok(files)
 }

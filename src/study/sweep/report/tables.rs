@@ -202,9 +202,5 @@ fn with_interval(stat: Option<Statistics>, quantity: &Quantity) -> String {
     if quantity::is_frequency(quantity) {
         return format!("{:.0} of {}", 0.01 * stat.mean * stat.count as f64, stat.count);
     }
-    let decimals = quantity.decimals;
-    match stat.interval_95.zip(stat.standard_deviation) {
-        Some((half, deviation)) => format!("{:.decimals$} ± {half:.decimals$} ({deviation:.decimals$})", stat.mean),
-        None => format!("{:.decimals$}", stat.mean),
-    }
+    stat.with_deviation(quantity.decimals)
 }

@@ -78,7 +78,7 @@ impl Order {
     }
 }
 
-/// Whether a finding agrees with its closed form.
+/// Whether a comparison agrees with its closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// Error and order are within their targets.
@@ -99,7 +99,7 @@ impl Verdict {
 
 /// A computed number beside its closed form.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
+pub struct Comparison {
     /// What was computed.
     pub what: String,
     /// Its unit, SI; "-" for none.
@@ -110,8 +110,8 @@ pub struct Finding {
     pub exact: f64,
     /// What the error is relative to, in `unit`: |exact| unless that is 0 or says nothing.
     pub scale: f64,
-    /// Least and greatest relative error allowed (-). Nothing but 0 until [`Finding::within`] or
-    /// [`Finding::between`] says more.
+    /// Least and greatest relative error allowed (-). Nothing but 0 until [`Comparison::within`] or
+    /// [`Comparison::between`] says more.
     pub allowed: [f64; 2],
     /// Order of convergence, where there is one.
     pub order: Option<Order>,
@@ -123,7 +123,7 @@ pub struct Finding {
     pub note: Option<String>,
 }
 
-impl Finding {
+impl Comparison {
     /// `computed` against `exact`, both in `unit`, from runs that took `spent`.
     pub fn new(what: impl Into<String>, unit: &'static str, computed: f64, exact: f64, spent: Spent) -> Self {
         Self {
@@ -196,19 +196,19 @@ impl Finding {
         if near && self.order.is_none_or(|order| order.holds()) { Verdict::Pass } else { Verdict::Miss }
     }
 
-    /// Of several findings of one kind the one that uses most of what it is allowed, with what all of them took.
+    /// Of several comparisons of one kind the one that uses most of what it is allowed, with what all of them took.
     ///
     /// # Panics
     /// When there is none.
-    pub fn worst(findings: Vec<Finding>) -> Self {
-        let spent = findings.iter().map(|f| f.spent).sum();
-        let use_of = |f: &Finding| {
+    pub fn worst(comparisons: Vec<Comparison>) -> Self {
+        let spent = comparisons.iter().map(|f| f.spent).sum();
+        let use_of = |f: &Comparison| {
             let [low, high] = f.allowed;
             let off = f.error() - 0.5 * (low + high);
             let used = off.abs() / (0.5 * (high - low));
             if used.is_nan() { f64::INFINITY } else { used }
         };
-        let worst = findings.into_iter().max_by(|a, b| use_of(a).total_cmp(&use_of(b)));
+        let worst = comparisons.into_iter().max_by(|a, b| use_of(a).total_cmp(&use_of(b)));
         Self { spent, ..worst.expect("a case has at least one point") }
     }
 }
@@ -217,8 +217,8 @@ impl Finding {
 mod tests {
     use super::*;
 
-    fn finding(computed: f64, exact: f64) -> Finding {
-        Finding::new("a length", "m", computed, exact, Spent::default())
+    fn finding(computed: f64, exact: f64) -> Comparison {
+        Comparison::new("a length", "m", computed, exact, Spent::default())
     }
 
     #[test]
@@ -245,9 +245,9 @@ mod tests {
 
     #[test]
     fn the_worst_finding_uses_most_of_its_allowance() {
-        let worst = Finding::worst(vec![finding(1.1, 1.0).within(0.2), finding(0.99, 1.0).within(0.01)]);
+        let worst = Comparison::worst(vec![finding(1.1, 1.0).within(0.2), finding(0.99, 1.0).within(0.01)]);
         assert_eq!(worst.computed, 0.99);
-        let worst = Finding::worst(vec![finding(1.0, 1.0).within(0.2), finding(f64::NAN, 1.0).within(0.01)]);
+        let worst = Comparison::worst(vec![finding(1.0, 1.0).within(0.2), finding(f64::NAN, 1.0).within(0.01)]);
         assert!(worst.computed.is_nan());
     }
 }
