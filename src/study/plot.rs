@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// How an axis runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Evenly.
+    /// Equal steps of the value are equal lengths.
     Linear,
     /// Evenly in decades; values that are not positive are left out.
     Log,

@@ -6,7 +6,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// A number over several seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Statistics {
-    /// Mean.
+    /// Arithmetic mean, in the unit of the number.
     pub mean: f64,
     /// Standard deviation from seed to seed; `None` for one seed.
     pub standard_deviation: Option<f64>,
@@ -14,7 +14,7 @@ pub struct Statistics {
     pub standard_error: Option<f64>,
     /// Half the width of the interval that holds the mean with 95 % confidence (Student's t); `None` for one seed.
     pub interval_95: Option<f64>,
-    /// Seeds.
+    /// How many seeds the mean is over.
     pub count: usize,
 }
 

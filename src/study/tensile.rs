@@ -80,11 +80,11 @@ pub struct TensileResult {
     pub wall_s: f64,
     /// Processor time of the same (s); `None` where the system does not tell.
     pub cpu_s: Option<f64>,
-    /// Steps.
+    /// Time steps until the run ended.
     pub steps: u64,
     /// Wall time in the engine over steps (ms).
     pub ms_per_step: Option<f64>,
-    /// Particles.
+    /// Particles of the whole body.
     pub particles: usize,
     /// Greatest nominal stress of a body that failed (MPa).
     pub strength_mpa: f64,
@@ -98,7 +98,7 @@ pub struct TensileResult {
     pub kinetic_over_internal: Option<f64>,
     /// Greatest difference of the two grip forces before the first rupture, over the peak force (%).
     pub grip_mismatch_percent: Option<f64>,
-    /// Wires.
+    /// Wires of the whole body.
     pub wires: usize,
     /// Layer names, inside out.
     pub layers: Vec<String>,
@@ -108,7 +108,7 @@ pub struct TensileResult {
     pub gauge_mm: Option<[f64; 2]>,
     /// First rupture of each wire that broke, in order.
     pub breaks: Vec<Break>,
-    /// Histories.
+    /// Histories over strain, one entry per row.
     pub curve: Curve,
 }
 

@@ -20,10 +20,10 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Both.
+    /// Strength and elongation, in the order of every pair.
     pub const ALL: [Quantity; 2] = [Quantity::Strength, Quantity::Elongation];
 
-    /// Its name.
+    /// Its name in tables and files.
     pub fn word(self) -> &'static str {
         match self {
             Quantity::Strength => "strength",

@@ -89,7 +89,7 @@ pub struct Reference {
 pub struct Subject {
     /// The scene as it stands.
     pub scene: Scene,
-    /// Seeds.
+    /// Seeds that every row is run with, each once.
     pub seeds: Vec<u64>,
     /// Parameters that it has.
     pub varied: Vec<Varied>,

@@ -19,7 +19,7 @@ pub struct Row {
 /// What a row knows of its parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowParameter {
-    /// Name.
+    /// Name of the parameter.
     pub name: &'static str,
     /// Key of the scene.
     pub key: &'static str,
@@ -29,7 +29,7 @@ pub struct RowParameter {
     pub default: String,
     /// The same as a number.
     pub default_number: Option<f64>,
-    /// This row's as a number.
+    /// The value of this row as a number; `None` for words.
     pub number: Option<f64>,
 }
 
@@ -43,7 +43,7 @@ pub struct Run {
 
 /// What became of a run.
 pub enum RunStatus {
-    /// It ran.
+    /// It came to its end.
     Ran(Compared),
     /// It was refused or had to stop: why.
     Failed(String),

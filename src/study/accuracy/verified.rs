@@ -47,7 +47,7 @@ pub struct Level {
     pub order: Option<f64>,
     /// The one that theory knows (-).
     pub order_theory: Option<f64>,
-    /// Steps.
+    /// Steps of all runs behind the level.
     pub steps: u64,
     /// Wall time (s).
     pub wall_s: f64,

@@ -15,7 +15,7 @@ pub struct CrossValidation {
 /// A model through the points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Compared {
-    /// Which.
+    /// The formula that was fitted.
     pub model: Model,
     /// Its curve, or why there is none.
     pub fit: Result<Fit, FitError>,

@@ -120,7 +120,7 @@ impl Serialize for FitError {
 /// A curve through points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
-    /// Which.
+    /// The formula that was fitted.
     pub model: Model,
     /// Its parameters, in the units of y and of 1 over x.
     pub parameters: Vec<f64>,

@@ -30,7 +30,7 @@ pub enum Expect {
 /// How a case is run.
 #[derive(Debug, Clone)]
 pub enum Kind {
-    /// Once, to its end.
+    /// One run to its end.
     Run,
     /// Many times with fixed steps, to find the greatest one that holds.
     Critical(Critical),

@@ -9,7 +9,7 @@ use serde::Serialize;
 /// What became of one layer over the runs of a point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LayerBreaks {
-    /// Its name.
+    /// Name of the layer.
     pub layer: String,
     /// Its wires.
     pub wires: usize,

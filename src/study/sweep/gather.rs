@@ -14,9 +14,9 @@ use crate::study::tensile::{TensileOutcome, TensileResult, identity};
 pub struct CaseResult {
     /// Number, from 1.
     pub number: usize,
-    /// Its point.
+    /// Number of its point among those of the study, from 0.
     pub point: usize,
-    /// Its seed.
+    /// Seed of its scatter.
     pub seed: u64,
     /// Name of its folder, the hash of its identity; empty when the scene is refused.
     pub folder: String,

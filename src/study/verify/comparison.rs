@@ -6,7 +6,7 @@ use std::ops::Add;
 /// What simulating took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spent {
-    /// Steps.
+    /// Steps of all runs behind it.
     pub steps: u64,
     /// Wall time (s).
     pub wall_s: f64,

@@ -5,7 +5,7 @@ use super::super::measure::{pulled_layers, pulled_strand, pulled_wire, thrown_ap
 use super::{SEVEN, WIRE, mm};
 use crate::base::finding::FindingKind;
 
-/// All of them.
+/// The cases of this file.
 pub fn cases() -> Vec<StabilityCase> {
     [spacing(), diameter(), pitch(), numbers(), overlap()].concat()
 }

@@ -10,7 +10,7 @@ use crate::base::finding::FindingKind;
 /// What must be said of crushed contacts.
 const DEEP: &[FindingKind] = &[FindingKind::DeepContact];
 
-/// All of them.
+/// The cases of this file.
 pub fn cases() -> Vec<StabilityCase> {
     [speeds(), compression(), torsion(), cycles(), breaking(), grips(), rest()].concat()
 }

@@ -5,7 +5,7 @@ use super::super::measure::{no_friction, peak_is_yield, pulled_strand, pulled_wi
 use super::{SEVEN, WIRE};
 use crate::base::finding::FindingKind;
 
-/// All of them.
+/// The cases of this file.
 pub fn cases() -> Vec<StabilityCase> {
     [stiffness(), hardening(), yields(), friction(), damping()].concat()
 }

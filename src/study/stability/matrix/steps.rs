@@ -9,7 +9,7 @@ const FREE_WIRE: Base = Base::Builtin("verify/free-wire");
 const VIBRATION: Base = Base::Builtin("verify/free-vibration");
 const CROSSING: Base = Base::Builtin("verify/crossing-wires");
 
-/// All of them.
+/// The cases of this file.
 pub fn cases() -> Vec<StabilityCase> {
     let near = Critical { within: Some(0.2), ..Critical::ELASTIC };
     let gentle = [r#"wire.0.spin=["2 rad/s", "1 rad/s", "-1 rad/s"]"#, "stop.steps=4000"];
