@@ -6,7 +6,7 @@ use strandsnap::engine::Engine;
 use strandsnap::run::{assemble, cautions};
 use strandsnap::scene::{self, Scene, builtin};
 use strandsnap::strand;
-use strandsnap::study::sweep::{self, Changes, Definition};
+use strandsnap::study::sweep::{Changes, Definition};
 
 fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/cases").join(name).join("scene.toml")
@@ -266,7 +266,7 @@ fn study(name: &str, set: &[&str], seeds: &[u64]) -> Result<Definition, Error> {
 
 #[test]
 fn a_study_that_changes_nothing_is_refused() {
-    let error = scene_error(sweep::check(&study("key-without-effect", &[], &[]).unwrap()), "no effect");
+    let error = scene_error(study("key-without-effect", &[], &[]), "no effect");
     assert!(error.what.starts_with("`strand.pitch` changes nothing"), "{}", error.what);
 }
 

@@ -1,5 +1,9 @@
 //! The real program in temporary folders: exit codes, messages, and the files of a run.
 
+#[path = "common/rows.rs"]
+mod rows;
+
+use rows::rows;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -551,12 +555,6 @@ fn viewing_says_what_is_missing() {
         assert!(plain(&stderr(&nothing)).contains("no recording at ./recording.rrd"), "{}", stderr(&nothing));
         assert!(plain(&stderr(&no_viewer)).contains("pip install rerun-sdk==0.36.3"), "{}", stderr(&no_viewer));
     }
-}
-
-/// Rows of a CSV file by column name.
-fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    reader.deserialize().map(|row| row.unwrap()).collect()
 }
 
 fn summary(out: &Path) -> serde_json::Value {

@@ -28,7 +28,7 @@ mod values;
 mod verify;
 mod view;
 
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 use ended::Ended;
 use std::process::ExitCode;
@@ -62,7 +62,7 @@ enum Command {
     Export(export::Args),
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
-    /// Say what accuracy each second buys: error against run time, knob by knob
+    /// Say what accuracy each second buys: error against run time, parameter by parameter
     Accuracy(accuracy::Args),
     /// Vary a scene: pitch, wire diameter, seeds, or what a file says; gather, fit, and set beside the paper and theory
     Study(study::Args),
@@ -100,7 +100,8 @@ pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(Ended::Well) => ExitCode::SUCCESS,
         Ok(Ended::Missed) => ExitCode::from(4),
-        Ok(Ended::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
+        // Whoever pressed Ctrl-C was told what is kept.
+        Err(error @ Error::Interrupted) => ExitCode::from(error.exit_code()),
         Err(error) => {
             let code = error.exit_code();
             eprintln!("{:?}", miette::Report::new(error));

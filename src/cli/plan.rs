@@ -17,12 +17,9 @@ pub struct Args {
 }
 
 pub fn plan(args: &Args) -> Result<()> {
-    let scene = args.scene.load()?;
+    let (scene, changed) = args.scene.load_and_tell()?;
     say!("{}: {}\n", scene.spec.name, scene.spec.about);
-    let preset = match args.scene.preset()? {
-        set if set.is_empty() => "the scene as it is written".into(),
-        set => set.join(", "),
-    };
+    let preset = if changed.is_empty() { "the scene as it is written".into() } else { changed.join(", ") };
     say!("quality: {} ({preset})\n", args.scene.quality.word());
     say!("{}", scene.plan);
     if let Some(expected) = expected(&scene.spec) {

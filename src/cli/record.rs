@@ -36,7 +36,6 @@ pub fn record(_args: Args) -> Result<Ended> {
 pub fn record(args: Args) -> Result<Ended> {
     use super::say::say;
     use crate::run::record::{RecordOptions, record};
-    use std::sync::atomic::Ordering;
 
     let options = RecordOptions {
         selection: args.select.into(),
@@ -48,5 +47,5 @@ pub fn record(args: Args) -> Result<Ended> {
     let stop = super::interrupt::install()?;
     let file = record(&args.run, &options, stop)?;
     say!("recorded to {}", file.display());
-    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
+    interrupt::ended(stop)
 }

@@ -41,7 +41,6 @@ pub fn render(args: Args) -> Result<Ended> {
     use crate::render::FrameWriter;
     use crate::run::replay::Replay;
     use crate::run::{folder, outputs};
-    use std::sync::atomic::Ordering;
 
     let run = Replay::open(&args.run, &args.select.into())?;
     let mut output = look_of(&args.run);
@@ -71,7 +70,7 @@ pub fn render(args: Args) -> Result<Ended> {
     if !args.quiet {
         say!("frames: {timings}");
     }
-    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
+    interrupt::ended(stop)
 }
 
 /// How the run's own scene wants its frames to look. A trajectory alone, or a scene that this program cannot read any

@@ -13,7 +13,6 @@ use crate::observe::report::{one_line, report};
 use crate::run::folder::{ANIMATION, FRAMES, RECORDING};
 use crate::run::{self, RunOptions, RunSummary, cautions, outputs};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 /// Where a Rerun viewer listens when nobody says otherwise.
 pub(super) const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
@@ -72,7 +71,7 @@ pub fn run(args: Args) -> Result<Ended> {
         run::run_watched(&scene, &options, watchers, stop)
     })??;
     print(&summary, &options, args.quiet);
-    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
+    interrupt::ended(stop)
 }
 
 /// Frames and recording are on unless refused; a program that cannot make them must say so.

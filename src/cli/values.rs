@@ -24,32 +24,24 @@ pub struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// All changes, in the order in which they win: the preset, then what was set, then the seed.
-    ///
-    /// # Errors
-    /// A preset of a scene that cannot be read.
-    pub fn overrides(&self) -> Result<Vec<String>> {
-        let seed = self.seed.map(|seed| format!("seed={seed}"));
-        Ok(self.preset()?.into_iter().chain(self.set.iter().cloned()).chain(seed).collect())
-    }
-
-    /// What the preset sets; nothing at standard quality, which is the scene as it is written.
-    ///
-    /// # Errors
-    /// A scene that cannot be read.
-    pub fn preset(&self) -> Result<Vec<String>> {
-        match self.quality {
-            Quality::Standard => Ok(Vec::new()),
-            quality => Ok(quality.overrides(&scene::load(&self.scene, &[])?.spec)),
-        }
-    }
-
-    /// The scene with all changes.
+    /// The scene with all changes; `--set` wins over the preset, and `--seed` over both.
     ///
     /// # Errors
     /// Whatever is wrong in it or in them.
     pub fn load(&self) -> Result<Scene> {
-        scene::load(&self.scene, &self.overrides()?)
+        self.load_and_tell().map(|(scene, _)| scene)
+    }
+
+    /// The same, and what the preset changed, each as `key=value`.
+    ///
+    /// # Errors
+    /// Whatever is wrong in it or in them.
+    pub fn load_and_tell(&self) -> Result<(Scene, Vec<String>)> {
+        let seed = self.seed.map(|seed| format!("seed={seed}"));
+        let options: Vec<String> = self.set.iter().cloned().chain(seed).collect();
+        let mut scene = scene::load(&self.scene, &options)?;
+        let changed = self.quality.apply(&mut scene)?;
+        Ok((scene, changed))
     }
 }
 

@@ -173,10 +173,10 @@ mod tests {
     /// Whatever limits the pull, `--quality fine` halves its speed and draft doubles it.
     #[test]
     fn quality_turns_the_speed_at_every_moment() {
-        let own = crate::scene::load("ka4", &[]).unwrap().spec;
         let rule = |quality: Quality| {
-            let spec = crate::scene::load("ka4", &quality.overrides(&own)).unwrap().spec;
-            Rule::new(&spec, 1.5e-3, 0.1).unwrap()
+            let mut scene = crate::scene::load("ka4", &[]).unwrap();
+            quality.apply(&mut scene).unwrap();
+            Rule::new(&scene.spec, 1.5e-3, 0.1).unwrap()
         };
         let [draft, standard, fine] = Quality::ALL.map(rule);
         for work in [0.0, 1.0, 5.0, 1e3] {

@@ -201,6 +201,7 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
     at.optional("hardness_factor", &raw.hardness_factor, Dimension::Ratio, Range::Positive)?;
     at.optional("hardness_strain", &raw.hardness_strain, Dimension::Ratio, Range::NotNegative)?;
     at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?;
+    let mut hardness = None;
     let normal = match raw.normal.ok_or_else(|| at.missing("normal", "\"thornton\""))? {
         RawNormal::None => return Ok(None),
         RawNormal::Hertz => {
@@ -210,10 +211,15 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
             at.refuse("limiting_pressure", &raw.limiting_pressure, why)?;
             NormalSpec::Hertz
         }
-        RawNormal::Thornton => NormalSpec::Thornton { limiting_pressure: limiting_pressure(at, raw, bond)? },
+        RawNormal::Thornton => {
+            let (limiting_pressure, rule) = limiting_pressure(at, raw, bond)?;
+            hardness = rule;
+            NormalSpec::Thornton { limiting_pressure }
+        }
     };
     Ok(Some(ContactSpec {
         normal,
+        hardness,
         tangential: match raw.tangential.unwrap_or(RawTangential::Mindlin) {
             RawTangential::Mindlin => Some(TangentialSpec::Mindlin),
             RawTangential::MindlinDeresiewicz => Some(TangentialSpec::MindlinDeresiewicz),
@@ -229,22 +235,24 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
     }))
 }
 
-/// Thornton's p_y (Pa): given, or a multiple of the bonds' yield stress.
-fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<f64> {
+/// Thornton's p_y (Pa): given, or by the rule that comes with it.
+fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<(f64, Option<Hardness>)> {
     if let Some(pressure) =
         at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?
     {
         let why = "has no effect beside limiting_pressure";
         at.refuse("hardness_factor", &raw.hardness_factor, why)?;
         at.refuse("hardness_strain", &raw.hardness_strain, why)?;
-        return Ok(pressure);
+        return Ok((pressure, None));
     }
     let BondLawSpec::ElastoPlastic(law) = &bond.law else {
         return Err(at.missing("limiting_pressure", "\"600 MPa\" (under an elastic bond law there is no yield stress)"));
     };
-    let factor = at.ratio_or("hardness_factor", &raw.hardness_factor, HARDNESS_FACTOR, Range::Positive)?;
-    let strain = at.ratio_or("hardness_strain", &raw.hardness_strain, 0.0, Range::NotNegative)?;
-    Ok(factor * law.stress(strain))
+    let hardness = Hardness {
+        factor: at.ratio_or("hardness_factor", &raw.hardness_factor, HARDNESS_FACTOR, Range::Positive)?,
+        strain: at.ratio_or("hardness_strain", &raw.hardness_strain, 0.0, Range::NotNegative)?,
+    };
+    Ok((hardness.limiting_pressure(law), Some(hardness)))
 }
 
 fn time(at: &At, raw: &RawTime) -> Result<TimeSpec> {

@@ -37,6 +37,12 @@ impl SceneSource {
         self.overrides.iter().rev().find(below).map(|option| option.path().join("."))
     }
 
+    /// Whether a `--set` option gives or removes the key at `key_path`, one below it, or a table that holds it.
+    pub(super) fn is_set(&self, key_path: &str) -> bool {
+        let own = |option: &Override| option.path().iter().zip(key_path.split('.')).all(|(own, key)| own == key);
+        self.overrides.iter().any(own)
+    }
+
     pub(super) fn error_at(&self, path: &[String], part: Part, what: String, help: String) -> Error {
         let place = find(self.document.as_item(), path, part);
         let in_file = place.as_ref().is_some_and(|place| place.exact);

@@ -5,9 +5,9 @@
 //! alike (Pitman, Biometrika 31 (1939) 9; Morgan, ibid. 13).
 
 use super::errors::Errors;
-use super::rows::{Outcome, Row};
-use crate::study::cases::measured::Measured;
-use crate::study::cases::stat::{Stat, t_95};
+use super::rows::Row;
+use crate::study::statistics::{Statistics, t_95};
+use crate::study::tensile::TensileResult;
 use serde::Serialize;
 
 /// What is judged over seeds.
@@ -20,10 +20,10 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Both.
+    /// Strength and elongation, in the order of every pair.
     pub const ALL: [Quantity; 2] = [Quantity::Strength, Quantity::Elongation];
 
-    /// Its name.
+    /// Its name in tables and files.
     pub fn word(self) -> &'static str {
         match self {
             Quantity::Strength => "strength",
@@ -32,7 +32,7 @@ impl Quantity {
     }
 
     /// Strength (MPa) or elongation (%) of a run.
-    pub fn of(self, run: &Measured) -> f64 {
+    pub fn of(self, run: &TensileResult) -> f64 {
         match self {
             Quantity::Strength => run.strength_mpa,
             Quantity::Elongation => run.elongation_percent,
@@ -72,7 +72,8 @@ pub fn spread(row: &Row, base: &Row, quantity: Quantity) -> Option<Spread> {
     let stat = row.of_runs(|run| Some(quantity.of(run)))?;
     let percent = 100.0 * stat.standard_deviation? / stat.mean;
     let pairs: Vec<[f64; 2]> = row.runs.iter().filter_map(|run| pair(run.seed, row, base, quantity)).collect();
-    let deviation = |k: usize| Stat::of(&pairs.iter().map(|pair| pair[k]).collect::<Vec<_>>())?.standard_deviation;
+    let deviation =
+        |k: usize| Statistics::of(&pairs.iter().map(|pair| pair[k]).collect::<Vec<_>>())?.standard_deviation;
     let change_percent =
         deviation(0).zip(deviation(1)).filter(|(_, own)| *own > 0.0).map(|(a, b)| 100.0 * (a / b - 1.0));
     Some(Spread { percent, change_percent, told: variances_differ(&pairs) })
@@ -81,10 +82,8 @@ pub fn spread(row: &Row, base: &Row, quantity: Quantity) -> Option<Spread> {
 /// The run of a seed in a row, and in the scene as it stands.
 fn pair(seed: u64, row: &Row, base: &Row, quantity: Quantity) -> Option<[f64; 2]> {
     let of = |row: &Row| {
-        row.runs.iter().find(|run| run.seed == seed).and_then(|run| match &run.outcome {
-            Outcome::Ran { measured, .. } => Some(quantity.of(measured)),
-            _ => None,
-        })
+        let run = row.runs.iter().find(|run| run.seed == seed)?;
+        Some(quantity.of(&run.ran()?.result))
     };
     Some([of(row)?, of(base)?])
 }
@@ -115,7 +114,7 @@ pub fn note(row: &Row, seeds: usize) -> String {
         return String::new();
     }
     if seeds == 1 {
-        return match row.knob {
+        return match row.parameter {
             None => String::new(),
             Some(_) => "one draw: not told from scatter".into(),
         };
@@ -130,18 +129,18 @@ pub fn note(row: &Row, seeds: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rows::Run;
+    use super::super::rows::{Compared, Run, RunStatus};
     use super::*;
 
     fn row(strengths: &[f64], errors: &[f64]) -> Row {
         let run = |(k, (strength, error)): (usize, (&f64, &f64))| Run {
             seed: k as u64,
-            outcome: Outcome::Ran {
-                measured: Box::new(Measured { strength_mpa: *strength, ..Measured::default() }),
+            outcome: RunStatus::Ran(Compared {
+                result: Box::new(TensileResult { strength_mpa: *strength, ..TensileResult::default() }),
                 errors: Some(Errors { strength_percent: *error, ..Errors::default() }),
-            },
+            }),
         };
-        Row { knob: None, value: String::new(), runs: strengths.iter().zip(errors).enumerate().map(run).collect() }
+        Row { parameter: None, value: String::new(), runs: strengths.iter().zip(errors).enumerate().map(run).collect() }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The page of a run, if there is one: its charts against the trajectory.
 
 use super::Invariant;
-use super::finding::{Outcome, Search};
+use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use crate::engine::view::Sample;
 use crate::run::folder::REPORT;
@@ -16,17 +16,17 @@ pub const PAGE: Invariant = Invariant {
     check: page,
 };
 
-fn page(run: &Folder) -> Outcome {
+fn page(run: &Folder) -> InvariantOutcome {
     let path = run.path.join(REPORT);
     let text = match std::fs::read_to_string(&path) {
         Ok(text) => text,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-            return Outcome::NotApplicable(format!("there is no {REPORT}; `strandsnap report` makes it"));
+            return InvariantOutcome::NotApplicable(format!("there is no {REPORT}; `strandsnap report` makes it"));
         }
         Err(e) => return failed(format!("{REPORT} cannot be read: {e}")),
     };
     if !run.trajectory.info.is_pulled() {
-        return Outcome::NotApplicable("the body is not pulled".into());
+        return InvariantOutcome::NotApplicable("the body is not pulled".into());
     }
     let mut search = Search::new();
     let rows = Rows::new(&run.trajectory.samples);
@@ -36,7 +36,7 @@ fn page(run: &Folder) -> Outcome {
     search.end(0.0, "-", "the page has no charts")
 }
 
-fn failed(what: String) -> Outcome {
+fn failed(what: String) -> InvariantOutcome {
     let mut search = Search::new();
     search.add(f64::NAN, || what);
     search.end(0.0, "-", "")

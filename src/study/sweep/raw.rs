@@ -28,7 +28,8 @@ pub(super) struct RawStudy {
     /// Quantities that curves are fitted to, over the only axis.
     #[serde(default)]
     pub fits: Vec<String>,
-    /// What the results stand beside: "paper", "strand-theory".
+    /// What the results are compared with: a data set of `assets/reference/` by name, such as "zhao-2025", and
+    /// "strand-theory", which is calibrated on its experiment.
     #[serde(default)]
     pub compare: Vec<String>,
 }
@@ -37,7 +38,7 @@ pub(super) struct RawStudy {
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum RawQuality {
-    /// Faster and coarser.
+    /// A faster and coarser run than the scene asks for.
     Draft,
     /// The scene as it stands.
     Standard,
@@ -49,9 +50,9 @@ pub(super) enum RawQuality {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged, expecting = "expected a number of seeds, or a list of them such as [1, 2, 3]")]
 pub(super) enum RawSeeds {
-    /// So many, from 1.
+    /// How many seeds, counted from 1.
     Count(i64),
-    /// These.
+    /// The seeds one by one.
     List(Vec<i64>),
 }
 

@@ -1,16 +1,16 @@
 //! The curve as a run writes it: what users read modulus and yield from.
 
-use super::Case;
-use super::finding::{Finding, Spent};
+use super::VerificationCase;
+use super::comparison::{Comparison, Spent};
 use super::plasticity::hardening;
-use super::support::{Lab, set};
+use super::support::{Context, set};
 use crate::base::error::{Error, Result};
 use crate::reference::plasticity::tension_at;
-use crate::run::{RunOptions, run_watched};
+use crate::run::{RunOptions, StopReason, run_watched};
 use crate::scene;
 use std::path::Path;
 
-pub const WRITTEN: Case = Case {
+pub const WRITTEN: VerificationCase = VerificationCase {
     name: "curve-as-written",
     about: "one wire pulled at 5 m/s: modulus and yield read from the rows of curve.csv",
     source: "Hooke, and the hardening law converted with A = A₀ e^(−p)",
@@ -22,12 +22,15 @@ const STRAINS: [f64; 5] = [2e-4, 4e-4, 6e-4, 1e-3, 1.4e-3];
 
 /// The built-in wire at the speed that it is shipped with: 0.15 % take as long as an elastic wave from grip to grip, and what
 /// smooths stress must not shift it against strain.
-fn curve_as_written(lab: &Lab) -> Result<Vec<Finding>> {
+fn curve_as_written(context: &Context) -> Result<Vec<Comparison>> {
     let scene = scene::load("single-wire", &[set("stop.strain", "0.15 %"), set("output.samples", 300)])?;
     let (law, young) = (hardening(&scene.spec), scene.spec.material.young);
     let folder = tempfile::tempdir().map_err(|e| Error::io("cannot make a folder in", std::env::temp_dir(), e))?;
     let out = folder.path().join("run");
-    let summary = run_watched(&scene, &options(&out), Vec::new(), lab.stop())?;
+    let summary = run_watched(&scene, &options(&out), Vec::new(), context.stop())?;
+    if summary.stopped == StopReason::Interrupted {
+        return Err(Error::Interrupted);
+    }
     let spent = Spent { steps: summary.cost.steps, wall_s: summary.cost.wall_s };
     let curve = read(&out.join("curve.csv"))?;
     let stress = |strain: f64| {
@@ -38,11 +41,12 @@ fn curve_as_written(lab: &Lab) -> Result<Vec<Finding>> {
     let exact = |strain: f64| tension_at(strain, |p| law.stress(p), young).engineering_stress;
     let at = STRAINS.map(|strain| {
         let what = format!("stress in curve.csv, worst of five: at {:.2} %", 100.0 * strain);
-        Finding::new(what, "Pa", stress(strain), exact(strain), spent).within(1e-2)
+        Comparison::new(what, "Pa", stress(strain), exact(strain), spent).within(1e-2)
     });
     let secant = |curve: &dyn Fn(f64) -> f64| (curve(6e-4) - curve(2e-4)) / 4e-4;
-    let modulus = Finding::new("modulus from curve.csv, 0.02 to 0.06 %", "Pa", secant(&stress), secant(&exact), spent);
-    Ok(vec![Finding::worst(at.into()), modulus.within(1e-2)])
+    let modulus =
+        Comparison::new("modulus from curve.csv, 0.02 to 0.06 %", "Pa", secant(&stress), secant(&exact), spent);
+    Ok(vec![Comparison::worst(at.into()), modulus.within(1e-2)])
 }
 
 fn options(out: &Path) -> RunOptions {

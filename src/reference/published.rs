@@ -1,25 +1,22 @@
-//! The numbers that the reference paper prints, from `assets/reference/paper.toml`.
+//! Published tests and simulations of strands: data sets in `assets/reference/`, which studies name to be compared with.
 //!
-//! Zhao, Bai, Zhang, Lin, Liu: discrete element modeling and tensile fracture of the control unit stranded wire of
-//! shearer cables. Scientific Reports 15, 11756 (2025), doi 10.1038/s41598-025-94961-8.
-//!
-//! Units are those of the paper (mm, MPa, %), named in each field, because that is what is compared and printed.
+//! Units are those of the publications (mm, MPa, %), named in each field, because that is what is compared and printed.
 
 use serde::Deserialize;
 use std::sync::LazyLock;
 
-/// Everything that the paper prints.
+/// One publication.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Paper {
+pub struct Published {
     /// The strand that was tested.
     pub specimen: Specimen,
     /// The tensile test.
-    pub experiment: Strength,
-    /// The paper's own simulations.
+    pub experiment: Experiment,
+    /// Its own simulations.
     pub simulation: Vec<Simulation>,
     /// Its fitted curves.
-    pub fit: Fits,
+    pub fit: Vec<ExponentialFit>,
     /// What it says of the fracture.
     pub fracture: Fracture,
 }
@@ -49,16 +46,18 @@ pub struct Specimen {
 }
 
 /// Result of a tensile test.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Strength {
+pub struct Experiment {
+    /// The built-in scene of the strand that was tested.
+    pub scene: String,
     /// Tensile strength (MPa).
     pub tensile_strength_mpa: f64,
     /// Elongation at fracture (%).
     pub fracture_elongation_percent: f64,
 }
 
-/// One of the paper's simulations.
+/// A simulation of a strand of one pitch and wire diameter.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Simulation {
@@ -84,20 +83,16 @@ pub struct RelativeError {
     pub elongation: f64,
 }
 
-/// The paper's fitted curves.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Fits {
-    /// Elongation at fracture (%) over pitch (mm).
-    pub elongation_over_pitch: ExponentialFit,
-    /// Elongation at fracture (%) over wire diameter (mm).
-    pub elongation_over_diameter: ExponentialFit,
-}
-
-/// y = a exp(b x) + c.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+/// A curve that was fitted, y = a exp(b x) + c.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExponentialFit {
+    /// Key of the scene that x is.
+    pub key: String,
+    /// Unit of x.
+    pub unit: String,
+    /// What y is: "strength" (MPa) or "elongation" (%).
+    pub quantity: String,
     /// Amplitude, unit of y.
     pub a: f64,
     /// Rate, 1 over the unit of x.
@@ -115,7 +110,7 @@ impl ExponentialFit {
     }
 }
 
-/// What the paper says of the fracture.
+/// What is said of the fracture.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fracture {
@@ -129,22 +124,38 @@ pub struct Fracture {
     pub outer_stress_above_inner: bool,
 }
 
-impl Paper {
-    /// The simulation at `pitch_mm` (mm) and `wire_diameter_mm` (mm), if the paper has it.
+impl Published {
+    /// The simulation at `pitch_mm` (mm) and `wire_diameter_mm` (mm), if there is one.
     pub fn simulation_at(&self, pitch_mm: f64, wire_diameter_mm: f64) -> Option<&Simulation> {
         self.simulation
             .iter()
             .find(|s| (s.pitch_mm - pitch_mm).abs() < 1e-6 && (s.wire_diameter_mm - wire_diameter_mm).abs() < 1e-6)
     }
+
+    /// The curve fitted to a quantity over a key of the scene in this unit, if there is one.
+    pub fn fit_over(&self, key: &str, unit: &str, quantity: &str) -> Option<&ExponentialFit> {
+        self.fit.iter().find(|fit| (&*fit.key, &*fit.unit, &*fit.quantity) == (key, unit, quantity))
+    }
 }
 
-/// The paper's numbers.
-pub fn paper() -> &'static Paper {
-    static PAPER: LazyLock<Paper> = LazyLock::new(|| {
-        toml::from_str(include_str!("../../assets/reference/paper.toml"))
-            .expect("assets/reference/paper.toml is compiled in and checked by a test")
-    });
-    &PAPER
+/// Name and text of the data sets that come with the program.
+const DATA_SETS: [(&str, &str); 1] = [("zhao-2025", include_str!("../../assets/reference/zhao-2025.toml"))];
+static PUBLISHED: LazyLock<Vec<(&str, Published)>> = LazyLock::new(|| {
+    let parse = |text| toml::from_str(text).expect("data sets are compiled in, and a test reads them all");
+    DATA_SETS.iter().map(|(name, text)| (*name, parse(text))).collect()
+});
+
+/// The data set that calibration meets where nothing else is asked for.
+pub const CALIBRATED_ON: &str = "zhao-2025";
+
+/// Names of all data sets.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    DATA_SETS.iter().map(|(name, _)| *name)
+}
+
+/// The data set of this name.
+pub fn find(name: &str) -> Option<&'static Published> {
+    PUBLISHED.iter().find(|(known, _)| *known == name).map(|(_, published)| published)
 }
 
 #[cfg(test)]
@@ -153,7 +164,7 @@ mod tests {
 
     #[test]
     fn asset_parses_and_holds_the_experiment() {
-        let paper = paper();
+        let paper = find(CALIBRATED_ON).unwrap();
         assert_eq!(paper.specimen.wires_per_layer, [5, 11, 18]);
         assert_eq!(paper.experiment.tensile_strength_mpa, 311.01);
         assert_eq!(paper.experiment.fracture_elongation_percent, 28.57);
@@ -164,7 +175,7 @@ mod tests {
     /// The paper's stated errors follow from its own numbers, so none of them is mistyped here.
     #[test]
     fn stated_errors_follow_from_the_numbers() {
-        let paper = paper();
+        let paper = find(CALIBRATED_ON).unwrap();
         let simulation = paper.simulation_at(39.0, 0.39).unwrap();
         let stated = simulation.error_against_experiment_percent.unwrap();
         let error = |a: f64, b: f64| 100.0 * (b - a) / b;
@@ -177,13 +188,13 @@ mod tests {
     /// The fitted curves pass near the simulations that they were fitted to.
     #[test]
     fn fits_pass_near_the_simulations() {
-        let paper = paper();
+        let paper = find(CALIBRATED_ON).unwrap();
         for simulation in &paper.simulation {
-            let fit = if simulation.wire_diameter_mm == 0.39 {
-                paper.fit.elongation_over_pitch.value(simulation.pitch_mm)
-            } else {
-                paper.fit.elongation_over_diameter.value(simulation.wire_diameter_mm)
+            let (key, x) = match simulation.wire_diameter_mm == 0.39 {
+                true => ("strand.pitch", simulation.pitch_mm),
+                false => ("strand.wire_diameter", simulation.wire_diameter_mm),
             };
+            let fit = paper.fit_over(key, "mm", "elongation").unwrap().value(x);
             let difference = fit - simulation.fracture_elongation_percent;
             assert!(difference.abs() < 0.2, "{simulation:?}: {fit}");
         }

@@ -6,7 +6,7 @@ use std::ops::Add;
 /// What simulating took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spent {
-    /// Steps.
+    /// Steps of all runs behind it.
     pub steps: u64,
     /// Wall time (s).
     pub wall_s: f64,
@@ -78,18 +78,28 @@ impl Order {
     }
 }
 
-/// Whether a finding agrees with its closed form.
+/// Whether a comparison agrees with its closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Verdict {
     /// Error and order are within their targets.
     Pass,
     /// One of them is not, or is not a number.
     Miss,
 }
 
+impl Verdict {
+    /// In a word, for programs.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Pass => "pass",
+            Verdict::Miss => "miss",
+        }
+    }
+}
+
 /// A computed number beside its closed form.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
+pub struct Comparison {
     /// What was computed.
     pub what: String,
     /// Its unit, SI; "-" for none.
@@ -100,8 +110,8 @@ pub struct Finding {
     pub exact: f64,
     /// What the error is relative to, in `unit`: |exact| unless that is 0 or says nothing.
     pub scale: f64,
-    /// Least and greatest relative error allowed (-). Nothing but 0 until [`Finding::within`] or
-    /// [`Finding::between`] says more.
+    /// Least and greatest relative error allowed (-). Nothing but 0 until [`Comparison::within`] or
+    /// [`Comparison::between`] says more.
     pub allowed: [f64; 2],
     /// Order of convergence, where there is one.
     pub order: Option<Order>,
@@ -113,7 +123,7 @@ pub struct Finding {
     pub note: Option<String>,
 }
 
-impl Finding {
+impl Comparison {
     /// `computed` against `exact`, both in `unit`, from runs that took `spent`.
     pub fn new(what: impl Into<String>, unit: &'static str, computed: f64, exact: f64, spent: Spent) -> Self {
         Self {
@@ -179,26 +189,26 @@ impl Finding {
     }
 
     /// Pass when error and order are within their targets.
-    pub fn outcome(&self) -> Outcome {
+    pub fn verdict(&self) -> Verdict {
         let [low, high] = self.allowed;
         let error = self.error();
         let near = low <= error && error <= high;
-        if near && self.order.is_none_or(|order| order.holds()) { Outcome::Pass } else { Outcome::Miss }
+        if near && self.order.is_none_or(|order| order.holds()) { Verdict::Pass } else { Verdict::Miss }
     }
 
-    /// Of several findings of one kind the one that uses most of what it is allowed, with what all of them took.
+    /// Of several comparisons of one kind the one that uses most of what it is allowed, with what all of them took.
     ///
     /// # Panics
     /// When there is none.
-    pub fn worst(findings: Vec<Finding>) -> Self {
-        let spent = findings.iter().map(|f| f.spent).sum();
-        let use_of = |f: &Finding| {
+    pub fn worst(comparisons: Vec<Comparison>) -> Self {
+        let spent = comparisons.iter().map(|f| f.spent).sum();
+        let use_of = |f: &Comparison| {
             let [low, high] = f.allowed;
             let off = f.error() - 0.5 * (low + high);
             let used = off.abs() / (0.5 * (high - low));
             if used.is_nan() { f64::INFINITY } else { used }
         };
-        let worst = findings.into_iter().max_by(|a, b| use_of(a).total_cmp(&use_of(b)));
+        let worst = comparisons.into_iter().max_by(|a, b| use_of(a).total_cmp(&use_of(b)));
         Self { spent, ..worst.expect("a case has at least one point") }
     }
 }
@@ -207,19 +217,19 @@ impl Finding {
 mod tests {
     use super::*;
 
-    fn finding(computed: f64, exact: f64) -> Finding {
-        Finding::new("a length", "m", computed, exact, Spent::default())
+    fn finding(computed: f64, exact: f64) -> Comparison {
+        Comparison::new("a length", "m", computed, exact, Spent::default())
     }
 
     #[test]
     fn outcome_follows_from_the_numbers() {
-        assert_eq!(finding(1.004, 1.0).within(5e-3).outcome(), Outcome::Pass);
-        assert_eq!(finding(0.994, 1.0).within(5e-3).outcome(), Outcome::Miss);
-        assert_eq!(finding(1.01, 1.0).between(-0.2, 0.0).outcome(), Outcome::Miss);
-        assert_eq!(finding(f64::NAN, 1.0).within(1.0).outcome(), Outcome::Miss);
-        assert_eq!(finding(0.0, 0.0).within(1.0).outcome(), Outcome::Miss, "zero needs a scale");
-        assert_eq!(finding(1e-9, 0.0).relative_to(1.0).within(1e-8).outcome(), Outcome::Pass);
-        assert_eq!(finding(1.0 + 1e-15, 1.0).outcome(), Outcome::Miss, "nothing is allowed until it is said");
+        assert_eq!(finding(1.004, 1.0).within(5e-3).verdict(), Verdict::Pass);
+        assert_eq!(finding(0.994, 1.0).within(5e-3).verdict(), Verdict::Miss);
+        assert_eq!(finding(1.01, 1.0).between(-0.2, 0.0).verdict(), Verdict::Miss);
+        assert_eq!(finding(f64::NAN, 1.0).within(1.0).verdict(), Verdict::Miss);
+        assert_eq!(finding(0.0, 0.0).within(1.0).verdict(), Verdict::Miss, "zero needs a scale");
+        assert_eq!(finding(1e-9, 0.0).relative_to(1.0).within(1e-8).verdict(), Verdict::Pass);
+        assert_eq!(finding(1.0 + 1e-15, 1.0).verdict(), Verdict::Miss, "nothing is allowed until it is said");
     }
 
     #[test]
@@ -229,15 +239,15 @@ mod tests {
         let f = finding(0.98, 1.0).within(0.05).converging("a/L", points, 2.0, 0.1);
         assert!((f.order.unwrap().observed - 1.0).abs() < 1e-12);
         assert_eq!(f.spent, Spent { steps: 3, wall_s: 1.5 });
-        assert_eq!(f.outcome(), Outcome::Miss);
+        assert_eq!(f.verdict(), Verdict::Miss);
         assert!(!Order::worst(&[], 2.0, 1.0).holds());
     }
 
     #[test]
     fn the_worst_finding_uses_most_of_its_allowance() {
-        let worst = Finding::worst(vec![finding(1.1, 1.0).within(0.2), finding(0.99, 1.0).within(0.01)]);
+        let worst = Comparison::worst(vec![finding(1.1, 1.0).within(0.2), finding(0.99, 1.0).within(0.01)]);
         assert_eq!(worst.computed, 0.99);
-        let worst = Finding::worst(vec![finding(1.0, 1.0).within(0.2), finding(f64::NAN, 1.0).within(0.01)]);
+        let worst = Comparison::worst(vec![finding(1.0, 1.0).within(0.2), finding(f64::NAN, 1.0).within(0.01)]);
         assert!(worst.computed.is_nan());
     }
 }

@@ -5,8 +5,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// A number over several seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Stat {
-    /// Mean.
+pub struct Statistics {
+    /// Arithmetic mean, in the unit of the number.
     pub mean: f64,
     /// Standard deviation from seed to seed; `None` for one seed.
     pub standard_deviation: Option<f64>,
@@ -14,11 +14,11 @@ pub struct Stat {
     pub standard_error: Option<f64>,
     /// Half the width of the interval that holds the mean with 95 % confidence (Student's t); `None` for one seed.
     pub interval_95: Option<f64>,
-    /// Seeds.
+    /// How many seeds the mean is over.
     pub count: usize,
 }
 
-impl Stat {
+impl Statistics {
     /// Of values; `None` when there is none.
     pub fn of(values: &[f64]) -> Option<Self> {
         let n = values.len();
@@ -31,6 +31,18 @@ impl Stat {
         let standard_error = standard_deviation.map(|deviation| deviation / (n as f64).sqrt());
         let interval_95 = standard_error.map(|error| t_95(n - 1) * error);
         Some(Self { mean, standard_deviation, standard_error, interval_95, count: n })
+    }
+
+    /// Mean ± half the 95 % interval; the mean alone with one seed.
+    pub fn with_interval(&self, decimals: usize) -> String {
+        let half = self.interval_95.map_or(String::new(), |half| format!(" ± {half:.decimals$}"));
+        format!("{:.decimals$}{half}", self.mean)
+    }
+
+    /// The same, with the standard deviation in brackets.
+    pub fn with_deviation(&self, decimals: usize) -> String {
+        let deviation = self.standard_deviation.map_or(String::new(), |deviation| format!(" ({deviation:.decimals$})"));
+        self.with_interval(decimals) + &deviation
     }
 }
 
@@ -46,7 +58,7 @@ mod tests {
 
     #[test]
     fn mean_and_interval_of_three() {
-        let stat = Stat::of(&[1.0, 2.0, 3.0]).unwrap();
+        let stat = Statistics::of(&[1.0, 2.0, 3.0]).unwrap();
         assert_eq!((stat.mean, stat.count), (2.0, 3));
         assert!((stat.standard_error.unwrap() - 1.0 / 3f64.sqrt()).abs() < 1e-12);
         assert_eq!(stat.standard_deviation, Some(1.0));
@@ -56,7 +68,7 @@ mod tests {
 
     #[test]
     fn one_value_has_no_interval_and_none_no_mean() {
-        assert_eq!(Stat::of(&[4.0]).unwrap().interval_95, None);
-        assert_eq!(Stat::of(&[]), None);
+        assert_eq!(Statistics::of(&[4.0]).unwrap().interval_95, None);
+        assert_eq!(Statistics::of(&[]), None);
     }
 }
