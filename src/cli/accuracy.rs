@@ -77,6 +77,7 @@ fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
         return Ok(Ended::Well);
     }
     let out = args.out.clone().unwrap_or_else(|| folder::accuracy(&name));
+    let _lock = shared::lock(&out, false)?;
     let stop = interrupt::install_saying(STOPPING)?;
     let bar = shared::bar("accuracy", cases.len());
     let began = |case: &str| {
@@ -119,6 +120,7 @@ fn of_pulled_scene(args: &Args) -> Result<Ended> {
         return Ok(Ended::Well);
     }
     options.out = args.out.clone().unwrap_or_else(|| folder::accuracy(&subject.scene.spec.name));
+    let _lock = shared::lock(&options.out, false)?;
     subject.notes.iter().for_each(|note| eprintln!("note: {note}"));
     let stop =
         interrupt::install_saying("\nstopping; finished runs are kept, and the same command goes on with them.")?;

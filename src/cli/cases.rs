@@ -1,6 +1,7 @@
 //! What commands that make many runs share: arguments of those that run a table of cases, progress, and what was typed.
 
 use crate::base::error::{Error, Result};
+use crate::run::lock::Lock;
 use crate::study::cases::workshop::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
@@ -60,6 +61,15 @@ impl CaseArgs {
             None => Ok(()),
         }
     }
+}
+
+/// Keeps other studies out of a folder, which is made if it is not there; `part`: others may run parts of the same study.
+///
+/// # Errors
+/// [`Error::Input`] with the number of the process that has it; [`Error::Io`].
+pub fn lock(folder: &Path, part: bool) -> Result<Lock> {
+    std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
+    if part { Lock::share(folder) } else { Lock::take(folder) }
 }
 
 /// Cases done of all.

@@ -1,6 +1,7 @@
 //! Ctrl-C: the first ends the run cleanly, the second ends the program.
 
 use crate::base::error::{Error, Result};
+use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What shells expect of a program ended by Ctrl-C: 128 + SIGINT.
@@ -25,7 +26,8 @@ pub fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(EXIT_CODE));
         }
-        eprintln!("{words}");
+        // A standard error that is lost must not end the run without its results.
+        let _ = writeln!(std::io::stderr(), "{words}");
     };
     ctrlc::set_handler(handler)
         .map_err(|e| Error::Missing { what: format!("cannot listen for Ctrl-C: {e}"), help: None })?;

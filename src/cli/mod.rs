@@ -1,5 +1,10 @@
 //! Floor 9: the command line. One file per subcommand; each turns arguments into a call below and prints the answer.
 
+/// Stands for the usual one in all commands: see [`say::tell`].
+macro_rules! eprintln {
+    ($($part:tt)*) => { $crate::cli::say::tell(format_args!($($part)*)) };
+}
+
 mod accuracy;
 mod animation;
 mod calibrate;

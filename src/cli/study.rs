@@ -74,6 +74,7 @@ pub fn study(args: &Args) -> Result<Ended> {
     if args.collect {
         return finish(&definition, &out, false);
     }
+    let _lock = cases::lock(&out, args.case.is_some())?;
     sweep::open(&out, args.fresh)?;
     let stop = interrupt::install_saying(STOPPING)?;
     let bar = cases::bar_of_parts("study");

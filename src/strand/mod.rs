@@ -10,6 +10,7 @@ pub mod helix;
 pub mod lay_radius;
 pub mod overlap;
 pub mod resample;
+pub mod size;
 mod strung;
 #[cfg(test)]
 pub(crate) mod test_specs;

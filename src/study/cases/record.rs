@@ -190,6 +190,7 @@ fn written(out: &Path) -> RunOptions {
     RunOptions {
         out: out.into(),
         overwrite: false,
+        wait: false,
         threads: None,
         frames: false,
         animation: None,
