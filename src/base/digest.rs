@@ -1,22 +1,25 @@
-//! What tells whether a text or a file is the one that it was: a hash against accidents, not against forgery.
+//! What tells whether a text or a file is the one that it was.
 
 use super::error::{Error, Result};
 use super::regular;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use sha2::{Digest as _, Sha256};
 use std::fmt;
-use std::io::Read;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::str::FromStr;
-use twox_hash::XxHash3_128;
 
-/// XXH3 of 128 bits, written as 32 hexadecimal digits.
+/// SHA-256, written as 64 hexadecimal digits, as `sha256sum` does.
 #[derive(Clone, Copy, PartialEq, Eq, Default)]
-pub struct Digest(u128);
+pub struct Digest([u8; Self::LEN]);
 
 impl Digest {
+    /// Bytes in a binary file.
+    pub const LEN: usize = 32;
+
     /// Of bytes.
     pub fn of(bytes: impl AsRef<[u8]>) -> Self {
-        Self(XxHash3_128::oneshot(bytes.as_ref()))
+        Self(Sha256::digest(bytes).into())
     }
 
     /// Of all of a file.
@@ -24,33 +27,33 @@ impl Digest {
     /// # Errors
     /// As for [`regular::open`], and when it cannot be read.
     pub fn of_file(path: &Path) -> Result<Self> {
-        let mut file = regular::open(path)?;
-        let mut hash = XxHash3_128::new();
-        let mut part = vec![0; 1 << 20];
+        let mut file = BufReader::with_capacity(1 << 20, regular::open(path)?);
+        let mut hash = Sha256::new();
         loop {
-            match file.read(&mut part) {
-                Ok(0) => return Ok(Self(hash.finish_128())),
-                Ok(n) => hash.write(&part[..n]),
-                Err(cause) if cause.kind() == std::io::ErrorKind::Interrupted => {}
-                Err(cause) => return Err(Error::io("cannot read", path, cause)),
+            let part = file.fill_buf().map_err(|cause| Error::io("cannot read", path, cause))?;
+            if part.is_empty() {
+                return Ok(Self(hash.finalize().into()));
             }
+            hash.update(part);
+            let read = part.len();
+            file.consume(read);
         }
     }
 
     /// As it stands in binary files.
-    pub fn to_bytes(self) -> [u8; 16] {
-        self.0.to_le_bytes()
+    pub fn to_bytes(self) -> [u8; Self::LEN] {
+        self.0
     }
 
     /// Back from there.
-    pub fn from_bytes(bytes: [u8; 16]) -> Self {
-        Self(u128::from_le_bytes(bytes))
+    pub fn from_bytes(bytes: [u8; Self::LEN]) -> Self {
+        Self(bytes)
     }
 }
 
 impl fmt::Display for Digest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:032x}", self.0)
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
     }
 }
 
@@ -61,10 +64,13 @@ impl fmt::Debug for Digest {
 }
 
 impl FromStr for Digest {
-    type Err = std::num::ParseIntError;
+    type Err = String;
 
-    fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
-        u128::from_str_radix(text, 16).map(Self)
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let byte = |k: usize| text.get(2 * k..2 * k + 2).and_then(|two| u8::from_str_radix(two, 16).ok());
+        let bytes: Option<Vec<u8>> = (0..Self::LEN).map(byte).collect();
+        let bytes = bytes.and_then(|bytes| bytes.try_into().ok()).filter(|_| text.len() == 2 * Self::LEN);
+        bytes.map(Self).ok_or_else(|| format!("{text} is not the digest of a file"))
     }
 }
 
@@ -88,18 +94,22 @@ mod tests {
     fn a_file_has_the_digest_of_its_bytes() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a");
-        let bytes: Vec<u8> = (0..3_000_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        let bytes: Vec<u8> = (0..100_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
         std::fs::write(&path, &bytes).unwrap();
         let digest = Digest::of(&bytes);
         assert_eq!(Digest::of_file(&path).unwrap(), digest);
         assert_eq!(digest.to_string().parse(), Ok(digest));
         assert_eq!(Digest::from_bytes(digest.to_bytes()), digest);
         assert_ne!(Digest::of(&bytes[1..]), digest);
+        for wrong in ["", "ab", "µµ"] {
+            assert!(wrong.parse::<Digest>().is_err());
+        }
     }
 
-    /// The published value of XXH3 of 128 bits for no input: files of one build are read by another.
+    /// The published value for no input (FIPS 180-2), so that `sha256sum` can check a file.
     #[test]
-    fn it_is_xxh3() {
-        assert_eq!(Digest::of("").to_string(), "99aa06d3014798d86001c324468d497f");
+    fn it_is_sha_256() {
+        let empty = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
+        assert_eq!(Digest::of("").to_string(), empty);
     }
 }

@@ -31,6 +31,7 @@ mod view;
 
 use crate::base::error::Result;
 use clap::{CommandFactory, Parser, Subcommand};
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Pull stranded wire until it snaps: a discrete-element engine, and the pictures that show how it fails.
@@ -112,7 +113,8 @@ pub fn main() -> ExitCode {
         Ok(Ended::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
         Err(error) => {
             let code = error.exit_code();
-            eprintln!("{:?}", miette::Report::new(error));
+            // Where this is lost too, the code is what remains.
+            let _ = writeln!(std::io::stderr(), "{:?}", miette::Report::new(error));
             ExitCode::from(code)
         }
     }

@@ -19,7 +19,7 @@ pub struct Origin {
 
 impl Origin {
     /// Bytes in a binary file.
-    pub const LEN: usize = 36;
+    pub const LEN: usize = 2 * Digest::LEN + 4;
 
     /// Of a run of `spec` by this program.
     pub fn of(spec: &Spec) -> Self {
@@ -48,17 +48,17 @@ impl Origin {
     /// As it stands in binary files.
     pub fn to_bytes(self) -> [u8; Self::LEN] {
         let mut bytes = [0; Self::LEN];
-        bytes[..16].copy_from_slice(&self.run.to_bytes());
-        bytes[16..32].copy_from_slice(&self.scene.to_bytes());
-        bytes[32..].copy_from_slice(&self.revision.to_le_bytes());
+        bytes[..32].copy_from_slice(&self.run.to_bytes());
+        bytes[32..64].copy_from_slice(&self.scene.to_bytes());
+        bytes[64..].copy_from_slice(&self.revision.to_le_bytes());
         bytes
     }
 
     /// Back from there.
     pub fn from_bytes(bytes: &[u8; Self::LEN]) -> Self {
         let digest = |at: usize| Digest::from_bytes(std::array::from_fn(|k| bytes[at + k]));
-        let revision = u32::from_le_bytes(std::array::from_fn(|k| bytes[32 + k]));
-        Self { run: digest(0), scene: digest(16), revision }
+        let revision = u32::from_le_bytes(std::array::from_fn(|k| bytes[64 + k]));
+        Self { run: digest(0), scene: digest(Digest::LEN), revision }
     }
 }
 

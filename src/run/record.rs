@@ -32,7 +32,7 @@ pub struct RecordOptions {
 /// Records the run in the folder `run` again. Returns the file.
 ///
 /// # Errors
-/// [`Error::Input`] when there is no trajectory, the file exists or nothing is selected; otherwise what reading the
+/// Bad input when there is no trajectory, the file exists or nothing is selected; otherwise what reading the
 /// run and writing the recording say.
 pub fn record(run: &Path, options: &RecordOptions, stop: &AtomicBool) -> Result<PathBuf> {
     let doubts = identity::check(run, options.anyway)?;
