@@ -7,12 +7,15 @@ pub mod cost;
 mod drive;
 pub mod estimate;
 pub mod folder;
+pub mod identity;
+pub mod lock;
 mod options;
 pub mod outputs;
 #[cfg(feature = "record")]
 pub mod record;
 pub mod replay;
 mod schedule;
+pub mod size;
 mod stop;
 #[cfg(feature = "record")]
 pub mod view;
@@ -29,9 +32,11 @@ use crate::base::finding::Kept;
 use crate::engine::Engine;
 use crate::observe::Observer;
 use crate::observe::files::write_whole;
+use crate::observe::origin::Origin;
 use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
 use crate::observe::timings::Timings;
+use crate::scene::spec::PathSpec;
 use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
@@ -65,22 +70,37 @@ pub fn run_watched(
     stop: &AtomicBool,
 ) -> Result<RunSummary> {
     let clock = Clock::start();
+    if options.wait {
+        lock::wait(&options.out, stop);
+    }
     let folder = OutFolder::check(&options.out, options.overwrite)?;
+    spare_inputs(scene, &folder)?;
     outputs::check(options)?;
     let assembly = assemble(scene)?;
     let bonds = assembly.bond_count();
     let engine = Engine::new(&scene.spec, &scene.plan, assembly)?;
-    folder.open()?;
+    let _lock = folder.open()?;
     write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
     let written = outputs::open(options, &scene.spec, &folder)?;
     drive_and_summarise(Job { scene, options, folder: &folder, clock, bonds }, engine, written, watchers, stop)
 }
 
+/// Refuses to write over what the run is made from.
+fn spare_inputs(scene: &Scene, folder: &OutFolder) -> Result<()> {
+    folder.spare(Path::new(scene.source.file_name()))?;
+    scene.spec.wires.iter().try_for_each(|wire| match &wire.path {
+        PathSpec::File { file, .. } => folder.spare(file),
+        PathSpec::Straight { .. } => Ok(()),
+    })
+}
+
 /// The wires, particles and bonds of a scene.
 ///
 /// # Errors
-/// Geometry that cannot be, at the line of the scene that asks for it.
+/// A scene that does not fit into memory ([`size::check`]), and geometry that cannot be, at the line of the scene that asks
+/// for it.
 pub fn assemble(scene: &Scene) -> Result<Assembly> {
+    size::check(scene)?;
     discretise::build(&scene.spec).map_err(|e| scene.source.error(&e.key, e.message, e.help))
 }
 
@@ -198,7 +218,7 @@ fn drive_and_summarise(
     let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
     let closing = closing(&job.clock, &outcome, error.as_ref(), frames);
     let summary = summariser.summary(spec, job.bonds, closing);
-    let kept = write_summary(&job.folder.file(folder::SUMMARY), &summary);
+    let kept = write_summary(&job, &summary);
     match error {
         Some(error) => Err(with_place(error, &job.options.out, summary.warnings.len() - 1)),
         None => kept.map(|()| summary),
@@ -216,10 +236,11 @@ fn closing(clock: &Clock, outcome: &Outcome, error: Option<&Error>, frames: Opti
     }
 }
 
-fn write_summary(path: &Path, summary: &RunSummary) -> Result<()> {
-    let text =
-        serde_json::to_string_pretty(summary).map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
-    write_whole(path, &(text + "\n"))
+fn write_summary(job: &Job, summary: &RunSummary) -> Result<()> {
+    let path = job.folder.file(folder::SUMMARY);
+    let text = serde_json::to_string_pretty(summary)
+        .map_err(|e| Error::io("cannot write", &path, std::io::Error::other(e)))?;
+    write_whole(&path, &identity::seal(&text, Origin::of(&job.scene.spec), &job.options.out)?)
 }
 
 /// Adds where the results so far are, and how many `earlier` findings in them may tell why.

@@ -62,6 +62,7 @@ pub fn run_into(scene: &Scene, out: &Path) {
     let options = RunOptions {
         out: out.into(),
         overwrite: false,
+        wait: false,
         threads: Some(1),
         frames: false,
         animation: None,
@@ -69,7 +70,7 @@ pub fn run_into(scene: &Scene, out: &Path) {
         live: None,
     };
     run(scene, &options, &AtomicBool::new(false)).unwrap_or_else(|error| panic!("{error:?}"));
-    strandsnap::page::write(out, None, None, false).unwrap_or_else(|error| panic!("{error:?}"));
+    strandsnap::page::write(out, None, None, false, false).unwrap_or_else(|error| panic!("{error:?}"));
 }
 
 /// What is wrong with a run, for people; empty when nothing is.

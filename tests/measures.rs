@@ -69,6 +69,7 @@ fn write(scene: &Scene, out: PathBuf) -> RunSummary {
     let options = RunOptions {
         out,
         overwrite: false,
+        wait: false,
         threads: Some(1),
         frames: false,
         animation: None,

@@ -15,6 +15,7 @@ use std::sync::atomic::AtomicBool;
 use strandsnap::base::error::Error;
 use strandsnap::base::finding::StopReason;
 use strandsnap::observe::Observer;
+use strandsnap::observe::origin::Origin;
 use strandsnap::observe::summary::{Closing, Cost, Summariser};
 use strandsnap::observe::trajectory::TrajectoryWriter;
 use strandsnap::page::{self, Source};
@@ -30,7 +31,7 @@ const HOSTILE: &str = "</script><script>window.hacked=1</script><img src=x onerr
 fn folder_of(run: &Run, pictures: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    run.show(&mut TrajectoryWriter::new(&at("trajectory.bin")).unwrap()).unwrap();
+    run.show(&mut TrajectoryWriter::new(&at("trajectory.bin"), Origin::default()).unwrap()).unwrap();
     let scene = scene::load("ka4", &[]).unwrap();
     fs::write(at("scene.toml"), scene::write::to_toml(&scene.spec)).unwrap();
     let mut summariser = Summariser::new();
@@ -55,6 +56,7 @@ fn simulated(name: &str, overrides: &[&str]) -> TempDir {
     let options = RunOptions {
         out: folder.path().into(),
         overwrite: true,
+        wait: false,
         threads: Some(2),
         frames: false,
         recording: false,
@@ -338,7 +340,7 @@ fn browser(test: &str) -> Option<Browser> {
 
 /// Writes a page and opens it; it must have drawn all its charts without a complaint.
 fn shown(browser: &mut Browser, folder: &TempDir, scheme: &str) -> PathBuf {
-    let written = page::write(folder.path(), None, None, true).unwrap();
+    let written = page::write(folder.path(), None, None, true, true).unwrap();
     browser.open(&written.path, scheme);
     let trouble = browser.value("document.getElementById('trouble').textContent");
     assert!(browser.value("document.documentElement.dataset.troubles ?? null").is_null(), "{trouble}");
@@ -449,7 +451,7 @@ fn a_browser_shows_runs_that_have_little_to_show() {
     let mut run = Run::new(1);
     run.events.truncate(1);
     let folder = tempfile::tempdir().unwrap();
-    let mut writer = TrajectoryWriter::new(&folder.path().join("trajectory.bin")).unwrap();
+    let mut writer = TrajectoryWriter::new(&folder.path().join("trajectory.bin"), Origin::default()).unwrap();
     run.show_unfinished(&mut writer).unwrap();
     writer.finish().unwrap();
     let scene = scene::load("ka4", &[]).unwrap();

@@ -77,6 +77,7 @@ fn of_cases(args: &Args, cases: &[&'static VerificationCase]) -> Result<Ended> {
         return Ok(Ended::Well);
     }
     let out = args.out.clone().unwrap_or_else(|| folder::accuracy(&name));
+    let _lock = shared::lock(&out, false)?;
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
     let store = CaseStore::open(&out, args.fresh)?;
     let stop = interrupt::install_for_cases()?;
@@ -109,6 +110,7 @@ fn of_pulled_scene(args: &Args) -> Result<Ended> {
         return Ok(Ended::Well);
     }
     let out = args.out.clone().unwrap_or_else(|| folder::accuracy(&subject.scene.spec.name));
+    let _lock = shared::lock(&out, false)?;
     subject.notes.iter().for_each(|note| eprintln!("note: {note}"));
     let store = CaseStore::open(&out, args.fresh)?;
     let stop = interrupt::install_for_cases()?;

@@ -4,7 +4,7 @@ use super::cases::{self, ProgressLine};
 use super::ended::Ended;
 use super::interrupt;
 use super::say::say;
-use super::values::{SceneArgs, Seeds};
+use super::values::{SceneArgs, Seeds, within};
 use crate::base::error::Result;
 use crate::base::wording::counted;
 use crate::observe::files::write_whole;
@@ -25,13 +25,13 @@ pub struct Args {
     #[arg(long, value_name = "SEEDS", conflicts_with = "seed")]
     seeds: Option<Seeds>,
     /// Tensile strength to reach [MPa; default: the reference experiment]
-    #[arg(long, value_name = "MPA")]
+    #[arg(long, value_name = "MPA", value_parser = within(1e-3, 1e6, "a stress in MPa"))]
     strength: Option<f64>,
     /// Fracture elongation to reach [%; default: the reference experiment]
-    #[arg(long, value_name = "PERCENT")]
+    #[arg(long, value_name = "PERCENT", value_parser = within(1e-3, 1e3, "a strain in per cent"))]
     elongation: Option<f64>,
     /// Allowed error of either mean (%)
-    #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0, value_parser = within(1e-3, 100.0, "a share in per cent"))]
     tolerance: f64,
     /// Runs side by side, each on one thread [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -75,6 +75,7 @@ pub fn run(args: &Args) -> Result<Ended> {
         (None, None) => default_seeds(&scene),
     };
     let out = args.out.clone().unwrap_or_else(|| folder::calibration(&scene.spec.name));
+    let _lock = cases::lock(&out, false)?;
     let store = CaseStore::open(&out, args.fresh)?;
     let stop = interrupt::install_for_cases()?;
     let line = ProgressLine::new("calibrate");

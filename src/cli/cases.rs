@@ -3,6 +3,7 @@
 use super::interrupt;
 use super::say::say;
 use crate::base::error::{Error, Result};
+use crate::run::lock::Lock;
 use crate::study::runner::{CaseRunner, Progress, Status, cores};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
@@ -81,6 +82,15 @@ impl CaseArgs {
             None => Ok(()),
         }
     }
+}
+
+/// Keeps other studies out of a folder, which is made if it is not there; `part`: others may run parts of the same study.
+///
+/// # Errors
+/// [`Error::Input`] with the number of the process that has it; [`Error::Io`].
+pub fn lock(folder: &Path, part: bool) -> Result<Lock> {
+    std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
+    if part { Lock::share(folder) } else { Lock::take(folder) }
 }
 
 /// Parts of a progress line that shows a share of the work.

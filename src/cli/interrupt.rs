@@ -2,6 +2,7 @@
 
 use super::Ended;
 use crate::base::error::{Error, Result};
+use std::io::Write;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -35,7 +36,8 @@ fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
         let now = Instant::now();
         let first = *FIRST.get_or_init(|| now);
         if !STOP.swap(true, Ordering::Relaxed) {
-            eprintln!("{words}");
+            // A standard error that is lost must not end the run without its results.
+            let _ = writeln!(std::io::stderr(), "{words}");
         } else if now.duration_since(first) >= PATIENCE {
             std::process::exit(i32::from(Error::Interrupted.exit_code()));
         }

@@ -1,5 +1,10 @@
 //! Floor 9: the command line. One file per subcommand; each turns arguments into a call below and prints the answer.
 
+/// Stands for the usual one in all commands: see [`say::tell`].
+macro_rules! eprintln {
+    ($($part:tt)*) => { $crate::cli::say::tell(format_args!($($part)*)) };
+}
+
 mod accuracy;
 mod animation;
 mod calibrate;
@@ -31,6 +36,7 @@ mod view;
 use crate::base::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 use ended::Ended;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Pull stranded wire until it snaps: a discrete-element engine, and the pictures that show how it fails.
@@ -104,7 +110,8 @@ pub fn main() -> ExitCode {
         Err(error @ Error::Interrupted) => ExitCode::from(error.exit_code()),
         Err(error) => {
             let code = error.exit_code();
-            eprintln!("{:?}", miette::Report::new(error));
+            // Where this is lost too, the code is what remains.
+            let _ = writeln!(std::io::stderr(), "{:?}", miette::Report::new(error));
             ExitCode::from(code)
         }
     }

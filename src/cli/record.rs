@@ -20,6 +20,9 @@ pub struct Args {
     /// Replace the file if it exists
     #[arg(long)]
     overwrite: bool,
+    /// Go on where files of the run were changed or are another's; the result says so
+    #[arg(long)]
+    anyway: bool,
     #[command(flatten)]
     select: SelectArgs,
     /// Stream to a Rerun viewer that is already open
@@ -42,6 +45,7 @@ pub fn record(args: Args) -> Result<Ended> {
         colour: args.colour,
         out: args.out,
         overwrite: args.overwrite,
+        anyway: args.anyway,
         live: args.live,
     };
     let stop = super::interrupt::install()?;

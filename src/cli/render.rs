@@ -17,6 +17,9 @@ pub struct Args {
     /// Replace earlier pictures in that folder
     #[arg(long)]
     overwrite: bool,
+    /// Go on where files of the run were changed or are another's; the result says so
+    #[arg(long)]
+    anyway: bool,
     #[command(flatten)]
     select: SelectArgs,
     #[command(flatten)]
@@ -40,9 +43,10 @@ pub fn render(args: Args) -> Result<Ended> {
     use super::say::say;
     use crate::render::FrameWriter;
     use crate::run::replay::Replay;
-    use crate::run::{folder, outputs};
+    use crate::run::{folder, identity, outputs};
 
-    let run = Replay::open(&args.run, &args.select.into())?;
+    let doubts = identity::check(&args.run, args.anyway)?;
+    let run = Replay::open(&args.run, &args.select.into())?.doubting(&doubts);
     let mut output = look_of(&args.run);
     args.look.apply(&mut output);
     // The run is over: close-ups can look at the place of the first break from the start, and need not jump to it.
@@ -55,13 +59,16 @@ pub fn render(args: Args) -> Result<Ended> {
     }
     let writer = || FrameWriter::new(&out, outputs::frame_options(&output));
     crate::render::check()?;
-    folder.open_for_pictures()?;
+    let pictures = folder.open_for_pictures()?;
     let mut writer = writer()?.with_animation(animation.as_ref().map(outputs::animation_options).transpose()?);
     if let Some(why) = run.cut_off() {
         eprintln!("note: {why}; what there is will be drawn");
     }
     let stop = super::interrupt::install()?;
     let shown = run.show(&mut Counted::new(&mut writer, run.count(), !args.quiet), stop)?;
+    if shown == run.count() {
+        pictures.complete()?;
+    }
     let timings = writer.timings();
     say!("{} in {}", crate::base::wording::counted(shown, "picture"), out.display());
     if let Some(animation) = animation.filter(|_| timings.animation_bytes > 0) {

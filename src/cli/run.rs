@@ -27,6 +27,9 @@ pub struct Args {
     /// Replace earlier results in that folder
     #[arg(long)]
     overwrite: bool,
+    /// Wait for another process that writes into that folder, instead of refusing
+    #[arg(long)]
+    wait: bool,
     /// Threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -57,6 +60,7 @@ pub fn run(args: Args) -> Result<Ended> {
         animation: args.animation.resolve(&out.join(ANIMATION)),
         out,
         overwrite: args.overwrite,
+        wait: args.wait,
         threads: args.threads.map(usize::from),
         frames: outputs::HAS_RENDER && !args.no_frames,
         recording: outputs::HAS_RECORD && !args.no_recording,

@@ -73,6 +73,7 @@ pub fn study(args: &Args) -> Result<Ended> {
     if args.collect {
         return show(&definition, &CaseStore::of(&out), &out).map(|()| Ended::Well);
     }
+    let _lock = cases::lock(&out, args.case.is_some())?;
     let store = CaseStore::open(&out, args.fresh)?;
     let stop = interrupt::install_for_cases()?;
     let line = ProgressLine::new("study");

@@ -3,6 +3,7 @@
 pub mod files;
 pub mod guard;
 pub mod limits;
+pub mod origin;
 pub mod partial;
 pub mod peaks;
 pub mod planned;

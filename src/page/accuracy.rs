@@ -2,6 +2,7 @@
 
 use super::{Section, Source};
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::run::folder::{ACCURACY_PLOT, ACCURACY_STUDY};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -54,11 +55,7 @@ impl Study {
 }
 
 fn read(path: &Path) -> Result<Option<String>> {
-    match std::fs::read_to_string(path) {
-        Ok(text) => Ok(Some(text)),
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(Error::io("cannot read", path, e)),
-    }
+    regular::text_if_there(path, regular::LONGEST_TABLE)
 }
 
 /// What accuracy each second buys.

@@ -11,7 +11,6 @@ use crate::base::error::{Error, Result};
 use crate::observe::partial;
 use image::RgbImage;
 use image::imageops::{FilterType, resize};
-use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -81,7 +80,7 @@ pub fn write(options: &AnimationOptions, stills: &[Still]) -> Result<u64> {
     }
     let growing = partial::name(&options.file);
     let refuse = |e| Error::io("cannot write", &growing, e);
-    let mut out = BufWriter::new(File::create(&growing).map_err(refuse)?);
+    let mut out = BufWriter::new(partial::create(&options.file)?);
     let pictures = Pictures { stills, width: options.width };
     match options.format {
         Format::Gif => gif::write(&pictures, &mut out, &refuse)?,

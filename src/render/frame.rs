@@ -16,6 +16,7 @@ use super::wires::{self, Looks, Segment};
 use super::{curve, cut, cutaway, exploded, header, marks, unrolled};
 use crate::base::error::{Error, Result};
 use crate::engine::view::{RunInfo, Rupture, Snapshot};
+use crate::scene::look::FRAME_SIDE;
 use glam::Vec3;
 use image::{Rgb as Pixel, RgbImage};
 use std::time::Instant;
@@ -93,9 +94,12 @@ impl Renderer {
     pub fn new(info: &RunInfo, options: &FrameOptions) -> Result<Self> {
         let views = if options.views.is_empty() { default_views(info) } else { options.views.clone() };
         let [w, h] = options.size;
-        if !(160..=16384).contains(&w) || !(120..=16384).contains(&h) {
+        if !FRAME_SIDE.contains(&w) || !FRAME_SIDE.contains(&h) {
             let what = format!("frames of {w} × {h} pixels cannot be drawn");
-            return Err(Error::input(what, "sizes go from 160 × 120 to 16384 × 16384 pixels"));
+            return Err(Error::input(
+                what,
+                format!("a side has {} to {} pixels", FRAME_SIDE.start(), FRAME_SIDE.end()),
+            ));
         }
         let layout = layout(options.size, &views);
         Ok(Self {

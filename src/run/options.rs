@@ -9,6 +9,8 @@ pub struct RunOptions {
     pub out: PathBuf,
     /// Replace earlier results in that folder.
     pub overwrite: bool,
+    /// Wait until no other process writes into that folder, instead of refusing.
+    pub wait: bool,
     /// Threads of the engine; `None`: as many as the machine has.
     pub threads: Option<usize>,
     /// Draw numbered pictures into `frames/`.

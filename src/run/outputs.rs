@@ -4,7 +4,9 @@ use super::folder::{self, OutFolder};
 pub use super::options::Animation;
 use super::options::RunOptions;
 use crate::base::error::{Error, Result};
+use crate::base::regular::check_target;
 use crate::observe::Observer;
+use crate::observe::origin::Origin;
 use crate::observe::timings::Timings;
 use crate::observe::trajectory::TrajectoryWriter;
 #[cfg(feature = "render")]
@@ -55,13 +57,7 @@ impl Animation {
     /// [`Error::Input`] for a file name with another ending, or one that is taken while `overwrite` is not set.
     pub fn check(&self, overwrite: bool) -> Result<()> {
         check_animation(self)?;
-        if self.file.exists() && !overwrite {
-            return Err(Error::input(
-                format!("{} exists", self.file.display()),
-                "give --overwrite to replace it, or another name with --animation",
-            ));
-        }
-        Ok(())
+        check_target(&self.file, overwrite, "--animation")
     }
 }
 
@@ -84,7 +80,7 @@ pub(super) struct Written {
 /// [`Error::Io`] when a file cannot be created, [`Error::Missing`] as in [`check`].
 pub(super) fn open(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Written> {
     let mut observers: Vec<Box<dyn Observer>> =
-        vec![Box::new(TrajectoryWriter::new(&folder.file(folder::TRAJECTORY))?)];
+        vec![Box::new(TrajectoryWriter::new(&folder.file(folder::TRAJECTORY), Origin::of(spec))?)];
     if options.recording {
         observers.push(recording(options, spec, folder)?);
     }

@@ -28,7 +28,8 @@ pub use idle::Idle;
 pub use resolve::can_name_a_folder;
 pub use source::SceneSource;
 
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
+use crate::base::regular;
 use at::At;
 use overrides::Override;
 use place::{path_at, scene_error};
@@ -49,6 +50,8 @@ pub struct Scene {
     pub source: SceneSource,
     /// Keys that it gives without effect.
     pub idle: Vec<Idle>,
+    /// Most memory that its run may take (bytes); `None`: what is free.
+    pub memory: Option<u64>,
 }
 
 /// Loads a scene by built-in name or by path, with `--set` options.
@@ -62,10 +65,7 @@ pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Scene> {
         let text = builtin::find(name_or_path)?;
         return parse(text, &format!("{name_or_path}.toml"), Path::new("."), overrides);
     }
-    let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
-        std::io::ErrorKind::NotFound => builtin::no_such_file(path),
-        _ => Error::io("cannot read", path, source),
-    })?;
+    let text = regular::text_if_there(path, regular::LONGEST_SCENE)?.ok_or_else(|| builtin::no_such_file(path))?;
     let folder = path.parent().unwrap_or(Path::new("."));
     parse(&text, name_or_path, folder, overrides)
 }
@@ -89,7 +89,7 @@ pub fn parse(text: &str, file_name: &str, folder: &Path, overrides: &[String]) -
     let spec = resolve::resolve(&At::root(&source), &raw, &stem, folder)?;
     let plan = Plan::new(&spec);
     let idle = idle::check(&source, &raw, &spec, &plan)?;
-    Ok(Scene { spec, plan, source, idle })
+    Ok(Scene { spec, plan, source, idle, memory: None })
 }
 
 /// Reads tables of another kind than a scene, with errors of the same kind: `whole` says what it is, "a study".
@@ -134,11 +134,43 @@ fn in_plain_words(message: &str, path: &[String], whole: &str) -> (String, Strin
     if let (true, [unknown, known @ ..]) = (message.starts_with("unknown variant"), &quoted[..]) {
         return (format!("`{unknown}` is not a value of `{key}`"), did_you_mean(unknown, known, "one of"));
     }
-    let message = message
-        .replace("expected i64", "expected a whole number")
-        .replace("floating point", "number")
-        .replace("a sequence", "an array");
-    (format!("`{key}`: {message}"), String::new())
+    let place = if key.is_empty() { String::new() } else { format!("`{key}`: ") };
+    (format!("{place}{}", of_types(message, path)), String::new())
+}
+
+/// Serde's names of types as the user writes such a value; a table is named by its `path`.
+fn of_types(message: &str, path: &[String]) -> String {
+    let numbers = |part: &&String| part.parse::<usize>().is_err();
+    let name = path.iter().filter(numbers).cloned().collect::<Vec<_>>().join(".");
+    let table = match path.last() {
+        None => "the tables of a file".into(),
+        Some(last) if last.parse::<usize>().is_ok() => format!("a table, such as [[{name}]] begins"),
+        Some(_) => format!("a table, such as [{name}] begins"),
+    };
+    let mut words: Vec<&str> = message.split(' ').collect();
+    // "struct RawStrand", "enum RawLay": the kind, then a name of this program's.
+    while let Some(at) = words.windows(2).position(|pair| ["struct", "enum"].contains(&pair[0])) {
+        words[at] = if words[at] == "struct" { &table } else { "one of its words" };
+        words.remove(at + 1);
+    }
+    let message = words.join(" ");
+    [
+        ("i64", "a whole number"),
+        ("u64", "a whole number"),
+        ("usize", "a whole number"),
+        ("f64", "a number"),
+        ("floating point", "number"),
+        ("a sequence", "an array"),
+        ("sequence", "an array"),
+        ("map", "a table"),
+        ("a boolean", "true or false"),
+        ("a string", "text"),
+    ]
+    .iter()
+    .fold(message, |text, (from, to)| {
+        text.replace(&format!("expected {from}"), &format!("expected {to}"))
+            .replace(&format!("type: {from}"), &format!("type: {to}"))
+    })
 }
 
 fn did_you_mean(unknown: &str, known: &[&str], list: &str) -> String {

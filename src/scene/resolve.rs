@@ -2,6 +2,7 @@
 //! key that is wrong.
 
 use super::at::{At, Range};
+use super::look::{FRAME_SIDE, ZOOM};
 use super::raw::*;
 use super::spec::*;
 use super::{hardening, resolve_bodies, resolve_drive};
@@ -25,9 +26,6 @@ const SKIN: f64 = 0.15;
 const RESOLVED: f64 = 0.4;
 /// Spacing over diameter from which a wire fits between two neighbouring spheres of another (-).
 const GAP: f64 = 2.0;
-/// Side of a frame, least and greatest (pixels).
-const FRAME_SIDE: std::ops::RangeInclusive<i64> = 16..=8192;
-
 /// Evenly spread snapshots where bonds can break: what they leave of the usual number is for the ruptures.
 const SNAPSHOTS_IF_IT_BREAKS: usize = 60;
 
@@ -271,15 +269,16 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
     let usual = OutputSpec::default();
     let [width, height] = raw.frame_size.unwrap_or(usual.frame_size.map(i64::from));
     let side = |index: usize, pixels: i64| -> Result<u32> {
-        if !FRAME_SIDE.contains(&pixels) {
+        let fits = u32::try_from(pixels).ok().filter(|pixels| FRAME_SIDE.contains(pixels));
+        let Some(fits) = fits else {
             let what = format!(
                 "`frame_size` holds {pixels}, but a side must have {} to {} pixels",
                 FRAME_SIDE.start(),
                 FRAME_SIDE.end()
             );
             return Err(at.key("frame_size").element(index).error(what, "for example [1280, 720]"));
-        }
-        Ok(pixels as u32)
+        };
+        Ok(fits)
     };
     let snapshots = if breaks { SNAPSHOTS_IF_IT_BREAKS } else { usual.snapshots };
     let density = at.ratio_or("rupture_density", &raw.rupture_density, usual.rupture_density, Range::AtLeastOne)?;
@@ -297,10 +296,15 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
 
 fn camera(at: &At, raw: &RawCamera) -> Result<CameraSpec> {
     let angle = |name, raw| Ok::<f64, Error>(at.optional(name, raw, Dimension::Angle, Range::Any)?.unwrap_or(0.0));
+    let zoom = at.ratio_or("zoom", &raw.zoom, CameraSpec::default().zoom, Range::Positive)?;
+    if !ZOOM.contains(&zoom) {
+        let what = format!("`zoom` is {zoom}, but must be between {} and {}", ZOOM.start(), ZOOM.end());
+        return Err(at.key("zoom").error(what, "for example zoom = 2"));
+    }
     Ok(CameraSpec {
         azimuth: angle("azimuth", &raw.azimuth)?,
         elevation: angle("elevation", &raw.elevation)?,
-        zoom: at.ratio_or("zoom", &raw.zoom, CameraSpec::default().zoom, Range::Positive)?,
+        zoom,
         focus_z: at.optional("focus_z", &raw.focus_z, Dimension::Length, Range::Any)?,
     })
 }

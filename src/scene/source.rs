@@ -19,6 +19,11 @@ impl SceneSource {
         Self { file_name: file_name.to_owned(), document, overrides }
     }
 
+    /// What it was read from: a file's path, or the name of a built-in scene.
+    pub fn file_name(&self) -> &str {
+        &self.file_name
+    }
+
     /// An error at the value of a key path such as `strand.layer.1.lay_radius`, or at its nearest parent that the
     /// scene has. A value that a `--set` option gave is shown there. An empty `help` means none.
     pub fn error(&self, key_path: &str, what: impl Into<String>, help: impl Into<String>) -> Error {

@@ -11,6 +11,7 @@ pub mod helix;
 pub mod lay_radius;
 pub mod overlap;
 pub mod resample;
+pub mod size;
 #[cfg(test)]
 pub(crate) mod test_specs;
 pub mod theory;

@@ -5,9 +5,20 @@ use super::finding::{InvariantOutcome, Search};
 use super::folder::{CURVE as COLUMNS, Folder};
 use super::rows::layer_heads;
 use crate::engine::view::{Energy, Sample};
+use crate::run::identity;
 
 /// Numbers have nine digits.
 const DIGITS: f64 = 1e-8;
+
+pub const OWN: Invariant = Invariant {
+    name: "own-files",
+    about: "scene, summary, tables and trajectory are of one run, and as it wrote them",
+    check: |run| {
+        let mut search = Search::new();
+        search.add(run.doubts.len() as f64, || identity::list(&run.doubts));
+        search.end(0.0, "files", "")
+    },
+};
 
 pub const CURVE: Invariant = Invariant {
     name: "curve-trajectory",

@@ -42,6 +42,7 @@ pub const INVARIANTS: &[Invariant] = &[
     rows::PULL,
     rows::FORCE,
     // One file against another
+    files::OWN,
     files::CURVE,
     files::SNAPSHOTS,
     files::LAYERS,

@@ -3,6 +3,7 @@
 use super::Invariant;
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
+use crate::base::regular;
 use crate::engine::view::Sample;
 use crate::run::folder::REPORT;
 use base64::Engine;
@@ -18,12 +19,12 @@ pub const PAGE: Invariant = Invariant {
 
 fn page(run: &Folder) -> InvariantOutcome {
     let path = run.path.join(REPORT);
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+    let text = match regular::text_if_there(&path, regular::LONGEST_TABLE) {
+        Ok(Some(text)) => text,
+        Ok(None) => {
             return InvariantOutcome::NotApplicable(format!("there is no {REPORT}; `strandsnap report` makes it"));
         }
-        Err(e) => return failed(format!("{REPORT} cannot be read: {e}")),
+        Err(e) => return failed(e.to_string()),
     };
     if !run.trajectory.info.is_pulled() {
         return InvariantOutcome::NotApplicable("the body is not pulled".into());

@@ -5,6 +5,7 @@ use super::conflicts;
 use super::quantity::{self, Quantity};
 use super::raw::{RawDesign, RawQuality, RawSeeds, RawStudy};
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::base::wording::counted;
 use crate::reference::published::{self, Published};
 use crate::scene::quality::Quality;
@@ -112,11 +113,8 @@ impl Definition {
             let text = builtin(name_or_path)?;
             return Self::parse(text, &format!("{name_or_path}.toml"), Path::new("."), changes);
         }
-        let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
-            std::io::ErrorKind::NotFound => {
-                Error::input(format!("there is no study file {}", path.display()), "give its path, or a built-in name")
-            }
-            _ => Error::io("cannot read", path, source),
+        let text = regular::text_if_there(path, regular::LONGEST_SCENE)?.ok_or_else(|| {
+            Error::input(format!("there is no study file {}", path.display()), "give its path, or a built-in name")
         })?;
         Self::parse(&text, name_or_path, path.parent().unwrap_or(Path::new(".")), changes)
     }

@@ -53,6 +53,7 @@ fn options(out: &Path) -> RunOptions {
     RunOptions {
         out: out.into(),
         overwrite: false,
+        wait: false,
         threads: None,
         frames: false,
         animation: None,
