@@ -61,6 +61,15 @@ pub struct RunOptions {
     pub quiet: bool,
 }
 
+impl RunOptions {
+    /// Tables alone, without a word, into a folder that does not exist.
+    pub fn tables(out: &Path) -> Self {
+        let out = out.into();
+        let (threads, animation, live) = (None, None, None);
+        Self { out, overwrite: false, threads, frames: false, animation, recording: false, live, quiet: true }
+    }
+}
+
 /// Runs a scene and writes its results; `stop` ends it cleanly after the step in progress.
 ///
 /// Everything that can be checked before simulating is checked before anything is written or removed. Files
