@@ -17,8 +17,6 @@ pub struct Published {
     pub simulation: Vec<Simulation>,
     /// Its fitted curves.
     pub fit: Vec<ExponentialFit>,
-    /// What it says of the fracture.
-    pub fracture: Fracture,
 }
 
 /// The strand that was tested.
@@ -108,20 +106,6 @@ impl ExponentialFit {
     pub fn value(&self, x: f64) -> f64 {
         self.a * (self.b * x).exp() + self.c
     }
-}
-
-/// What is said of the fracture.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Fracture {
-    /// Where the strand breaks.
-    pub r#where: String,
-    /// Which wires break.
-    pub wires: String,
-    /// What is left of the stress.
-    pub residual_stress: String,
-    /// Whether outer wires are stressed more than inner ones.
-    pub outer_stress_above_inner: bool,
 }
 
 impl Published {

@@ -1,6 +1,6 @@
 //! What a run is asked for.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Where a run goes and what it writes.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +21,23 @@ pub struct RunOptions {
     pub recording: bool,
     /// Address of a Rerun viewer to stream to while running.
     pub live: Option<String>,
+}
+
+impl RunOptions {
+    /// Tables alone, into a folder that does not exist.
+    pub fn tables(out: &Path) -> Self {
+        let (threads, animation, live) = (None, None, None);
+        Self {
+            out: out.into(),
+            overwrite: false,
+            wait: false,
+            threads,
+            frames: false,
+            animation,
+            recording: false,
+            live,
+        }
+    }
 }
 
 /// An animation of the frames, as it is asked for.

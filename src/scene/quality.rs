@@ -6,9 +6,11 @@ use super::Scene;
 use super::resolve_drive::slower_than_the_drive;
 use super::spec::{AdaptiveSpec, DriveSpec, Spec};
 use crate::base::error::Result;
+use serde::Deserialize;
 
 /// A preset.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Quality {
     /// Fast, for a first look.
     Draft,

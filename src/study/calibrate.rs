@@ -261,15 +261,9 @@ impl Calibration<'_> {
         setting.apply(&mut scene.spec);
         let jobs = self.runner.jobs.min(seeds.len());
         let runner = CaseRunner { jobs, ..*self.runner };
-        let case = |seed: &u64| TensileCase {
-            name: format!("p_f = {} %, seed {seed}", setting.rupture_strain),
-            scene: Ok(&scene),
-            seed: *seed,
-            store: self.store,
-            work: 1.0,
-            leads: false,
-            writes: false,
-            threads: None,
+        let case = |seed: &u64| {
+            let name = format!("p_f = {} %, seed {seed}", setting.rupture_strain);
+            TensileCase::new(name, Ok(&scene), *seed, self.store)
         };
         let statuses = runner.run(&seeds.iter().map(case).collect::<Vec<_>>())?;
         let [kept, other_build] = count_kept(&statuses);

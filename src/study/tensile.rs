@@ -195,6 +195,13 @@ pub struct TensileCase<'a> {
     pub threads: Option<usize>,
 }
 
+impl<'a> TensileCase<'a> {
+    /// A case of which the answer is studied, and not the cost.
+    pub fn new(name: String, scene: std::result::Result<&'a Scene, &'a str>, seed: u64, store: &'a CaseStore) -> Self {
+        Self { name, scene, seed, store, work: 1.0, leads: false, writes: false, threads: None }
+    }
+}
+
 /// A scene with another seed of the scatter.
 pub fn with_seed(scene: &Scene, seed: u64) -> Scene {
     let mut scene = scene.clone();
@@ -280,16 +287,7 @@ impl TensileCase<'_> {
             let folder = self.store.folder();
             let out = tempfile::tempdir_in(folder).map_err(|e| Error::io("cannot write into", folder, e))?;
             // Everything that `strandsnap run` writes but pictures, which cost what they cost whatever the engine does.
-            let options = RunOptions {
-                out: out.path().into(),
-                overwrite: false,
-                threads: None,
-                frames: false,
-                animation: None,
-                recording: outputs::HAS_RECORD,
-                live: None,
-                quiet: true,
-            };
+            let options = RunOptions { recording: outputs::HAS_RECORD, ..RunOptions::tables(out.path()) };
             run_watched(scene, &options, vec![&mut recorder], stop)?
         } else {
             summarise(scene, vec![&mut recorder], stop)?

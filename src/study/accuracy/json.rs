@@ -1,7 +1,7 @@
 //! `accuracy.json`: the study for programs, and the tables for the page.
 
 use super::columns::COLUMNS;
-use super::ensemble::{self, Quantity};
+use super::ensemble::{self, QUANTITIES};
 use super::rows::{Row, Run};
 use super::table;
 use super::{Study, reference::Along};
@@ -81,9 +81,9 @@ fn row(row: &Row, base: Option<&Row>) -> Value {
         "role": own.map(|own| own.role.word()),
         "default": own.is_none(),
         // Whether the error of the mean is told from scatter: of strength and of elongation.
-        "told_from_scatter": Quantity::ALL.map(|quantity| ensemble::mean_is_told(row, quantity)),
+        "told_from_scatter": QUANTITIES.each_ref().map(|quantity| ensemble::mean_is_told(row, quantity)),
         // Spread over seeds beside that of the scene as it stands: of strength and of elongation.
-        "spread": Quantity::ALL.map(|quantity| base.and_then(|base| ensemble::spread(row, base, quantity))),
+        "spread": QUANTITIES.each_ref().map(|quantity| base.and_then(|base| ensemble::spread(row, base, quantity))),
         "runs": row.runs.iter().map(run).collect::<Vec<_>>(),
     });
     for column in COLUMNS.iter() {

@@ -22,7 +22,6 @@ pub mod verified;
 use crate::base::error::{Error, Result};
 use crate::run::folder::ACCURACY_STUDY;
 use crate::scene::Scene;
-use crate::scene::spec::{DriveSpec, Spec};
 use crate::study::runner::{CaseRunner, CaseStore, Record, Status};
 use crate::study::statistics::Statistics;
 use crate::study::tensile::{TensileCase, TensileOutcome, TensileResult, count_kept, with_seed};
@@ -101,13 +100,13 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Sees which of the parameters the scene has. Without `seeds` it takes the first [`SEEDS`] where bonds scatter and
+    /// Sees which of the parameters in `vary` the scene has. Without `seeds` it takes the first [`SEEDS`] where bonds scatter and
     /// there is no closed form, else the scene's own.
     ///
     /// # Errors
     /// A scene that no grip pulls.
-    pub fn new(scene: Scene, parameters: &[&'static Parameter], mut seeds: Vec<u64>) -> Result<Self> {
-        if !is_pulled(&scene.spec) {
+    pub fn new(scene: Scene, vary: &[&'static Parameter], mut seeds: Vec<u64>) -> Result<Self> {
+        if parameters::pull_speed(&scene.spec).is_none() {
             let help = "study a scene that a grip pulls at a constant speed, such as ka4, or a verification case \
                         (`strandsnap verify --list`)";
             return Err(scene.source.error(
@@ -116,7 +115,7 @@ impl Subject {
                 help,
             ));
         }
-        let (varied, absent) = schedule::vary(parameters, &scene);
+        let (varied, absent) = schedule::vary(vary, &scene);
         let mut notes = Vec::new();
         let scatter = scene.plan.scatter;
         if seeds.is_empty() && scatter && closed_form::truth(&scene).is_err() {
@@ -150,20 +149,13 @@ impl Subject {
     /// A run as a case that `runner` is to run.
     fn case<'a>(&'a self, run: PlannedRun, store: &'a CaseStore, runner: &CaseRunner) -> TensileCase<'a> {
         TensileCase {
-            name: run.name,
-            scene: Ok(self.scene_at(run.place)),
-            seed: run.seed,
-            store,
             work: run.work,
             leads: run.place.is_none(),
             writes: run.writes,
             threads: Some(runner.threads_per_case()),
+            ..TensileCase::new(run.name, Ok(self.scene_at(run.place)), run.seed, store)
         }
     }
-}
-
-fn is_pulled(spec: &Spec) -> bool {
-    spec.grip.as_ref().is_some_and(|grip| matches!(grip.drive, DriveSpec::Speed(speed) if speed != 0.0))
 }
 
 /// Makes the runs and compares them.
@@ -343,12 +335,7 @@ fn left_open(references: &BTreeMap<u64, Against>, k: usize) -> f64 {
 
 /// What a reference by refinement is, in a sentence.
 fn words(subject: &Subject, along: &[(u64, Along)]) -> String {
-    let mut refined: Vec<&str> = Vec::new();
-    for (_, along) in along {
-        if !refined.contains(&along.parameter) {
-            refined.push(along.parameter);
-        }
-    }
+    let refined = table::refined(along);
     if refined.is_empty() {
         return "the scene as it stands: no parameter that converges has two runs, so rows show differences from it, not \
                 errors"

@@ -207,7 +207,7 @@ fn safety(scene: &Scene) -> Variations {
 }
 
 /// The constant speed of the pull (m/s).
-fn pull_speed(spec: &Spec) -> Option<f64> {
+pub(super) fn pull_speed(spec: &Spec) -> Option<f64> {
     match spec.grip.as_ref()?.drive {
         DriveSpec::Speed(speed) if speed != 0.0 => Some(speed),
         _ => None,

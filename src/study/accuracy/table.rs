@@ -1,7 +1,7 @@
 //! The study as people read it: two tables and what stands around them.
 
 use super::columns::{MeanColumn, named, signed};
-use super::ensemble::{self, Quantity};
+use super::ensemble::{self, QUANTITIES, Quantity};
 use super::errors::Errors;
 use super::reference::Along;
 use super::rows::{Row, RunStatus};
@@ -10,6 +10,7 @@ use crate::base::wording::counted;
 use crate::study::statistics::Statistics;
 use crate::study::table::Table;
 use crate::study::tensile::TensileResult;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Columns of text at the left: parameter and value.
@@ -44,7 +45,7 @@ fn note(study: &Study, row: &Row) -> String {
 }
 
 /// The spread over seeds in per cent of the mean, and how it changes against the scene as it stands.
-fn spread(study: &Study, row: &Row, quantity: Quantity) -> String {
+fn spread(study: &Study, row: &Row, quantity: &Quantity) -> String {
     let base = study.rows.iter().find(|row| row.parameter.is_none());
     let Some(spread) = base.and_then(|base| ensemble::spread(row, base, quantity)) else { return String::new() };
     match (row.parameter.is_some().then_some(spread.change_percent).flatten(), spread.told) {
@@ -67,7 +68,7 @@ pub fn histories_and_checks(study: &Study) -> Table {
     let layers = study.layers();
     let title = "What else differs from the reference, and whether loading was quasi-static";
     table(title, study, &heads, columns.map(named).as_slice(), None, |row| {
-        let spreads = Quantity::ALL.map(|quantity| spread(study, row, quantity));
+        let spreads = QUANTITIES.each_ref().map(|quantity| spread(study, row, quantity));
         let cells = spreads.into_iter().chain([worst_layer(row, &layers), first_break(row)]);
         (cells.collect(), String::new())
     })
@@ -204,14 +205,15 @@ pub fn reference(reference: &Reference, seeds: usize) -> String {
     text
 }
 
+/// Names of the parameters that were refined along, each once.
+pub fn refined(along: &[(u64, Along)]) -> Vec<&'static str> {
+    let mut seen = BTreeSet::new();
+    along.iter().map(|(_, along)| along.parameter).filter(|name| seen.insert(*name)).collect()
+}
+
 /// What refinement along each parameter adds, mean over seeds.
 fn along(all: &[(u64, Along)]) -> Vec<String> {
-    let mut parameters: Vec<&str> = Vec::new();
-    for (_, along) in all {
-        if !parameters.contains(&along.parameter) {
-            parameters.push(along.parameter);
-        }
-    }
+    let parameters = refined(all);
     let line = |parameter: &&str| {
         let here = || all.iter().map(|(_, along)| along).filter(|along| along.parameter == *parameter);
         let stat = |value: &dyn Fn(&Along) -> f64| Statistics::of(&here().map(value).collect::<Vec<_>>());

@@ -3,7 +3,7 @@
 use super::axis::{self, Axis, Merged};
 use super::conflicts;
 use super::quantity::{self, Quantity};
-use super::raw::{RawDesign, RawQuality, RawSeeds, RawStudy};
+use super::raw::{RawDesign, RawSeeds, RawStudy};
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::base::wording::counted;
@@ -132,7 +132,7 @@ impl Definition {
         let base = base_scene(base, folder);
         let (axes, merged) = axis::axes(&raw.axis, &source)?;
         conflicts::check(&axes, &raw, changes, &source)?;
-        let quality = changes.quality.unwrap_or_else(|| quality(raw.quality.as_ref()));
+        let quality = changes.quality.or(raw.quality).unwrap_or_default();
         let own = scene::load(&base, &[])?;
         let seeds = match changes.seeds.is_empty() {
             true => seeds(raw.seeds.as_ref(), own.spec.seed, &source)?,
@@ -241,17 +241,8 @@ impl Definition {
 
     /// A case as a runner takes it; `work` is what it costs, in any unit that all share.
     pub fn case<'a>(&'a self, (point, seed): (usize, u64), work: f64, store: &'a CaseStore) -> TensileCase<'a> {
-        TensileCase {
-            name: self.case_name(point, seed),
-            scene: self.scenes[point].as_ref().map_err(String::as_str),
-            seed,
-            store,
-            work,
-            leads: false,
-            writes: false,
-            // What is studied is the answer, not the time: any number of threads gives the same.
-            threads: None,
-        }
+        let scene = self.scenes[point].as_ref().map_err(String::as_str);
+        TensileCase { work, ..TensileCase::new(self.case_name(point, seed), scene, seed, store) }
     }
 
     /// The level of every axis at a point.
@@ -311,14 +302,6 @@ fn builtin(name: &str) -> Result<&'static str> {
 /// A scene file is given from the study's folder, a built-in scene by its name.
 fn base_scene(base: &str, folder: &Path) -> String {
     if base.ends_with(".toml") { folder.join(base).to_string_lossy().into_owned() } else { base.to_owned() }
-}
-
-fn quality(raw: Option<&RawQuality>) -> Quality {
-    match raw {
-        Some(RawQuality::Draft) => Quality::Draft,
-        Some(RawQuality::Fine) => Quality::Fine,
-        Some(RawQuality::Standard) | None => Quality::Standard,
-    }
 }
 
 fn seeds(raw: Option<&RawSeeds>, own: u64, source: &SceneSource) -> Result<Vec<u64>> {

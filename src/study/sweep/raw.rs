@@ -1,6 +1,7 @@
 //! A study as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference of
 //! all its keys.
 
+use crate::scene::quality::Quality;
 use serde::Deserialize;
 
 /// A whole study file.
@@ -15,7 +16,7 @@ pub(super) struct RawStudy {
     #[serde(default)]
     pub set: Vec<String>,
     /// `draft`, `standard` (default) or `fine`; `--quality` wins over it.
-    pub quality: Option<RawQuality>,
+    pub quality: Option<Quality>,
     /// Seeds of the scatter: how many, counted from 1, or a list. Default: the scene's own.
     pub seeds: Option<RawSeeds>,
     /// `[[axis]]`: what is varied. Several make a grid.
@@ -32,18 +33,6 @@ pub(super) struct RawStudy {
     /// "strand-theory", which is calibrated on its experiment.
     #[serde(default)]
     pub compare: Vec<String>,
-}
-
-/// `quality`.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum RawQuality {
-    /// A faster and coarser run than the scene asks for.
-    Draft,
-    /// The scene as it stands.
-    Standard,
-    /// Slower and finer.
-    Fine,
 }
 
 /// `seeds`.

@@ -8,6 +8,7 @@ use crate::base::error::{Error, Result};
 use crate::reference::plasticity::tension_at;
 use crate::run::{RunOptions, StopReason, run_watched};
 use crate::scene;
+use serde::Deserialize;
 use std::path::Path;
 
 pub const WRITTEN: VerificationCase = VerificationCase {
@@ -27,7 +28,7 @@ fn curve_as_written(context: &Context) -> Result<Vec<Comparison>> {
     let (law, young) = (hardening(&scene.spec), scene.spec.material.young);
     let folder = tempfile::tempdir().map_err(|e| Error::io("cannot make a folder in", std::env::temp_dir(), e))?;
     let out = folder.path().join("run");
-    let summary = run_watched(&scene, &options(&out), Vec::new(), context.stop())?;
+    let summary = run_watched(&scene, &RunOptions::tables(&out), Vec::new(), context.stop())?;
     if summary.stopped == StopReason::Interrupted {
         return Err(Error::Interrupted);
     }
@@ -49,37 +50,17 @@ fn curve_as_written(context: &Context) -> Result<Vec<Comparison>> {
     Ok(vec![Comparison::worst(at.into()), modulus.within(1e-2)])
 }
 
-fn options(out: &Path) -> RunOptions {
-    RunOptions {
-        out: out.into(),
-        overwrite: false,
-        wait: false,
-        threads: None,
-        frames: false,
-        animation: None,
-        recording: false,
-        live: None,
-    }
+/// A row of the curve.
+#[derive(Deserialize)]
+struct Row {
+    strain_percent: f64,
+    stress_mpa: f64,
 }
 
 /// Strain (-) and nominal stress (Pa) of each row.
 fn read(path: &Path) -> Result<Vec<[f64; 2]>> {
     let wrong = |e: csv::Error| Error::io("cannot read", path, std::io::Error::other(e));
     let mut table = csv::Reader::from_path(path).map_err(wrong)?;
-    let header = table.headers().map_err(wrong)?.clone();
-    let column = |name: &str| {
-        let found = header.iter().position(|h| h == name);
-        found.ok_or_else(|| Error::io("cannot read", path, std::io::Error::other(format!("there is no column {name}"))))
-    };
-    let (strain, stress) = (column("strain_percent")?, column("stress_mpa")?);
-    let number = |row: &csv::StringRecord, k: usize| {
-        row[k].parse::<f64>().map_err(|e| Error::io("cannot read", path, std::io::Error::other(e)))
-    };
-    table
-        .records()
-        .map(|row| {
-            let row = row.map_err(wrong)?;
-            Ok([0.01 * number(&row, strain)?, 1e6 * number(&row, stress)?])
-        })
-        .collect()
+    let row = |row: csv::Result<Row>| row.map(|row| [0.01 * row.strain_percent, 1e6 * row.stress_mpa]).map_err(wrong);
+    table.deserialize().map(row).collect()
 }
