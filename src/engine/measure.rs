@@ -218,7 +218,7 @@ impl Engine {
             for slot in (0..n).filter(|s| self.assembly.is_bond(*s)) {
                 let p = bonds.plastic_strain(slot);
                 plastic_strain[slot] = p as f32;
-                bond_stress[slot] = (bonds.stress(slot) * 1e-6) as f32;
+                bond_stress[slot] = bonds.stress(slot) as f32;
                 utilisation[slot] = if state.whole[slot] { bonds.utilisation(slot, state) as f32 } else { 1.0 };
                 bond_state[slot] = match (state.whole[slot], p > 0.0) {
                     (false, _) => BondState::Broken,
@@ -229,8 +229,8 @@ impl Engine {
         }
         Snapshot {
             sample: self.sample(),
-            position: state.x.iter().map(millimetres).collect(),
-            radius: state.radius.iter().map(|r| (r * 1e3) as f32).collect(),
+            position: state.x.iter().map(|x| x.as_vec3().to_array()).collect(),
+            radius: state.radius.iter().map(|r| *r as f32).collect(),
             speed: state.v.iter().map(|v| v.length() as f32).collect(),
             bond_state,
             bond_stress,
@@ -240,13 +240,13 @@ impl Engine {
         }
     }
 
-    /// [`Snapshot::contact_pressure`] (MPa).
+    /// [`Snapshot::contact_pressure`] (Pa).
     fn contact_pressure(&self) -> Vec<f32> {
         let mut force = vec![0.0; self.state.len()];
         if let Some(contacts) = &self.contacts {
             contacts.stage.add_normal_forces(&mut force);
         }
-        force.iter().enumerate().map(|(i, f)| (f / shown_area(&self.assembly, i) * 1e-6) as f32).collect()
+        force.iter().enumerate().map(|(i, f)| (f / shown_area(&self.assembly, i)) as f32).collect()
     }
 
     /// What does not change during the run.
@@ -261,16 +261,16 @@ impl Engine {
             wires: a
                 .wires
                 .iter()
-                .map(|w| WireInfo { layer: w.layer, first: w.first, len: w.len, diameter: (w.diameter * 1e3) as f32 })
+                .map(|w| WireInfo { layer: w.layer, first: w.first, len: w.len, diameter: w.diameter })
                 .collect(),
             wire_particles: a.wire_particles,
             particles: a.len(),
-            radius: a.radius.iter().map(|r| (r * 1e3) as f32).collect(),
-            rest_position: a.position.iter().map(millimetres).collect(),
-            gauge: (gauge[1] > gauge[0]).then(|| gauge.map(|z| (z * 1e3) as f32)),
+            radius: a.radius.iter().map(|r| *r as f32).collect(),
+            rest_position: a.position.iter().map(|x| x.as_vec3().to_array()).collect(),
+            gauge: (gauge[1] > gauge[0]).then_some(gauge),
             stress_range,
             plastic_strain_range,
-            speed_range: [0.0, self.greatest_speed() as f32],
+            speed_range: [0.0, self.greatest_speed()],
             contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
             strain_end: self.strain_end(),
             negligible_energy: self.negligible_energy(),
@@ -311,20 +311,19 @@ impl Engine {
         end.is_finite().then_some(end)
     }
 
-    /// Fixed ranges of true axial stress (MPa) and plastic strain (-) that the run will not leave.
-    fn ranges(&self) -> ([f32; 2], [f32; 2]) {
+    /// Fixed ranges of true axial stress (Pa) and plastic strain (-) that the run will not leave.
+    fn ranges(&self) -> ([f64; 2], [f64; 2]) {
         let strain = self.strain_end().unwrap_or(0.0).min(self.rupture_strain());
         match &self.spec.bond.law {
             BondLawSpec::ElastoPlastic(h) => {
                 let p = if strain > 0.0 { strain.ln_1p() } else { 0.01 };
-                let top = round_up(h.stress(p) * 1e-6);
-                ([0.0, top as f32], [0.0, round_up(p) as f32])
+                ([0.0, round_up(h.stress(p))], [0.0, round_up(p)])
             }
             BondLawSpec::Elastic => {
                 let impact = self.spec.material.young * self.greatest_speed()
                     / (self.spec.material.young / self.spec.material.density).sqrt();
                 let pulled = self.spec.material.young * strain.abs();
-                let top = round_up(pulled.max(impact).max(1e6) * 1e-6) as f32;
+                let top = round_up(pulled.max(impact).max(1e6));
                 ([-top, top], [0.0, 1.0])
             }
         }
@@ -340,17 +339,17 @@ impl Engine {
         }
     }
 
-    /// Upper end of a range of contact pressure (MPa); `stress` is that of the range of axial stress (MPa).
+    /// Upper end of a range of contact pressure (Pa); `stress` is that of the range of axial stress (Pa).
     ///
     /// A wire under tension N presses inwards with N κ per length, κ = sin²β/R its curvature; a layer carries what
     /// all layers from itself outwards press, and feels it from both sides. As the strand stretches by λ its lay
     /// radii shrink as λ^(−1/2) and its pitch grows as λ, so κ ≈ R (2π/h)² falls as λ^(−5/2), and each particle
     /// answers for a length that grows as λ: the pressure goes with the nominal stress over λ^(3/2). A jaw adds its
     /// own pressure.
-    fn contact_pressure_range(&self, stress: f32) -> f32 {
+    fn contact_pressure_range(&self, stress: f64) -> f64 {
         let a = &self.assembly;
         let end = self.strain_end().unwrap_or(0.0).min(self.rupture_strain()).max(0.0);
-        let pressing = |strain: f64| self.nominal_stress(strain) * 1e-6 / (1.0 + strain).powf(1.5);
+        let pressing = |strain: f64| self.nominal_stress(strain) / (1.0 + strain).powf(1.5);
         let tension = (0..=50).map(|k| pressing(end * f64::from(k) / 50.0)).fold(0.0, f64::max);
         let (mut press, mut deepest) = (0.0, 0.0f64);
         for (k, layer) in a.layers.iter().enumerate().rev() {
@@ -362,11 +361,11 @@ impl Engine {
             deepest = deepest.max(2.0 * press / (count as f64 * wire.diameter));
         }
         let jaw = match self.spec.grip.as_ref().map(|g| g.kind) {
-            Some(GripKind::Jaw { pressure }) => 2e-6 * pressure,
+            Some(GripKind::Jaw { pressure }) => 2.0 * pressure,
             _ => 0.0,
         };
         let top = deepest.max(jaw);
-        round_up(if top > 0.0 { top } else { 0.1 * f64::from(stress.abs()) }) as f32
+        round_up(if top > 0.0 { top } else { 0.1 * stress.abs() })
     }
 
     fn greatest_speed(&self) -> f64 {
@@ -390,10 +389,6 @@ fn shown_area(a: &Assembly, i: usize) -> f64 {
     // The last particle of a wire has its bond before it.
     let spacing = if a.is_bond(i) || i == 0 { a.rest_length[i] } else { a.rest_length[i - 1] };
     d * spacing
-}
-
-fn millimetres(p: glam::DVec3) -> [f32; 3] {
-    (p * 1e3).as_vec3().to_array()
 }
 
 /// The next round number (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 × a power of ten) at or above `value`.

@@ -2,9 +2,9 @@
 
 use super::Observer;
 use super::planned::PlannedEnd;
-use super::units::{mpa, percent};
 use crate::base::error::Result;
 use crate::base::finding::Notice;
+use crate::base::units::{mpa, percent};
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::scene::spec::StopSpec;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -7,10 +7,10 @@ use super::peaks::{Monitor, Peaks};
 use super::stiffness::{Rows, Stiffness};
 use super::tables::{cause, layer_name};
 use super::timings::Timings;
-use super::units::{mm, mpa, percent};
 use super::wording::OneDraw;
 use crate::base::error::Result;
 use crate::base::finding::{Finding, FindingKind, Instant, Notice, StopReason};
+use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{Energy, RunInfo, Rupture, Sample};
 use crate::scene::spec::{DriveSpec, Spec};
 use serde::{Deserialize, Serialize};
@@ -406,27 +406,18 @@ mod tests {
     use super::super::peaks::Peak;
     use super::*;
     use crate::base::finding::{Failure, Quantity};
-    use crate::engine::view::{RuptureCause, WireInfo};
+    use crate::engine::view::WireInfo;
 
     fn info() -> Arc<RunInfo> {
-        let wire = |layer| WireInfo { layer, first: 0, len: 2, diameter: 0.4 };
+        let wire = |layer| WireInfo { layer, len: 2, ..WireInfo::default() };
         Arc::new(RunInfo {
-            name: "two layers".into(),
-            about: String::new(),
             layers: vec!["core".into(), "outer".into()],
             wires: vec![wire(0), wire(1), wire(1)],
-            wire_particles: 6,
-            particles: 6,
-            radius: vec![0.2; 6],
-            rest_position: vec![[0.0; 3]; 6],
-            gauge: Some([10.0, 110.0]),
-            stress_range: [0.0, 400.0],
-            plastic_strain_range: [0.0, 0.3],
-            speed_range: [0.0, 10.0],
-            contact_pressure_range: [0.0, 1.0],
+            gauge: Some([10e-3, 110e-3]),
             strain_end: Some(0.3),
             negligible_energy: 1e-12,
             wave_passage: 3e-5,
+            ..RunInfo::default()
         })
     }
 
@@ -434,18 +425,15 @@ mod tests {
         Rupture {
             order,
             step: 10,
-            time: 0.0,
             strain: 0.25,
             wire,
             layer,
-            bond: 0,
-            bond_in_wire: 0,
             position: [0.0, 0.0, 0.0657],
             rest_z: 0.05,
-            cause: RuptureCause::PlasticStrain,
             stress: 294e6,
             body_stress: 300e6,
             first_of_wire: true,
+            ..Rupture::default()
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::base::error::Result;
 use crate::base::finding::StepLimit;
+use crate::base::units::ms;
 use crate::engine::Engine;
 use crate::engine::bytes::StageBytes;
 use crate::scene::spec::{DriveSpec, Spec};
@@ -82,7 +83,7 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
 /// Simulated time to the expected end (s): `stop.time`, or the expected strain at the pull's speed.
 fn duration(spec: &Spec, engine: &Engine) -> Option<f64> {
     let info = engine.info();
-    let gauge = info.gauge.map(|[lower, upper]| f64::from(upper - lower) * 1e-3);
+    let gauge = info.gauge.map(|[lower, upper]| upper - lower);
     let strain = info.strain_end.or(spec.stop.strain);
     let pull = match (gauge, strain, &spec.grip) {
         (Some(gauge), Some(strain), Some(grip)) => match grip.drive {
@@ -113,7 +114,7 @@ impl fmt::Display for Estimate {
                 writeln!(
                     f,
                     "steps: about {steps:.0}, {:.3} ms each over the first {}",
-                    self.step_wall * 1e3,
+                    ms(self.step_wall),
                     self.measured
                 )?;
                 writeln!(f, "wall time: about {}, more as contacts form; output not included", span(wall))?;
@@ -121,7 +122,7 @@ impl fmt::Display for Estimate {
             None => writeln!(f, "steps: unknown, because the scene ends at no strain, time or number of steps")?,
         }
         let shares = self.stage_wall.iter().filter(|(_, wall)| *wall > 0.0);
-        let times: Vec<String> = shares.map(|(name, wall)| format!("{name} {:.4} ms", wall * 1e3)).collect();
+        let times: Vec<String> = shares.map(|(name, wall)| format!("{name} {:.4} ms", ms(*wall))).collect();
         writeln!(f, "by stage: {}", times.join(", "))?;
         let each = |bytes: usize| bytes / self.particles;
         let kept = self.bytes.stages().into_iter().filter(|(_, bytes)| each(bytes.kept) > 0);

@@ -1,11 +1,11 @@
 //! What a study keeps of a run: its cost, its answer and its histories over strain.
 
 use crate::base::error::Result;
+use crate::base::units::{mm, mpa};
 use crate::engine::measure::MEAN_LAG;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
 use crate::observe::summary::{Break, RunSummary};
-use crate::observe::units::mpa;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -147,7 +147,7 @@ impl Observer for Watcher {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
         let mut layer_wires = vec![0; info.layers.len()];
         info.wires.iter().for_each(|wire| layer_wires[wire.layer] += 1);
-        let gauge_mm = info.gauge.map(|ends| ends.map(f64::from));
+        let gauge_mm = info.gauge.map(|ends| ends.map(mm));
         let lag = MEAN_LAG * info.wave_passage;
         *self = Self { layers: info.layers.clone(), layer_wires, gauge_mm, lag, ..Self::default() };
         Ok(())

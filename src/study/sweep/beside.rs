@@ -9,7 +9,7 @@ use super::definition::{Beside, Definition};
 use super::gather::Gathered;
 use super::quantity::Quantity;
 use crate::base::error::Result;
-use crate::observe::units::{mm, percent};
+use crate::base::units::{mm, percent};
 use crate::reference::paper::{ExponentialFit, Simulation, paper};
 use crate::reference::strand::{self, Layer};
 use crate::scene;
