@@ -29,8 +29,10 @@ pub use stop::StopRule;
 
 use crate::base::error::{Error, Result};
 use crate::base::finding::Kept;
+use crate::base::units::ms;
 use crate::engine::Engine;
 use crate::observe::Observer;
+use crate::observe::animation::Animation;
 use crate::observe::files::write_whole;
 use crate::observe::origin::Origin;
 use crate::observe::summary::{Closing, Cost, Summariser};
@@ -178,7 +180,7 @@ impl Clock {
     }
 
     fn cost(&self, outcome: &Outcome, frames: Option<Timings>) -> Cost {
-        let stepping_ms = outcome.stepping.as_secs_f64() * 1e3;
+        let stepping_ms = ms(outcome.stepping.as_secs_f64());
         Cost {
             steps: outcome.steps,
             simulated_s: outcome.time,

@@ -8,7 +8,8 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 use std::time::Duration;
-use strandsnap::render::animation::{AnimationOptions, Still, write};
+use strandsnap::observe::animation::Animation;
+use strandsnap::render::animation::{Still, write};
 
 const SIZE: [u32; 2] = [96, 54];
 const GROUND: Rgb<u8> = Rgb([22, 26, 34]);
@@ -84,7 +85,7 @@ fn an_animation_shows_every_picture_for_its_time() {
         let folder = tempfile::tempdir().unwrap();
         let stills = stills(folder.path(), 6);
         let file = folder.path().join(name);
-        let bytes = write(&AnimationOptions::new(file.clone(), None).unwrap(), &stills).unwrap();
+        let bytes = write(&Animation { file: file.clone(), width: None }, &stills).unwrap();
         assert_eq!(bytes, std::fs::metadata(&file).unwrap().len());
         let frames = decoded(&file);
         assert_eq!(frames.len(), 6, "{name}");
@@ -104,7 +105,7 @@ fn an_animation_shows_every_picture_for_its_time() {
 fn ground_and_marks_keep_their_colours_in_a_gif() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.gif");
-    write(&AnimationOptions::new(file.clone(), None).unwrap(), &stills(folder.path(), 4)).unwrap();
+    write(&Animation { file: file.clone(), width: None }, &stills(folder.path(), 4)).unwrap();
     for (number, (frame, _)) in (0..).zip(decoded(&file)) {
         assert_eq!(frame.get_pixel(2, 50), &GROUND, "frame {number}");
         assert_eq!(frame.get_pixel(12 + 7 * number, 32), &MARK, "frame {number}");
@@ -117,7 +118,7 @@ fn pictures_that_do_not_change_still_take_their_time() {
         let folder = tempfile::tempdir().unwrap();
         let one = stills(folder.path(), 1).remove(0);
         let file = folder.path().join(name);
-        write(&AnimationOptions::new(file.clone(), None).unwrap(), &[one.clone(), one.clone(), one]).unwrap();
+        write(&Animation { file: file.clone(), width: None }, &[one.clone(), one.clone(), one]).unwrap();
         let frames = decoded(&file);
         assert_eq!(frames.len(), 3, "{name}");
         assert!(frames.iter().all(|(f, _)| difference(f, &picture(0)) <= 12), "{name}");
@@ -129,7 +130,7 @@ fn an_animation_can_be_smaller_than_its_pictures() {
     for (name, width, right) in [("a.gif", 48, [48, 27]), ("a.png", 32, [32, 18]), ("b.png", 4000, SIZE)] {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(name);
-        let options = AnimationOptions::new(file.clone(), Some(width)).unwrap();
+        let options = Animation { file: file.clone(), width: Some(width) };
         write(&options, &stills(folder.path(), 3)).unwrap();
         for (frame, _) in decoded(&file) {
             assert_eq!(<[u32; 2]>::from(frame.dimensions()), right, "{name}");
@@ -144,7 +145,7 @@ fn a_lost_picture_is_named_and_leaves_no_animation() {
     std::fs::remove_file(&stills[1].picture).unwrap();
     for name in ["a.gif", "a.png"] {
         let file = folder.path().join(name);
-        let error = write(&AnimationOptions::new(file.clone(), None).unwrap(), &stills).unwrap_err();
+        let error = write(&Animation { file: file.clone(), width: None }, &stills).unwrap_err();
         assert!(error.to_string().contains("frame_0001.png"), "{error}");
         assert!(!file.exists(), "{name}");
     }

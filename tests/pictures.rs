@@ -13,8 +13,8 @@ use image::{RgbImage, imageops};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use strandsnap::engine::view::{BondState, RunInfo, Rupture, Snapshot};
-use strandsnap::render::{FrameOptions, Renderer, View};
-use strandsnap::scene::spec::ColourBy;
+use strandsnap::render::Renderer;
+use strandsnap::scene::spec::{ColourBy, OutputSpec, View};
 
 /// Least similarity of any tile to its reference, 1 for equal ones (-). The last two tests show
 /// what it lets through and what not.
@@ -44,8 +44,8 @@ fn similarity(a: &RgbImage, b: &RgbImage) -> f64 {
 }
 
 /// Every wire in a colour of its own, so that none can stand in for another.
-fn options(view: View) -> FrameOptions {
-    FrameOptions { views: vec![view], size: DRAWN, colour: ColourBy::Wire, ..Default::default() }
+fn options(view: View) -> OutputSpec {
+    OutputSpec { views: vec![view], frame_size: DRAWN, colour: ColourBy::Wire, ..Default::default() }
 }
 
 fn reduced(picture: &RgbImage) -> RgbImage {
@@ -73,7 +73,7 @@ fn perturbed(view: View) -> RgbImage {
     if view == View::Scene {
         let (info, mut snapshot) = two_spheres();
         snapshot.position[1] = snapshot.position[0];
-        snapshot.radius[1] = 0.1;
+        snapshot.radius[1] = 0.1e-3;
         return draw(&info, view, &snapshot, &[], &[]);
     }
     let info = ka4_like();
@@ -84,7 +84,7 @@ fn perturbed(view: View) -> RgbImage {
     }
     let wire = &info.wires[28];
     for i in wire.first..wire.first + wire.len {
-        snapshot.position[i][1] += 1e3;
+        snapshot.position[i][1] += 1.0;
         snapshot.bond_state[i] = BondState::Absent;
     }
     draw(&info, view, &snapshot, &points, &ruptures)

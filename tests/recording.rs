@@ -63,10 +63,11 @@ fn last_fields_are_those_of_the_last_snapshot() {
         let of_bonds =
             |all: &[f32]| -> Vec<f32> { (0..wire.len).map(|k| all[wire.first + k.min(wire.len - 2)]).collect() };
         let fields = &read.last_fields[&path];
-        assert_eq!(fields[STRESS], of_bonds(&last.bond_stress), "{path}");
+        let mpa = |all: &[f32]| -> Vec<f32> { all.iter().map(|s| (f64::from(*s) * 1e-6) as f32).collect() };
+        assert_eq!(fields[STRESS], mpa(&of_bonds(&last.bond_stress)), "{path}");
         assert_eq!(fields[PLASTIC_STRAIN], of_bonds(&last.plastic_strain), "{path}");
         assert_eq!(fields[UTILISATION], of_bonds(&last.utilisation), "{path}");
-        assert_eq!(fields[CONTACT_PRESSURE], last.contact_pressure[wire.first..wire.first + wire.len], "{path}");
+        assert_eq!(fields[CONTACT_PRESSURE], mpa(&last.contact_pressure[wire.particles()]), "{path}");
     }
 }
 
@@ -127,7 +128,9 @@ fn last_positions_are_those_of_the_last_snapshot() {
     let last = *run.snapshots().last().unwrap();
     for (number, wire) in run.info.wires.iter().enumerate() {
         let path = format!("/strand/{}/wire_{:02}", run.info.layers[wire.layer], number + 1);
-        assert_eq!(read.last_positions[&path], last.position[wire.first..wire.first + wire.len], "{path}");
+        let mm: Vec<_> =
+            last.position[wire.particles()].iter().map(|p| p.map(|x| (f64::from(x) * 1e3) as f32)).collect();
+        assert_eq!(read.last_positions[&path], mm, "{path}");
     }
 }
 

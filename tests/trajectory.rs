@@ -89,3 +89,16 @@ fn another_file_is_refused() {
     }
     assert!(matches!(Trajectory::open(&folder.path().join("none.bin")), Err(Error::Io { .. })));
 }
+
+#[test]
+fn a_trajectory_in_the_units_of_an_earlier_version_is_refused() {
+    let (run, folder) = (Run::new(2), tempfile::tempdir().unwrap());
+    let file = written(&run, folder.path());
+    let mut bytes = std::fs::read(&file).unwrap();
+    // Up to version 4 lengths were in mm and stresses in MPa.
+    bytes[12..16].copy_from_slice(&4u32.to_le_bytes());
+    std::fs::write(&file, &bytes).unwrap();
+    let error = Trajectory::open(&file).err().unwrap();
+    assert!(matches!(error, Error::Input { .. }), "{error}");
+    assert!(error.to_string().contains("version 4; this program reads version 5"), "{error}");
+}

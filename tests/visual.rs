@@ -5,14 +5,15 @@
 mod common;
 
 use common::{bond_at, curve, ka4_like, snapped, stretched, two_spheres};
-use image::RgbImage;
+use image::{RgbImage, RgbaImage};
 use std::io::Write;
 use std::sync::Arc;
 use strandsnap::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use strandsnap::observe::Observer;
 use strandsnap::render::colour::DARKEST;
-use strandsnap::render::{CameraOptions, FrameOptions, FrameWriter, Renderer, Theme, View};
-use strandsnap::scene::spec::ColourBy;
+use strandsnap::render::stage::{Eye, Open, Shown, Stage};
+use strandsnap::render::{FrameWriter, Renderer};
+use strandsnap::scene::spec::{CameraSpec, ColourBy, OutputSpec, Theme, View};
 
 /// Whether `test` can run here; else says that it did not.
 fn adapter(test: &str) -> bool {
@@ -24,7 +25,7 @@ fn adapter(test: &str) -> bool {
     there
 }
 
-fn draw(info: &RunInfo, options: &FrameOptions, snapshot: &Snapshot, ruptures: &[Rupture]) -> RgbImage {
+fn draw(info: &RunInfo, options: &OutputSpec, snapshot: &Snapshot, ruptures: &[Rupture]) -> RgbImage {
     let mut renderer = Renderer::new(info, options).expect("the adapter opens");
     let points = curve(snapshot.sample.strain as f32);
     renderer.draw(snapshot, &points, ruptures).expect("the frame is drawn")
@@ -38,7 +39,7 @@ fn keep(name: &str, picture: &RgbImage) {
     }
 }
 
-fn panel(info: &RunInfo, options: &FrameOptions, view: View) -> [u32; 4] {
+fn panel(info: &RunInfo, options: &OutputSpec, view: View) -> [u32; 4] {
     let renderer = Renderer::new(info, options).expect("the adapter opens");
     let found = renderer.panels().into_iter().find(|(v, _)| *v == view);
     found.expect("the view is in the frame").1
@@ -56,7 +57,7 @@ fn signal_pixels(picture: &RgbImage, [x, y, w, h]: [u32; 4]) -> usize {
 
 #[test]
 fn every_shader_is_valid() {
-    let module = naga::front::wgsl::parse_str(strandsnap::render::solid::SHADER).expect("the shader parses");
+    let module = naga::front::wgsl::parse_str(strandsnap::render::SHADER).expect("the shader parses");
     let mut validator = naga::valid::Validator::new(
         naga::valid::ValidationFlags::all(),
         naga::valid::Capabilities::MULTISAMPLED_SHADING,
@@ -74,7 +75,7 @@ fn a_frame_has_the_size_asked_for() {
     let info = ka4_like();
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
     for size in [[1280, 720], [641, 363], [3840, 2160]] {
-        let options = FrameOptions { size, ..Default::default() };
+        let options = OutputSpec { frame_size: size, ..Default::default() };
         let picture = draw(&info, &options, &snapshot, &ruptures);
         keep(&format!("size-{}", size[0]), &picture);
         assert_eq!(picture.dimensions(), (size[0], size[1]));
@@ -83,7 +84,7 @@ fn a_frame_has_the_size_asked_for() {
 
 #[test]
 fn a_size_that_cannot_be_drawn_is_refused() {
-    let options = FrameOptions { size: [40, 20], ..Default::default() };
+    let options = OutputSpec { frame_size: [40, 20], ..Default::default() };
     let message = Renderer::new(&ka4_like(), &options).err().expect("40 × 20 is too small").to_string();
     assert!(message.contains("40 × 20"), "{message}");
 }
@@ -94,7 +95,7 @@ fn two_draws_of_one_snapshot_are_identical() {
         return;
     }
     let info = ka4_like();
-    let options = FrameOptions { views: View::ALL[..7].to_vec(), theme: Theme::Light, ..Default::default() };
+    let options = OutputSpec { views: View::ALL[..7].to_vec(), theme: Theme::Light, ..Default::default() };
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
     let mut renderer = Renderer::new(&info, &options).expect("the adapter opens");
     let points = curve(0.27);
@@ -108,13 +109,13 @@ fn two_draws_of_one_snapshot_are_identical() {
 }
 
 /// A view of the break of outer wire 25 (number 24 from 0) from the side where it broke.
-fn facing_the_break(info: &RunInfo) -> (FrameOptions, usize) {
-    let bond = bond_at(info, 24, 64.0);
+fn facing_the_break(info: &RunInfo) -> (OutputSpec, usize) {
+    let bond = bond_at(info, 24, 64e-3);
     let [x, y, z] = info.rest_position[bond];
-    // The eye at elevation 0 looks along +x from −x; at elevation e it sits at angle 180° − e.
-    let elevation_deg = 180.0 - y.atan2(x).to_degrees();
-    let camera = CameraOptions { elevation_deg, focus_z_mm: Some(z), zoom: 2.0, azimuth_deg: 0.0 };
-    (FrameOptions { views: vec![View::Midsection], colour: ColourBy::Layer, camera, ..Default::default() }, bond)
+    // The eye at elevation 0 looks along +x from −x; at elevation e it sits at angle π − e.
+    let elevation = std::f64::consts::PI - f64::from(y.atan2(x));
+    let camera = CameraSpec { elevation, focus_z: Some(z.into()), zoom: 2.0, azimuth: 0.0 };
+    (OutputSpec { views: vec![View::Midsection], colour: ColourBy::Layer, camera, ..Default::default() }, bond)
 }
 
 #[test]
@@ -151,7 +152,7 @@ fn the_colour_bar_ends_in_the_colours_of_the_range() {
     }
     let info = ka4_like();
     for (by, map) in [(ColourBy::Stress, colorous::VIRIDIS), (ColourBy::Velocity, colorous::CIVIDIS)] {
-        let options = FrameOptions { colour: by, views: vec![View::Unrolled], ..Default::default() };
+        let options = OutputSpec { colour: by, views: vec![View::Unrolled], ..Default::default() };
         let picture = draw(&info, &options, &stretched(&info, 0.1), &[]);
         for (x, fraction) in [(989, DARKEST), (1258, 1.0)] {
             let c = map.eval_continuous(fraction);
@@ -164,7 +165,7 @@ fn the_colour_bar_ends_in_the_colours_of_the_range() {
 #[test]
 fn the_unrolled_map_marks_every_broken_bond_in_its_row() {
     let info = ka4_like();
-    let options = FrameOptions { views: vec![View::Unrolled], ..Default::default() };
+    let options = OutputSpec { views: vec![View::Unrolled], ..Default::default() };
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
     let whole = draw(&info, &options, &stretched(&info, 0.27), &[]);
     let broken = draw(&info, &options, &snapshot, &ruptures);
@@ -179,7 +180,7 @@ fn the_unrolled_map_marks_every_broken_bond_in_its_row() {
 #[test]
 fn the_part_in_a_grip_is_grey() {
     let info = ka4_like();
-    let options = FrameOptions { views: vec![View::Unrolled], ..Default::default() };
+    let options = OutputSpec { views: vec![View::Unrolled], ..Default::default() };
     let picture = draw(&info, &options, &stretched(&info, 0.2), &[]);
     let [x, y, w, h] = panel(&info, &options, View::Unrolled);
     let colourful = |px: u32| {
@@ -200,7 +201,7 @@ fn layers_apart_show_all_three_layers() {
         return;
     }
     let info = ka4_like();
-    let options = FrameOptions { views: vec![View::Exploded], colour: ColourBy::Layer, ..Default::default() };
+    let options = OutputSpec { views: vec![View::Exploded], colour: ColourBy::Layer, ..Default::default() };
     let picture = draw(&info, &options, &stretched(&info, 0.1), &[]);
     keep("exploded-layer", &picture);
     let [x, y, w, h] = panel(&info, &options, View::Exploded);
@@ -218,7 +219,7 @@ fn layers_apart_show_all_three_layers() {
 }
 
 /// Pixels of a panel in the colours of the inner, the middle and the outer layer.
-fn layer_pixels(info: &RunInfo, picture: &RgbImage, options: &FrameOptions, view: View) -> [usize; 3] {
+fn layer_pixels(info: &RunInfo, picture: &RgbImage, options: &OutputSpec, view: View) -> [usize; 3] {
     let [x, y, w, h] = panel(info, options, view);
     let mut counts = [0; 3];
     for p in (y + 30..y + h).flat_map(|py| (x..x + w).map(move |px| picture.get_pixel(px, py).0)) {
@@ -237,7 +238,7 @@ fn the_cutaway_shows_inner_wires_and_quiet_cut_faces() {
     }
     let info = ka4_like();
     let seen = |view| {
-        let options = FrameOptions { views: vec![view], colour: ColourBy::Layer, ..Default::default() };
+        let options = OutputSpec { views: vec![view], colour: ColourBy::Layer, ..Default::default() };
         let picture = draw(&info, &options, &stretched(&info, 0.1), &[]);
         keep(&format!("layers-{}", view.word()), &picture);
         let area = panel(&info, &options, view);
@@ -266,10 +267,11 @@ fn the_gap_of_a_lone_broken_wire_shows_the_ground() {
         return;
     }
     let info = common::single_wire();
-    let bond = bond_at(&info, 0, 60.0);
+    let bond = bond_at(&info, 0, 60e-3);
     for theme in Theme::ALL {
-        let camera = CameraOptions { focus_z_mm: Some(info.rest_position[bond][2] + 0.19), ..Default::default() };
-        let options = FrameOptions { views: vec![View::Midsection], camera, theme, ..Default::default() };
+        let camera =
+            CameraSpec { focus_z: Some(f64::from(info.rest_position[bond][2]) + 0.19e-3), ..Default::default() };
+        let options = OutputSpec { views: vec![View::Midsection], camera, theme, ..Default::default() };
         let whole = stretched(&info, 0.2);
         let mut broken = whole.clone();
         broken.bond_state[bond] = strandsnap::engine::view::BondState::Broken;
@@ -297,7 +299,7 @@ fn a_small_step_changes_the_picture_little() {
     // cuts that change their place, labels that swap theirs.
     let info = ka4_like();
     let views = vec![View::Midsection, View::Cutaway, View::Exploded];
-    let options = FrameOptions { views, colour: ColourBy::Layer, ..Default::default() };
+    let options = OutputSpec { views, colour: ColourBy::Layer, ..Default::default() };
     let [a, b] = [0.2, 0.2 + 1e-5].map(|strain| draw(&info, &options, &stretched(&info, strain), &[]));
     let differences: Vec<u8> = a.iter().zip(b.iter()).map(|(a, b)| a.abs_diff(*b)).collect();
     let mean = differences.iter().map(|d| f64::from(*d)).sum::<f64>() / differences.len() as f64;
@@ -312,11 +314,11 @@ fn free_bodies_get_one_view_that_frames_everything() {
         return;
     }
     let (info, mut snapshot) = two_spheres();
-    let options = FrameOptions::default();
+    let options = OutputSpec::default();
     let picture = draw(&info, &options, &snapshot, &[]);
     keep("spheres", &picture);
     // One of them far away: the view widens, so that its border still shows ground.
-    snapshot.position[1] = [0.1, 0.2, 40.0];
+    snapshot.position[1] = [0.1e-3, 0.2e-3, 40e-3];
     let wide = draw(&info, &options, &snapshot, &[]);
     keep("spheres-far", &wide);
     let [x, y, w, h] = panel(&info, &options, View::Scene);
@@ -339,7 +341,7 @@ fn the_writer_leaves_a_numbered_sequence_of_whole_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let frames = folder.path().join("frames");
     let info = Arc::new(ka4_like());
-    let mut writer = FrameWriter::new(&frames, FrameOptions::default()).expect("the adapter opens");
+    let mut writer = FrameWriter::new(&frames, &OutputSpec::default()).expect("the adapter opens");
     writer.start(&info).expect("started");
     for k in 0..6 {
         let strain = 0.045 * k as f32;
@@ -373,7 +375,7 @@ fn a_folder_that_vanishes_is_reported_with_its_path() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let frames = folder.path().join("frames");
     let info = Arc::new(ka4_like());
-    let options = FrameOptions { size: [320, 180], ..Default::default() };
+    let options = OutputSpec { frame_size: [320, 180], ..Default::default() };
     let mut writer = FrameWriter::new(&frames, options).expect("the adapter opens");
     writer.start(&info).expect("started");
     std::fs::remove_dir(&frames).expect("removed");
@@ -403,7 +405,7 @@ fn every_colouring_gives_its_own_picture() {
     ];
     let mut seen: Vec<RgbImage> = Vec::new();
     for colour in colourings {
-        let options = FrameOptions { colour, size: [640, 360], ..Default::default() };
+        let options = OutputSpec { colour, frame_size: [640, 360], ..Default::default() };
         let picture = draw(&info, &options, &snapshot, &ruptures);
         keep(&format!("all-{colour:?}"), &picture);
         assert!(seen.iter().all(|other| *other != picture), "{colour:?}");
@@ -417,10 +419,61 @@ fn a_single_wire_and_a_bent_one_are_drawn() {
         return;
     }
     let single = common::single_wire();
-    let straight = draw(&single, &FrameOptions::default(), &stretched(&single, 0.05), &[]);
+    let straight = draw(&single, &OutputSpec::default(), &stretched(&single, 0.05), &[]);
     keep("single", &straight);
     let (bent, snapshot) = common::bent_wire();
-    let curved = draw(&bent, &FrameOptions::default(), &snapshot, &[]);
+    let curved = draw(&bent, &OutputSpec::default(), &snapshot, &[]);
     keep("bent", &curved);
     assert!(straight != curved);
+}
+
+#[test]
+fn the_stage_draws_a_state_through_any_camera_and_knows_what_lies_under_a_pixel() {
+    if !adapter("the_stage_draws_a_state_through_any_camera_and_knows_what_lies_under_a_pixel") {
+        return;
+    }
+    let info = Arc::new(ka4_like());
+    let mut stage = Stage::new(info.clone()).expect("the adapter opens");
+    let snapshot = stretched(&info, 0.1);
+    let size = [640, 360];
+    let ground = Theme::Dark.style().panel;
+    let covered = |picture: &RgbaImage| picture.pixels().filter(|p| p.0[..3] != ground).count();
+    let eye = Eye { width: 6e-3, ..stage.fitting() };
+    assert_eq!(covered(&stage.draw(&eye, size).expect("drawn")), 0, "nothing is shown yet");
+
+    let by_layer = Shown { colour: ColourBy::Layer, ..Shown::default() };
+    stage.show(&snapshot, &by_layer);
+    let whole = stage.draw(&eye, size).expect("drawn");
+    assert_eq!(whole.dimensions(), (640, 360));
+    assert!(whole == stage.draw(&eye, size).expect("drawn"), "the same camera gave different pictures");
+    let larger = stage.draw(&eye, [1280, 720]).expect("drawn");
+    let ratio = covered(&larger) as f64 / covered(&whole) as f64;
+    assert!((ratio - 4.0).abs() < 0.1, "twice the size shows the same: {ratio}");
+    // What is picked is what is seen: an outer wire on the axis, the ground far above it.
+    let middle = [320.0, 180.0];
+    let outer = stage.pick(&eye, size, middle).expect("the strand is in the middle");
+    let wire = &info.wires[outer.wire.expect("a strand has no free spheres")];
+    assert_eq!(wire.layer, 2);
+    assert!(wire.particles().contains(&outer.particle));
+    let centre = snapshot.position[outer.particle];
+    assert!((f64::from(centre[2]) - eye.centre[2]).abs() < 0.4e-3, "{centre:?}");
+    assert_eq!(stage.pick(&eye, size, [320.0, 5.0]), None);
+    // From the back it is another wire.
+    let behind = Eye { elevation: std::f64::consts::PI, ..eye };
+    assert_ne!(stage.pick(&behind, size, middle).map(|p| p.wire), Some(outer.wire));
+    assert!(stage.draw(&behind, size).expect("drawn") != whole);
+
+    stage.show(&snapshot, &Shown { hidden: vec![2], ..by_layer.clone() });
+    let bare = stage.draw(&eye, size).expect("drawn");
+    keep("stage-bare", &image::DynamicImage::ImageRgba8(bare.clone()).into_rgb8());
+    assert!(covered(&bare) < covered(&whole));
+    let inner = stage.pick(&eye, size, middle).and_then(|p| p.wire).expect("the next layer is in the middle");
+    assert_eq!(info.wires[inner].layer, 1);
+
+    let open = Open { rest_z: eye.centre[2], towards: [0.0, 0.0], first_broken: None };
+    stage.show(&snapshot, &Shown { open: Some(open), ..by_layer });
+    let opened = stage.draw(&eye, size).expect("drawn");
+    keep("stage-open", &image::DynamicImage::ImageRgba8(opened).into_rgb8());
+    let seen = stage.pick(&eye, size, middle).and_then(|p| p.wire).expect("an inner layer is in the middle");
+    assert_eq!(info.wires[seen].layer, 0, "the opening shows the innermost layer");
 }

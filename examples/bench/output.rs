@@ -51,8 +51,9 @@ fn cost(scene: &strandsnap::scene::Scene) -> Result<Cost> {
     use strandsnap::engine::Engine;
     use strandsnap::observe::Observer;
     use strandsnap::observe::recording::{Recording, RecordingOptions};
-    use strandsnap::render::{FrameOptions, Renderer, check, png};
+    use strandsnap::render::{Renderer, check, png};
     use strandsnap::run::assemble;
+    use strandsnap::scene::spec::OutputSpec;
 
     const SHOWN: usize = 12;
     let mut engine = Engine::new(&scene.spec, &scene.plan, assemble(scene)?)?;
@@ -62,7 +63,7 @@ fn cost(scene: &strandsnap::scene::Scene) -> Result<Cost> {
     let options = RecordingOptions { live: None, scene: scene.spec.clone() };
     let mut recording = Recording::new(&file, options)?;
     let mut renderer = match check() {
-        Ok(()) => Some(Renderer::new(&info, &FrameOptions::default())?),
+        Ok(()) => Some(Renderer::new(&info, &OutputSpec::default())?),
         Err(error) => {
             println!("frames were not measured: {error}");
             None

@@ -1,10 +1,41 @@
-//! Units in strings at the border, SI inside: `"110 GPa"` ↔ 1.1e11.
+//! Units at the border, SI inside: `"110 GPa"` ↔ 1.1e11 for what is read, [`mm`], [`mpa`] and their like for what is
+//! shown.
 //!
 //! The conversion factors are those of the `uom` crate; this file only picks the quantity, accepts common ASCII
 //! spellings (`kg/m^3`, `10 deg`, `5 us`, `1 N m`), and words the errors.
 
 use std::str::FromStr;
 use uom::si::f64 as quantity;
+
+/// Pa → MPa.
+pub fn mpa(pascal: f64) -> f64 {
+    pascal * 1e-6
+}
+
+/// Pa → GPa.
+pub fn gpa(pascal: f64) -> f64 {
+    pascal * 1e-9
+}
+
+/// m → mm.
+pub fn mm(metre: f64) -> f64 {
+    metre * 1e3
+}
+
+/// s → ms.
+pub fn ms(second: f64) -> f64 {
+    second * 1e3
+}
+
+/// N m → N mm.
+pub fn newton_mm(newton_metre: f64) -> f64 {
+    newton_metre * 1e3
+}
+
+/// Fraction → %.
+pub fn percent(fraction: f64) -> f64 {
+    fraction * 100.0
+}
 
 /// What kind of quantity a value is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! The options of an animation, for `run` and `render` alike.
 
-use crate::run::outputs::Animation;
+use crate::observe::animation::Animation;
 use std::path::{Path, PathBuf};
 
 /// Whether and where to make an animation.

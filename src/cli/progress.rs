@@ -2,11 +2,11 @@
 
 use crate::base::error::Result;
 use crate::base::finding::{FindingKind, Notice};
+use crate::base::units::{mpa, percent};
 use crate::base::wording::counted;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
 use crate::observe::planned::PlannedEnd;
-use crate::observe::units::{mpa, percent};
 use crate::scene::spec::StopSpec;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeSet;

@@ -57,10 +57,10 @@ pub fn render(args: Args) -> Result<Ended> {
     if let Some(animation) = &animation {
         animation.check(args.overwrite)?;
     }
-    let writer = || FrameWriter::new(&out, outputs::frame_options(&output));
+    let writer = || FrameWriter::new(&out, &output);
     crate::render::check()?;
     let pictures = folder.open_for_pictures()?;
-    let mut writer = writer()?.with_animation(animation.as_ref().map(outputs::animation_options).transpose()?);
+    let mut writer = writer()?.with_animation(animation.clone());
     if let Some(why) = run.cut_off() {
         eprintln!("note: {why}; what there is will be drawn");
     }

@@ -1,7 +1,6 @@
 //! What those who draw and record must know before the first step: names, sizes, and ranges that a run will not leave.
 
 use super::estimates::{negligible_energy, nominal_stress, rupture_strain, wave_passage};
-use super::units::millimetres;
 use super::view::{RunInfo, WireInfo};
 use crate::reference::helix;
 use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, Spec};
@@ -31,16 +30,16 @@ impl Body<'_> {
             wires: a
                 .wires
                 .iter()
-                .map(|w| WireInfo { layer: w.layer, first: w.first, len: w.len, diameter: (w.diameter * 1e3) as f32 })
+                .map(|w| WireInfo { layer: w.layer, first: w.first, len: w.len, diameter: w.diameter })
                 .collect(),
             wire_particles: a.wire_particles,
             particles: a.len(),
-            radius: a.radius.iter().map(|r| (r * 1e3) as f32).collect(),
-            rest_position: a.position.iter().map(millimetres).collect(),
-            gauge: (gauge[1] > gauge[0]).then(|| gauge.map(|z| (z * 1e3) as f32)),
+            radius: a.radius.iter().map(|r| *r as f32).collect(),
+            rest_position: a.position.iter().map(|x| x.as_vec3().to_array()).collect(),
+            gauge: (gauge[1] > gauge[0]).then_some(gauge),
             stress_range,
             plastic_strain_range,
-            speed_range: [0.0, self.greatest_speed() as f32],
+            speed_range: [0.0, self.greatest_speed()],
             contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
             strain_end: self.strain_end(),
             negligible_energy: negligible_energy(self.spec, a),
@@ -70,36 +69,35 @@ impl Body<'_> {
         end.is_finite().then_some(end)
     }
 
-    /// Fixed ranges of true axial stress (MPa) and plastic strain (-) that the run will not leave.
-    fn ranges(&self) -> ([f32; 2], [f32; 2]) {
+    /// Fixed ranges of true axial stress (Pa) and plastic strain (-) that the run will not leave.
+    fn ranges(&self) -> ([f64; 2], [f64; 2]) {
         let strain = self.strain_end().unwrap_or(0.0).min(rupture_strain(self.spec));
         match &self.spec.bond.law {
             BondLawSpec::ElastoPlastic(h) => {
                 let p = if strain > 0.0 { strain.ln_1p() } else { 0.01 };
-                let top = round_up(h.stress(p) * 1e-6);
-                ([0.0, top as f32], [0.0, round_up(p) as f32])
+                ([0.0, round_up(h.stress(p))], [0.0, round_up(p)])
             }
             BondLawSpec::Elastic => {
                 let impact = self.spec.material.young * self.greatest_speed()
                     / (self.spec.material.young / self.spec.material.density).sqrt();
                 let pulled = self.spec.material.young * strain.abs();
-                let top = round_up(pulled.max(impact).max(1e6) * 1e-6) as f32;
+                let top = round_up(pulled.max(impact).max(1e6));
                 ([-top, top], [0.0, 1.0])
             }
         }
     }
 
-    /// Upper end of a range of contact pressure (MPa); `stress` is that of the range of axial stress (MPa).
+    /// Upper end of a range of contact pressure (Pa); `stress` is that of the range of axial stress (Pa).
     ///
     /// A wire under tension N presses inwards with N κ per length, κ = sin²β/R its curvature; a layer carries what
     /// all layers from itself outwards press, and feels it from both sides. As the strand stretches by λ its lay
     /// radii shrink as λ^(−1/2) and its pitch grows as λ, so κ ≈ R (2π/h)² falls as λ^(−5/2), and each particle
     /// answers for a length that grows as λ: the pressure goes with the nominal stress over λ^(3/2). A jaw adds its
     /// own pressure.
-    fn contact_pressure_range(&self, stress: f32) -> f32 {
+    fn contact_pressure_range(&self, stress: f64) -> f64 {
         let a = self.assembly;
         let end = self.strain_end().unwrap_or(0.0).min(rupture_strain(self.spec)).max(0.0);
-        let pressing = |strain: f64| nominal_stress(self.spec, strain) * 1e-6 / (1.0 + strain).powf(1.5);
+        let pressing = |strain: f64| nominal_stress(self.spec, strain) / (1.0 + strain).powf(1.5);
         let tension = (0..=50).map(|k| pressing(end * f64::from(k) / 50.0)).fold(0.0, f64::max);
         let (mut press, mut deepest) = (0.0, 0.0f64);
         for (k, layer) in a.layers.iter().enumerate().rev() {
@@ -111,11 +109,11 @@ impl Body<'_> {
             deepest = deepest.max(2.0 * press / (count as f64 * wire.diameter));
         }
         let jaw = match self.spec.grip.as_ref().map(|g| g.kind) {
-            Some(GripKind::Jaw { pressure }) => 2e-6 * pressure,
+            Some(GripKind::Jaw { pressure }) => 2.0 * pressure,
             _ => 0.0,
         };
         let top = deepest.max(jaw);
-        round_up(if top > 0.0 { top } else { 0.1 * f64::from(stress.abs()) }) as f32
+        round_up(if top > 0.0 { top } else { 0.1 * stress.abs() })
     }
 
     fn greatest_speed(&self) -> f64 {

@@ -24,7 +24,6 @@ pub mod step_view;
 mod straight;
 pub mod time_step;
 mod timings;
-mod units;
 pub mod view;
 
 use crate::base::error::{Error, Result};

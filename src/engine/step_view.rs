@@ -8,7 +8,6 @@ use super::measure::Measures;
 use super::neighbours::Neighbours;
 use super::state::State;
 use super::time_step::Bound;
-use super::units::millimetres;
 use super::view::{BondState, Energy, Sample, Snapshot};
 use crate::base::finding::{Body, Instant, Member};
 use crate::scene::plan::Plan;
@@ -147,7 +146,7 @@ impl StepView<'_> {
             for slot in (0..n).filter(|s| self.assembly.is_bond(*s)) {
                 let p = bonds.plastic_strain(slot);
                 plastic_strain[slot] = p as f32;
-                bond_stress[slot] = (bonds.stress(slot) * 1e-6) as f32;
+                bond_stress[slot] = bonds.stress(slot) as f32;
                 utilisation[slot] = if state.whole[slot] { bonds.utilisation(slot, state) as f32 } else { 1.0 };
                 bond_state[slot] = match (state.whole[slot], p > 0.0) {
                     (false, _) => BondState::Broken,
@@ -158,8 +157,8 @@ impl StepView<'_> {
         }
         Snapshot {
             sample: self.sample(),
-            position: state.x.iter().map(millimetres).collect(),
-            radius: state.radius.iter().map(|r| (r * 1e3) as f32).collect(),
+            position: state.x.iter().map(|x| x.as_vec3().to_array()).collect(),
+            radius: state.radius.iter().map(|r| *r as f32).collect(),
             speed: state.v.iter().map(|v| v.length() as f32).collect(),
             bond_state,
             bond_stress,
@@ -169,13 +168,13 @@ impl StepView<'_> {
         }
     }
 
-    /// [`Snapshot::contact_pressure`] (MPa).
+    /// [`Snapshot::contact_pressure`] (Pa).
     fn contact_pressure(&self) -> Vec<f32> {
         let mut force = vec![0.0; self.state.len()];
         if let Some(contacts) = self.contacts {
             contacts.add_normal_forces(&mut force);
         }
-        force.iter().enumerate().map(|(i, f)| (f / shown_area(self.assembly, i) * 1e-6) as f32).collect()
+        force.iter().enumerate().map(|(i, f)| (f / shown_area(self.assembly, i)) as f32).collect()
     }
 }
 

@@ -1,5 +1,5 @@
-//! What leaves the engine: samples (one row of the curve), snapshots (every particle, f32, in the units of pictures)
-//! and ruptures.
+//! What leaves the engine, in SI: samples (one row of the curve), snapshots (every particle, in single precision) and
+//! ruptures. Whoever shows or writes it converts it, with [`crate::base::units`].
 
 use crate::base::finding::{Body, StepLimit};
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ pub enum BondState {
 }
 
 /// What does not change during a run, for those who draw or record it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RunInfo {
     /// Scene name.
     pub name: String,
@@ -33,21 +33,21 @@ pub struct RunInfo {
     pub wire_particles: usize,
     /// Number of particles, free spheres included.
     pub particles: usize,
-    /// Initial particle radius (mm).
+    /// Initial particle radius (m).
     pub radius: Vec<f32>,
-    /// Initial centre of each particle (mm).
+    /// Initial centre of each particle (m).
     pub rest_position: Vec<[f32; 3]>,
-    /// z of the lower and upper grip face before loading (mm); the gauge lies between. `None` for free bodies.
-    pub gauge: Option<[f32; 2]>,
+    /// z of the lower and upper grip face before loading (m); the gauge lies between. `None` for free bodies.
+    pub gauge: Option<[f64; 2]>,
     /// A range of true axial stress that the run will not exceed, for a colour scale that is fixed
-    /// over the whole sequence (MPa).
-    pub stress_range: [f32; 2],
+    /// over the whole sequence (Pa).
+    pub stress_range: [f64; 2],
     /// The same for equivalent plastic strain (-).
-    pub plastic_strain_range: [f32; 2],
+    pub plastic_strain_range: [f64; 2],
     /// The same for particle speed (m/s).
-    pub speed_range: [f32; 2],
-    /// A range of contact pressure for a colour scale (MPa); single particles may exceed it.
-    pub contact_pressure_range: [f32; 2],
+    pub speed_range: [f64; 2],
+    /// A range of contact pressure for a colour scale (Pa); single particles may exceed it.
+    pub contact_pressure_range: [f64; 2],
     /// The strain at which the run is expected to end (-), for axes and progress; `None` when unknown.
     pub strain_end: Option<f64>,
     /// An energy that is nothing (J): no ratio means anything of energies below it.
@@ -62,19 +62,49 @@ impl RunInfo {
     pub fn is_pulled(&self) -> bool {
         self.gauge.is_some() && self.strain_end.is_some()
     }
+
+    /// Whether particle `i` lies in a grip before loading.
+    pub fn in_grip(&self, i: usize) -> bool {
+        let z = self.rest_position[i][2];
+        self.gauge.is_some_and(|[low, high]| z < low as f32 || z > high as f32)
+    }
+
+    /// Wires of a layer with their indices.
+    pub fn wires_of(&self, layer: usize) -> impl Iterator<Item = (usize, &WireInfo)> {
+        self.wires.iter().enumerate().filter(move |(_, wire)| wire.layer == layer)
+    }
+}
+
+impl BondState {
+    /// Whether there is a bond and it is not broken.
+    pub fn holds(self) -> bool {
+        matches!(self, Self::Whole | Self::Yielding)
+    }
 }
 
 /// A wire for those who draw or record it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct WireInfo {
     /// Index into [`RunInfo::layers`].
     pub layer: usize,
     /// First particle.
     pub first: usize,
-    /// Number of particles; bond slots `first .. first + len - 1`.
+    /// Number of particles.
     pub len: usize,
-    /// Diameter (mm).
-    pub diameter: f32,
+    /// Diameter (m).
+    pub diameter: f64,
+}
+
+impl WireInfo {
+    /// Its particles.
+    pub fn particles(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.len
+    }
+
+    /// Its bond slots.
+    pub fn bonds(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.len.saturating_sub(1)
+    }
 }
 
 /// One row of the stress–strain curve.
@@ -157,27 +187,27 @@ impl Energy {
     }
 }
 
-/// Every particle at one instant, in the units of pictures (mm, MPa), f32.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Every particle at one instant, in single precision.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Snapshot {
     /// The curve's row at this instant.
     pub sample: Sample,
-    /// Centres (mm), one per particle.
+    /// Centres (m), one per particle.
     pub position: Vec<[f32; 3]>,
-    /// Current radii (mm) (wires thin as they stretch), one per particle.
+    /// Current radii (m) (wires thin as they stretch), one per particle.
     pub radius: Vec<f32>,
     /// Speed (m/s), one per particle.
     pub speed: Vec<f32>,
     /// State, one per bond slot (slot i joins particles i and i + 1; as many slots as particles).
     pub bond_state: Vec<BondState>,
-    /// True axial stress (MPa), one per bond slot; 0 where no bond is.
+    /// True axial stress (Pa), one per bond slot; 0 where no bond is.
     pub bond_stress: Vec<f32>,
     /// Equivalent plastic strain (-), one per bond slot.
     pub plastic_strain: Vec<f32>,
     /// Share of its rupture limit that a bond has reached (-), one per bond slot: it breaks at 1; 0 without a rupture
     /// criterion or without a bond.
     pub utilisation: Vec<f32>,
-    /// Normal forces of a particle's contacts over the area that it shows to its neighbours (MPa), one per particle:
+    /// Normal forces of a particle's contacts over the area that it shows to its neighbours (Pa), one per particle:
     /// ΣF_n / (d a) in a wire of diameter d with spacing a, ΣF_n / (π r²) for a free sphere.
     pub contact_pressure: Vec<f32>,
 }
@@ -230,10 +260,11 @@ pub struct StepAt {
 }
 
 /// Why a bond broke.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RuptureCause {
     /// Equivalent plastic strain reached its limit.
+    #[default]
     PlasticStrain,
     /// Tensile stress of the outermost fibre.
     Tension,
@@ -244,7 +275,7 @@ pub enum RuptureCause {
 }
 
 /// A bond that broke.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Rupture {
     /// Order of the rupture in the run, from 1.
     pub order: usize,

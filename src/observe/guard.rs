@@ -1,8 +1,8 @@
 //! Watches whether the run can be trusted: every value finite, energy accounted for, loading quasi-static.
 
-use super::units::percent;
 use crate::base::error::{Error, Result};
 use crate::base::finding::{Failure, Finding, Instant, Notice, Quantity, Stopped};
+use crate::base::units::percent;
 use crate::base::worst::Worst;
 use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::scene::spec::TimeSpec;

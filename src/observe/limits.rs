@@ -1,7 +1,7 @@
 //! How near a run came to the limits of its model, as written to `summary.json`.
 
-use super::units::{mm, mpa, percent};
 use crate::base::finding::{Body, StepLimit};
+use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{self, StepAt};
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,7 @@
 //! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
 
+pub mod animation;
+pub mod colouring;
 pub mod files;
 pub mod guard;
 pub mod limits;
@@ -11,11 +13,12 @@ pub mod planned;
 pub mod recording;
 pub mod report;
 pub mod stiffness;
+pub mod stress_strain;
 pub mod summary;
 pub mod tables;
 pub mod timings;
 pub mod trajectory;
-pub mod units;
+pub mod unrolled;
 pub mod wording;
 
 use crate::base::error::Result;

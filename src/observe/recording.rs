@@ -41,7 +41,7 @@ mod states;
 mod stream;
 mod tubes;
 
-pub use particles::{CONTACT_PRESSURE, PLASTIC_STRAIN, SPEED, STATE, STRESS, UTILISATION};
+pub use names::{APPLICATION, CONTACT_PRESSURE, PLASTIC_STRAIN, SPEED, STATE, STRESS, UTILISATION};
 pub use sink::{DEFAULT_VIEWER, RERUN_VERSION};
 pub use stream::{STEP, STRAIN, TIME};
 
@@ -62,8 +62,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stream::Stream;
 
-/// Name under which the viewer files all recordings of this program.
-pub const APPLICATION: &str = "strandsnap";
 /// Snapshots per chunk: enough that the head of a chunk does not count, few enough to hold in memory.
 const BATCH: usize = 16;
 

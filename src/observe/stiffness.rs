@@ -1,7 +1,7 @@
 //! The initial stiffness of a pull: a straight line through the elastic rows of its curve, beside what strand theory expects.
 
-use super::units::percent;
 use crate::base::finding::{Finding, StiffnessCause};
+use crate::base::units::{gpa, percent};
 use crate::engine::view::Sample;
 use crate::scene::spec::{BondLawSpec, RuptureCriterion, Shape, Spec};
 use crate::strand::theory::Theory;
@@ -105,8 +105,8 @@ pub fn measure(rows: &[Row], spec: &Spec) -> Option<Stiffness> {
     let to = if not_measured.is_none() { inside[inside.len() - 1].strain } else { window[1] };
     let from = if window[0].is_finite() { window[0] } else { rows.last().map_or(0.0, |row| row.strain) };
     Some(Stiffness {
-        expected_gpa: expected * 1e-9,
-        measured_gpa: measured.map(|m| m * 1e-9),
+        expected_gpa: gpa(expected),
+        measured_gpa: measured.map(gpa),
         deviation_percent: measured.map(|m| percent(m / expected - 1.0)),
         expected_torque_n_m: theory.wrench.torque,
         measured_torque_n_m: slope(|row| row.torque),

@@ -5,8 +5,8 @@
 use super::Observer;
 use super::files::LiveTable;
 use super::peaks::{Peak, Peaks};
-use super::units::{mm, mpa, newton_mm, percent};
 use crate::base::error::Result;
+use crate::base::units::{mm, mpa, newton_mm, percent};
 use crate::engine::view::{Energy, RunInfo, Rupture, RuptureCause, Sample};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -240,7 +240,7 @@ fn wire_row(w: usize, record: &WireRecord, peak: Option<&Peak>, info: &RunInfo) 
     let mut row = vec![
         (w + 1).to_string(),
         layer_name(info, wire.layer).to_string(),
-        wire.diameter.to_string(),
+        (mm(wire.diameter) as f32).to_string(),
         greatest,
         strain,
         broken.to_string(),

@@ -1,5 +1,6 @@
 //! How a run is put into words for people: one place, so that log, tables and pictures agree.
 
+use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{RunInfo, Rupture};
 use crate::scene::spec::Spec;
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,14 @@ pub fn wire_number(wire: usize) -> usize {
 /// What the first break of a run is called: another strand has another.
 pub const FIRST_BREAK: &str = "first break in this strand";
 
+/// A layer as people say it: "outer layer"; one without a name by its number.
+pub fn layer_words(info: &RunInfo, layer: usize) -> String {
+    match info.layers[layer].as_str() {
+        "" => format!("layer {}", layer + 1),
+        name => format!("{name} layer"),
+    }
+}
+
 /// The line that tells of a rupture, such as
 /// `wire 24, outer layer, snapped at z = 65.7 mm, strain 23.4 %, 294 MPa`: place of the bond when it broke,
 /// strain of the body, true axial stress of the bond just before.
@@ -20,9 +29,9 @@ pub fn rupture_line(info: &RunInfo, rupture: &Rupture) -> String {
         "wire {}, {} layer, snapped at z = {:.1} mm, strain {:.1} %, {:.0} MPa",
         wire_number(rupture.wire),
         info.layers[rupture.layer],
-        rupture.position[2] * 1e3,
-        rupture.strain * 1e2,
-        rupture.stress * 1e-6,
+        mm(rupture.position[2]),
+        percent(rupture.strain),
+        mpa(rupture.stress),
     )
 }
 
@@ -56,7 +65,6 @@ impl OneDraw {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::view::RuptureCause;
 
     #[test]
     fn a_scene_with_scatter_is_one_draw_and_one_without_is_not() {
@@ -70,39 +78,14 @@ mod tests {
 
     #[test]
     fn a_rupture_reads_well() {
-        let info = RunInfo {
-            name: String::new(),
-            about: String::new(),
-            layers: vec!["inner".into(), "outer".into()],
-            wires: Vec::new(),
-            wire_particles: 0,
-            particles: 0,
-            radius: Vec::new(),
-            rest_position: Vec::new(),
-            gauge: None,
-            stress_range: [0.0, 1.0],
-            plastic_strain_range: [0.0, 1.0],
-            speed_range: [0.0, 1.0],
-            contact_pressure_range: [0.0, 1.0],
-            strain_end: None,
-            negligible_energy: 1e-12,
-            wave_passage: 3e-5,
-        };
+        let info = RunInfo { layers: vec!["inner".into(), "outer".into()], ..RunInfo::default() };
         let rupture = Rupture {
-            order: 1,
-            step: 10,
-            time: 1e-3,
             strain: 0.2341,
             wire: 23,
             layer: 1,
-            bond: 100,
-            bond_in_wire: 10,
             position: [0.0, 1e-3, 0.06572],
-            rest_z: 0.053,
-            cause: RuptureCause::PlasticStrain,
             stress: 294.3e6,
-            body_stress: 270.0e6,
-            first_of_wire: true,
+            ..Rupture::default()
         };
         assert_eq!(
             rupture_line(&info, &rupture),

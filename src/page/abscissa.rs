@@ -1,7 +1,9 @@
 //! Against what the charts of a run are drawn: strain where a body is pulled, time where it is not.
 
-use super::Source;
+use super::source::Source;
+use crate::base::units::{ms, percent};
 use crate::engine::view::{Rupture, Sample};
+use crate::observe::stress_strain::STRAIN;
 
 /// The quantity along the horizontal axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +23,7 @@ impl Abscissa {
     /// Title of the axis, with its unit.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Strain => "nominal strain (%)",
+            Self::Strain => STRAIN,
             Self::Time => "time (ms)",
         }
     }
@@ -54,8 +56,8 @@ impl Abscissa {
 
     fn either(self, strain: f64, time: f64) -> f64 {
         match self {
-            Self::Strain => strain * 1e2,
-            Self::Time => time * 1e3,
+            Self::Strain => percent(strain),
+            Self::Time => ms(time),
         }
     }
 }

@@ -2,13 +2,14 @@
 
 use super::abscissa::Abscissa;
 use super::figure::layer_colour;
-use super::{Section, Source};
+use super::section::Section;
+use super::source::Source;
 use crate::base::error::Result;
+use crate::base::units::{mm, mpa};
 use crate::base::wording::counted;
 use crate::engine::view::Rupture;
 use crate::observe::summary::RunSummary;
 use crate::observe::tables::layer_name;
-use crate::observe::units::{mm, mpa};
 use crate::observe::wording::wire_number;
 use maud::{Markup, html};
 

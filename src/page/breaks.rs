@@ -1,12 +1,13 @@
 //! The order of breaks as a table.
 
 use super::answer::chip;
-use super::text::fixed;
-use super::{Section, Source};
+use super::section::Section;
+use super::source::Source;
 use crate::base::error::Result;
+use crate::base::ticks::label;
+use crate::base::units::{mm, mpa, ms, percent};
 use crate::engine::view::Rupture;
 use crate::observe::tables::{cause, layer_name};
-use crate::observe::units::{mm, mpa, percent};
 use crate::observe::wording::wire_number;
 use maud::{Markup, html};
 
@@ -53,8 +54,8 @@ fn row(source: &Source, r: &Rupture, pulled: bool) -> Markup {
         tr {
             td.number { (r.order) } td.number { (wire_number(r.wire)) } td { (chip(r.layer, layer_name(&source.info, r.layer))) }
             td.number { (format!("{:.2}", mm(r.rest_z))) } td.number { (format!("{:.2}", mm(r.position[2]))) }
-            @if let Some(mid) = source.mid_length() { td.number { (fixed(mm(r.rest_z) - mid, 2)) } }
-            @if pulled { td.number { (format!("{:.3}", percent(r.strain))) } } @else { td.number { (format!("{:.4}", r.time * 1e3)) } }
+            @if let Some(mid) = source.mid_length() { td.number { (label(mm(r.rest_z) - mid, 2)) } }
+            @if pulled { td.number { (format!("{:.3}", percent(r.strain))) } } @else { td.number { (format!("{:.4}", ms(r.time))) } }
             td.number { (format!("{:.1}", mpa(r.stress))) }
             @if pulled { td.number { (format!("{:.1}", mpa(r.body_stress))) } }
             td { (cause(r.cause)) }

@@ -2,11 +2,14 @@
 
 use super::abscissa::Abscissa;
 use super::figure::{Figure, axis, layer_colour, layout, literal, merged, numbers};
-use super::{Section, Source, select};
+use super::section::Section;
+use super::select;
+use super::source::Source;
 use crate::base::error::Result;
+use crate::base::units::{mm, mpa, ms, newton_mm, percent};
 use crate::engine::view::{Rupture, Sample};
+use crate::observe::stress_strain::{STRAIN, STRESS, mark, place};
 use crate::observe::tables::{cause, layer_name};
-use crate::observe::units::{mm, mpa, newton_mm};
 use crate::observe::wording::wire_number;
 use maud::{Markup, html};
 use serde_json::{Value, json};
@@ -36,8 +39,8 @@ fn stress(source: &Source) -> Markup {
         },
         data: traces(source, &rows),
         layout: layout(
-            axis("nominal strain (%)"),
-            merged(axis("nominal stress (MPa)"), json!({ "rangemode": "tozero" })),
+            axis(STRAIN),
+            merged(axis(STRESS), json!({ "rangemode": "tozero" })),
             json!({ "showlegend": !source.ruptures.is_empty() }),
         ),
     };
@@ -51,15 +54,15 @@ fn stress(source: &Source) -> Markup {
 
 /// The same curve where the wires break.
 fn around_fracture(source: &Source, rows: &[&Sample], [from, to]: [f64; 2]) -> Figure {
-    let inside: Vec<&Sample> = rows.iter().copied().filter(|row| (from..=to).contains(&(row.strain * 1e2))).collect();
+    let inside: Vec<&Sample> = rows.iter().copied().filter(|row| (from..=to).contains(&percent(row.strain))).collect();
     Figure {
         id: "curve-fracture",
         height: 400,
         caption: html! { "The same around fracture. Drag to look closer, double-click to come back." },
         data: traces(source, &inside),
         layout: layout(
-            merged(axis("nominal strain (%)"), json!({ "range": [from, to] })),
-            merged(axis("nominal stress (MPa)"), json!({ "rangemode": "tozero" })),
+            merged(axis(STRAIN), json!({ "range": [from, to] })),
+            merged(axis(STRESS), json!({ "rangemode": "tozero" })),
             json!({ "showlegend": true }),
         ),
     }
@@ -68,21 +71,21 @@ fn around_fracture(source: &Source, rows: &[&Sample], [from, to]: [f64; 2]) -> F
 /// Strains between which the wires of a pulled body break, with some room (%).
 pub fn fracture_range(source: &Source) -> Option<[f64; 2]> {
     let (first, last) = (source.ruptures.first()?, source.samples.last()?);
-    let from = first.strain * 1e2;
-    let to = (last.strain * 1e2).max(from);
+    let from = percent(first.strain);
+    let to = percent(last.strain).max(from);
     let room = (0.15 * (to - from)).max(0.05);
     (source.info.is_pulled() && from > 2.0 * room).then_some([from - room, to + 0.5 * room])
 }
 
 fn traces(source: &Source, rows: &[&Sample]) -> Vec<Value> {
     let broken: Vec<usize> = rows.iter().map(|row| row.wires_broken).collect();
+    let of = |axis: usize| rows.iter().map(move |row| place(row.strain, row.stress)[axis]);
     let line = json!({
         "type": "scatter", "mode": "lines", "name": "stress", "line": { "color": "$ink", "width": 2 },
-        "x": numbers(rows.iter().map(|row| row.strain * 1e2)), "y": numbers(rows.iter().map(|row| mpa(row.stress))),
-        "customdata": broken,
+        "x": numbers(of(0)), "y": numbers(of(1)), "customdata": broken,
         "hovertemplate": "strain %{x:.3f} %<br>stress %{y:.2f} MPa<br>%{customdata} wires broken<extra></extra>",
     });
-    let marks = (0..source.info.layers.len()).filter_map(|layer| ticks(source, layer, |r| mpa(r.body_stress)));
+    let marks = (0..source.info.layers.len()).filter_map(|layer| ticks(source, layer, |r| mark(r)[1]));
     std::iter::once(line).chain(marks).collect()
 }
 
@@ -122,7 +125,7 @@ fn torque(source: &Source) -> Markup {
     let rows = select::rows(&source.samples, source.first_rupture_step(), MOST_ROWS);
     let line = json!({
         "type": "scatter", "mode": "lines", "name": "torque", "line": { "color": "$ink", "width": 2 },
-        "x": numbers(rows.iter().map(|row| row.time * 1e3)), "y": numbers(rows.iter().map(|row| newton_mm(row.torque))),
+        "x": numbers(rows.iter().map(|row| ms(row.time))), "y": numbers(rows.iter().map(|row| newton_mm(row.torque))),
         "hovertemplate": "time %{x:.4f} ms<br>torque %{y:.4f} N mm<extra></extra>",
     });
     let torque_then = |r: &Rupture| {

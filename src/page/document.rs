@@ -1,6 +1,7 @@
 //! The HTML document around the sections.
 
-use super::{Section, Source};
+use super::section::Section;
+use super::source::Source;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("../../assets/page/page.css");

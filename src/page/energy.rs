@@ -2,12 +2,14 @@
 
 use super::abscissa::Abscissa;
 use super::figure::{Figure, axis, layout, merged, numbers};
-use super::text::fixed;
-use super::{Section, Source, select};
+use super::section::Section;
+use super::select;
+use super::source::Source;
 use crate::base::error::Result;
+use crate::base::ticks::label;
+use crate::base::units::percent;
 use crate::engine::view::Energy;
 use crate::observe::guard::ENERGY_LIMIT;
-use crate::observe::units::percent;
 use maud::{Markup, html};
 use serde_json::{Value, json};
 
@@ -48,7 +50,7 @@ fn table(source: &Source) -> Markup {
         if end.work.abs() <= source.info.negligible_energy {
             String::new()
         } else {
-            fixed(percent(value / end.work), 3)
+            label(percent(value / end.work), 3)
         }
     };
     html! {
@@ -60,12 +62,12 @@ fn table(source: &Source) -> Markup {
             thead { tr { th { "term" } th.number { "energy (" (unit) ")" } th.number { "of the work (%)" } } }
             tbody {
                 @for (name, _, value) in TERMS {
-                    tr { td { (name) } td.number { (fixed(value(end) * factor, 5)) } td.number { (share(value(end))) } }
+                    tr { td { (name) } td.number { (label(value(end) * factor, 5)) } td.number { (share(value(end))) } }
                 }
-                tr.total { td { "work done" } td.number { (fixed(end.work * factor, 5)) } td.number { (share(end.work)) } }
+                tr.total { td { "work done" } td.number { (label(end.work * factor, 5)) } td.number { (share(end.work)) } }
                 tr.total {
-                    td { "unaccounted for (residual)" } td.number { (fixed(end.residual() * factor, 5)) }
-                    td.number { (source.summary.energy_residual_percent.map_or(String::new(), |r| fixed(r, 4))) }
+                    td { "unaccounted for (residual)" } td.number { (label(end.residual() * factor, 5)) }
+                    td.number { (source.summary.energy_residual_percent.map_or(String::new(), |r| label(r, 4))) }
                 }
             }
         } }

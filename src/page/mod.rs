@@ -5,7 +5,7 @@
 //! nothing: its own content policy forbids it.
 
 mod abscissa;
-pub mod accuracy;
+mod accuracy;
 mod answer;
 mod breaks;
 mod curve;
@@ -15,13 +15,15 @@ mod figure;
 mod picture;
 mod quasi_static;
 mod scene;
+mod section;
 mod select;
 mod source;
 mod states;
-mod text;
+mod study;
 mod unrolled;
 mod wires;
 
+pub use section::Section;
 pub use source::Source;
 
 use crate::base::error::{Error, Result};
@@ -29,18 +31,7 @@ use crate::base::regular::check_target;
 use crate::observe::files::write_whole;
 use crate::run::folder::{self, REPORT};
 use crate::run::identity;
-use maud::Markup;
 use std::path::{Path, PathBuf};
-
-/// A part of the page. One that has nothing to show says so in a sentence.
-pub struct Section {
-    /// Its anchor.
-    pub id: &'static str,
-    /// Its heading.
-    pub title: &'static str,
-    /// What it says.
-    pub body: Markup,
-}
 
 /// The sections, in their order on the page. A new one is a file with such a function, and a row here.
 const SECTIONS: [fn(&Source) -> Result<Section>; 9] = [
@@ -98,13 +89,13 @@ pub fn html(source: &Source) -> Result<String> {
     Ok(document::document(source, &sections).into_string())
 }
 
-fn read_study(given: Option<&Path>, scene: &str) -> Result<Option<accuracy::Study>> {
-    let Some(given) = given else { return accuracy::Study::read(&folder::accuracy(scene)) };
+fn read_study(given: Option<&Path>, scene: &str) -> Result<Option<study::Study>> {
+    let Some(given) = given else { return study::Study::read(&folder::accuracy(scene)) };
     let missing = || {
         Error::input(
             format!("--accuracy {} holds no study", given.display()),
             "give the folder of a study, such as out/accuracy/ka4; `strandsnap accuracy` makes one",
         )
     };
-    accuracy::Study::read(given)?.ok_or_else(missing).map(Some)
+    study::Study::read(given)?.ok_or_else(missing).map(Some)
 }

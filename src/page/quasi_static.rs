@@ -1,11 +1,13 @@
 //! Whether loading was quasi-static: the run's own measures against the scene's limits.
 
 use super::figure::{Figure, axis, layout, merged, numbers, upright};
-use super::{Section, Source, select};
+use super::section::Section;
+use super::select;
+use super::source::Source;
 use crate::base::error::Result;
+use crate::base::units::percent;
 use crate::engine::view::Sample;
 use crate::observe::guard::{FIRST_PASSAGES, LEAST_INTERNAL_SHARE};
-use crate::observe::units::percent;
 use maud::{Markup, html};
 use serde_json::{Value, json};
 

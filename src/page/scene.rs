@@ -1,7 +1,9 @@
 //! The scene as it was run, what it cost and with what it was made.
 
-use super::{Section, Source};
+use super::section::Section;
+use super::source::Source;
 use crate::base::error::Result;
+use crate::base::units::ms;
 use maud::{Markup, html};
 
 /// Cost, versions, and the resolved scene, folded.
@@ -39,7 +41,7 @@ fn facts(source: &Source) -> Vec<(&'static str, String)> {
         ("factor on mass", s.mass_scale.to_string()),
         ("factor on rotational inertia", s.inertia_scale.to_string()),
         ("steps", s.cost.steps.to_string()),
-        ("simulated time", format!("{:.4} ms", s.cost.simulated_s * 1e3)),
+        ("simulated time", format!("{:.4} ms", ms(s.cost.simulated_s))),
     ];
     if !source.finished {
         return facts;

@@ -96,22 +96,7 @@ mod tests {
     }
 
     fn broken_at(step: u64) -> Rupture {
-        Rupture {
-            order: 1,
-            step,
-            time: 0.0,
-            strain: 0.0,
-            wire: 0,
-            layer: 0,
-            bond: 0,
-            bond_in_wire: 0,
-            position: [0.0; 3],
-            rest_z: 0.0,
-            cause: crate::engine::view::RuptureCause::Tension,
-            stress: 0.0,
-            body_stress: 0.0,
-            first_of_wire: true,
-        }
+        Rupture { order: 1, step, first_of_wire: true, ..Rupture::default() }
     }
 
     #[test]

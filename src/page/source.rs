@@ -1,10 +1,11 @@
 //! Everything that the page is made from, read from a run's folder: also from one whose run did not end.
 
-use super::accuracy;
 use super::picture::Pictures;
 use super::select;
+use super::study::Study;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
+use crate::base::units::{mm, ms, percent};
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use crate::observe::guard::{Guard, QuasiStatic};
@@ -43,7 +44,7 @@ pub struct Source {
     pub pictures: Pictures,
     /// The study of error against run time that goes with it, if there is one; it has a folder of its own, so reading the
     /// run does not find it.
-    pub accuracy: Option<accuracy::Study>,
+    pub accuracy: Option<Study>,
     /// What is wrong with the folder, in sentences.
     pub notes: Vec<String>,
 }
@@ -54,7 +55,7 @@ pub struct State {
     pub number: usize,
     /// The row of the curve at this instant.
     pub sample: Sample,
-    /// True axial stress of each bond slot (MPa); NaN where no bond holds.
+    /// True axial stress of each bond slot (Pa); NaN where no bond holds.
     pub stress: Vec<f32>,
     /// What is special about it.
     pub label: Option<&'static str>,
@@ -151,7 +152,7 @@ impl Source {
 
     /// z of mid-length before loading: half-way between the grips (mm). `None` for free bodies.
     pub fn mid_length(&self) -> Option<f64> {
-        self.info.gauge.map(|[low, high]| 0.5 * (f64::from(low) + f64::from(high)))
+        self.info.gauge.map(|[low, high]| mm(0.5 * (low + high)))
     }
 
     /// Row of the greatest nominal stress of a pulled body.
@@ -235,17 +236,15 @@ fn second_pass(trajectory: Trajectory, chosen: &[select::Chosen], pictures: &Pic
 
 fn held(snapshot: &Snapshot) -> Vec<f32> {
     let slots = snapshot.bond_stress.iter().zip(&snapshot.bond_state);
-    slots
-        .map(|(stress, state)| if matches!(state, BondState::Whole | BondState::Yielding) { *stress } else { f32::NAN })
-        .collect()
+    slots.map(|(stress, state)| if state.holds() { *stress } else { f32::NAN }).collect()
 }
 
 fn last(pass: &Pass, info: &RunInfo) -> String {
     let sample = &pass.samples[pass.samples.len() - 1];
     if info.is_pulled() {
-        format!("step {} at {:.2} % strain", sample.step, sample.strain * 1e2)
+        format!("step {} at {:.2} % strain", sample.step, percent(sample.strain))
     } else {
-        format!("step {} at {:.4} ms", sample.step, sample.time * 1e3)
+        format!("step {} at {:.4} ms", sample.step, ms(sample.time))
     }
 }
 

@@ -3,12 +3,13 @@
 use super::abscissa::Abscissa;
 use super::figure::data;
 use super::picture::{self, Embedded};
+use super::section::Section;
+use super::source::Source;
 use super::source::State;
 use super::unrolled::Map;
-use super::{Section, Source};
 use crate::base::error::Result;
+use crate::base::units::mpa;
 use crate::base::wording::counted;
-use crate::observe::units::mpa;
 use maud::{Markup, html};
 use rayon::prelude::*;
 use serde_json::{Value, json};

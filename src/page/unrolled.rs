@@ -1,11 +1,13 @@
 //! The unrolled map: a row per wire, layers apart, axial position before loading, coloured by true axial stress.
 
-use super::Source;
 use super::curve::told;
 use super::figure::{Figure, axis, layout, literal, merged, numbers, table};
+use super::source::Source;
 use super::source::State;
+use crate::base::units::mpa;
+use crate::engine::view::WireInfo;
 use crate::observe::tables::layer_name;
-use crate::observe::units::mm;
+use crate::observe::unrolled::{Unrolled, bonds, place};
 use crate::observe::wording::wire_number;
 use maud::html;
 use serde_json::{Value, json};
@@ -33,21 +35,22 @@ struct Row {
 /// The map of a run, for any of its states.
 pub struct Map<'a> {
     source: &'a Source,
+    map: Unrolled,
     rows: Vec<Row>,
 }
 
 impl<'a> Map<'a> {
     /// The map; `None` for a body without bonds.
     pub fn new(source: &'a Source) -> Option<Self> {
-        let rows = rows(source);
-        (!rows.is_empty()).then_some(Self { source, rows })
+        let map = Unrolled::new(&source.info, 1.0, 0..source.info.layers.len());
+        let rows = rows(source, &map);
+        (!rows.is_empty()).then_some(Self { source, map, rows })
     }
 
     /// Stress of every cell in a state, row by row: the mean of the bonds that hold (MPa).
     pub fn stress(&self, state: &State) -> Vec<Value> {
         let of = |row: &Row| {
-            let wire = &self.source.info.wires[row.wire];
-            let bonds = &state.stress[wire.first..wire.first + wire.len - 1];
+            let bonds = &state.stress[self.source.info.wires[row.wire].bonds()];
             table(bonds.chunks(row.group).map(mean), 1, row.x.len())
         };
         self.rows.iter().map(of).collect()
@@ -57,15 +60,11 @@ impl<'a> Map<'a> {
     pub fn marks(&self) -> Value {
         let ruptures = &self.source.ruptures;
         json!({
-            "x": ruptures.iter().map(|r| place_of_rupture(self.source, r)).collect::<Vec<_>>(),
-            "y": ruptures.iter().map(|r| self.height_of(r.wire)).collect::<Vec<_>>(),
+            "x": ruptures.iter().map(|r| place(&self.source.info, r)).collect::<Vec<_>>(),
+            "y": ruptures.iter().map(|r| height(&self.map, r.wire)).collect::<Vec<_>>(),
             "order": ruptures.iter().map(|r| r.order).collect::<Vec<_>>(),
             "text": ruptures.iter().map(|r| told(self.source, r)).collect::<Vec<_>>(),
         })
-    }
-
-    fn height_of(&self, wire: usize) -> Option<usize> {
-        self.rows.iter().find(|row| row.wire == wire).map(|row| row.y)
     }
 
     /// The chart without stresses and marks, which come with a state.
@@ -132,7 +131,7 @@ impl<'a> Map<'a> {
             json!({
                 "shapes": self.shapes(), "annotations": self.names(), "margin": { "l": 56, "r": 24, "t": 72, "b": 48 },
                 "coloraxis": {
-                    "colorscale": "Viridis", "cmin": info.stress_range[0], "cmax": info.stress_range[1],
+                    "colorscale": "Viridis", "cmin": mpa(info.stress_range[0]), "cmax": mpa(info.stress_range[1]),
                     "colorbar": {
                         "title": { "text": "true axial stress (MPa)", "side": "top" }, "orientation": "h", "y": 1, "yanchor": "bottom",
                         "x": 1, "xanchor": "right", "len": 0.5, "thickness": 12, "outlinewidth": 0,
@@ -145,13 +144,13 @@ impl<'a> Map<'a> {
     /// Layer names above the rows of each layer.
     fn names(&self) -> Vec<Value> {
         let info = &self.source.info;
-        let top = |layer| self.rows.iter().filter(|row| info.wires[row.wire].layer == layer).map(|row| row.y).max();
-        let layers = (0..info.layers.len()).filter_map(|layer| Some((layer, top(layer)?)));
-        layers
-            .map(|(layer, y)| {
+        self.map
+            .layers
+            .iter()
+            .map(|of| {
                 json!({
-                    "text": format!("<b>{} layer</b>", literal(layer_name(info, layer))), "showarrow": false, "xref": "paper", "x": 0,
-                    "xanchor": "left", "yref": "y", "y": y, "yanchor": "bottom", "yshift": 8, "font": { "size": 12 },
+                    "text": format!("<b>{} layer</b>", literal(layer_name(info, of.layer))), "showarrow": false, "xref": "paper", "x": 0,
+                    "xanchor": "left", "yref": "y", "y": height(&self.map, of.wires[1]), "yanchor": "bottom", "yshift": 8, "font": { "size": 12 },
                 })
             })
             .collect()
@@ -159,7 +158,7 @@ impl<'a> Map<'a> {
 
     /// Grips and mid-length.
     fn shapes(&self) -> Vec<Value> {
-        let (Some([low, high]), Some(mid)) = (self.source.info.gauge, self.source.mid_length()) else {
+        let (Some([low, high]), Some(mid)) = (self.map.grips, self.source.mid_length()) else {
             return Vec::new();
         };
         let xs = self.rows.iter().flat_map(|row| row.x.iter().copied());
@@ -174,55 +173,29 @@ impl<'a> Map<'a> {
             "type": "line", "x0": mid, "x1": mid, "y0": 0, "y1": 1, "yref": "paper", "layer": "above",
             "line": { "color": "$paper", "width": 1, "dash": "dot" },
         });
-        vec![
-            held(first.min(f64::from(low)) - CELL, f64::from(low)),
-            held(f64::from(high), last.max(f64::from(high)) + CELL),
-            middle,
-        ]
+        vec![held(first.min(low) - CELL, low), held(high, last.max(high) + CELL), middle]
     }
 }
 
-fn rows(source: &Source) -> Vec<Row> {
-    let mut rows: Vec<Row> = Vec::new();
-    let wires = &source.info.wires;
-    for (wire, of) in wires.iter().enumerate().filter(|(_, wire)| wire.len > 1) {
-        let y = rows.last().map_or(0, |below| below.y + if wires[below.wire].layer == of.layer { 1 } else { 2 });
+fn rows(source: &Source, map: &Unrolled) -> Vec<Row> {
+    let wires = source.info.wires.iter().enumerate().filter(|(_, wire)| wire.len > 1);
+    let row = |(wire, of): (usize, &WireInfo)| {
         let group = (of.len - 1).div_ceil(MOST_CELLS);
-        let places = places(source, wire);
+        let places = bonds(&source.info, wire);
         let x = places.chunks(group).map(|cell| cell.iter().sum::<f64>() / cell.len() as f64).collect();
-        rows.push(Row { wire, y, group, x });
-    }
-    rows
+        Row { wire, y: height(map, wire), group, x }
+    };
+    wires.map(row).collect()
 }
 
+/// Height of a wire's row in the chart.
+fn height(map: &Unrolled, wire: usize) -> usize {
+    (map.row[wire] - 0.5) as usize
+}
+
+/// Mean of the bonds that hold (MPa).
 fn mean(bonds: &[f32]) -> f64 {
     let held = bonds.iter().filter(|stress| stress.is_finite());
     let (sum, count) = held.fold((0.0, 0), |(sum, count), stress| (sum + f64::from(*stress), count + 1));
-    if count == 0 { f64::NAN } else { sum / f64::from(count) }
-}
-
-/// Where the bonds of a wire are before loading (mm): z in a body between grips; for a free one, which may lie in any
-/// direction, the length along the wire.
-fn places(source: &Source, wire: usize) -> Vec<f64> {
-    let of = &source.info.wires[wire];
-    let particles = &source.info.rest_position[of.first..of.first + of.len];
-    if source.info.gauge.is_some() {
-        return particles.windows(2).map(|pair| 0.5 * f64::from(pair[0][2] + pair[1][2])).collect();
-    }
-    let lengths =
-        particles.windows(2).map(|pair| (0..3).map(|k| f64::from(pair[1][k] - pair[0][k]).powi(2)).sum::<f64>().sqrt());
-    lengths
-        .scan(0.0, |so_far, length| {
-            let centre = *so_far + 0.5 * length;
-            *so_far += length;
-            Some(centre)
-        })
-        .collect()
-}
-
-fn place_of_rupture(source: &Source, rupture: &crate::engine::view::Rupture) -> f64 {
-    match source.info.gauge {
-        Some(_) => mm(rupture.rest_z),
-        None => places(source, rupture.wire).get(rupture.bond_in_wire).copied().unwrap_or(0.0),
-    }
+    if count == 0 { f64::NAN } else { mpa(sum / f64::from(count)) }
 }

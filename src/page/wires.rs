@@ -3,11 +3,13 @@
 use super::abscissa::Abscissa;
 use super::curve::fracture_range;
 use super::figure::{Figure, axis, layer_colour, layout, literal, merged, numbers};
-use super::{Section, Source, select};
+use super::section::Section;
+use super::select;
+use super::source::Source;
 use crate::base::error::Result;
+use crate::base::units::{mpa, percent};
 use crate::engine::view::Sample;
 use crate::observe::tables::layer_name;
-use crate::observe::units::mpa;
 use crate::observe::wording::wire_number;
 use maud::{Markup, html};
 use serde_json::{Value, json};
@@ -55,7 +57,7 @@ fn charts(source: &Source) -> Markup {
         div.pair {
             (whole.markup())
             @if let Some([from, to]) = range {
-                @let inside: Vec<&Sample> = rows.iter().copied().filter(|r| (from..=to).contains(&(r.strain * 1e2))).collect();
+                @let inside: Vec<&Sample> = rows.iter().copied().filter(|r| (from..=to).contains(&percent(r.strain))).collect();
                 (chart(source, "wires-fracture", &inside, range, html! {
                     "The same around fracture: a wire that breaks loses its load, its neighbours take it up."
                 }).markup())

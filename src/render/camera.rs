@@ -8,31 +8,36 @@ use glam::{Mat3, Vec3};
 pub struct Camera {
     /// World axes to view axes: x right, y up, z towards the eye.
     pub rotation: Mat3,
-    /// The point in the middle of the panel (mm).
+    /// The point in the middle of the panel (m).
     pub centre: Vec3,
     /// The panel (px).
     pub panel: Rect,
-    /// Magnification (px/mm).
+    /// Magnification (px/m).
     pub scale: f32,
-    /// Half of the depth that is drawn (mm).
+    /// Half of the depth that is drawn (m).
     pub depth: f32,
 }
 
 impl Camera {
-    /// Rotation of an eye that sees the strand's axis z to the right and y up, turned by `azimuth_deg` about the
-    /// vertical and by `elevation_deg` about the horizontal (°).
-    pub fn orientation(azimuth_deg: f32, elevation_deg: f32) -> Mat3 {
+    /// Rotation of an eye that sees the strand's axis z to the right and y up, turned by `azimuth` about the
+    /// vertical and by `elevation` about the horizontal (rad).
+    pub fn orientation(azimuth: f64, elevation: f64) -> Mat3 {
         // Rows are the view axes in world coordinates: right = z, up = y, towards the eye = right × up = −x.
         let base = Mat3::from_cols(Vec3::new(0.0, 0.0, -1.0), Vec3::Y, Vec3::X);
-        Mat3::from_rotation_x(elevation_deg.to_radians()) * Mat3::from_rotation_y(azimuth_deg.to_radians()) * base
+        Mat3::from_rotation_x(elevation as f32) * Mat3::from_rotation_y(azimuth as f32) * base
     }
 
-    /// View coordinates of a point (mm), relative to the centre.
+    /// Direction from the scene to the eye, of unit length.
+    pub fn to_eye(&self) -> Vec3 {
+        self.rotation.transpose() * Vec3::Z
+    }
+
+    /// View coordinates of a point (m), relative to the centre.
     pub fn to_view(&self, p: Vec3) -> Vec3 {
         self.rotation * (p - self.centre)
     }
 
-    /// Whether a piece of wire between two spheres (centre and radius (mm)) can reach into the panel.
+    /// Whether a piece of wire between two spheres (centre and radius (m)) can reach into the panel.
     pub fn sees(&self, a: [f32; 4], b: [f32; 4]) -> bool {
         let reach = a[3].max(b[3]) + 2.0 / self.scale;
         let [a, b] = [a, b].map(|p| self.to_view(Vec3::new(p[0], p[1], p[2])));
@@ -53,7 +58,7 @@ impl Camera {
 mod tests {
     use super::*;
 
-    fn camera(azimuth: f32, elevation: f32) -> Camera {
+    fn camera(azimuth: f64, elevation: f64) -> Camera {
         Camera {
             rotation: Camera::orientation(azimuth, elevation),
             centre: Vec3::new(1.0, 2.0, 3.0),
@@ -74,7 +79,7 @@ mod tests {
 
     #[test]
     fn half_a_turn_shows_the_back_with_the_axis_still_to_the_right() {
-        let c = camera(0.0, 180.0);
+        let c = camera(0.0, std::f64::consts::PI);
         let [x, y] = c.project(c.centre + Vec3::Z + Vec3::Y);
         assert!((x - 310.0).abs() < 1e-3 && (y - 160.0).abs() < 1e-3);
         assert!(c.to_view(c.centre + Vec3::X).z > 0.99);
@@ -92,7 +97,7 @@ mod tests {
 
     #[test]
     fn orientations_are_rotations() {
-        for (a, e) in [(0.0, 0.0), (30.0, 20.0), (-70.0, 180.0)] {
+        for (a, e) in [(0.0, 0.0), (0.5, 0.3), (-1.2, 3.1)] {
             let m = Camera::orientation(a, e);
             assert!((m.determinant() - 1.0).abs() < 1e-5);
             assert!((m * m.transpose()).abs_diff_eq(Mat3::IDENTITY, 1e-5));

@@ -39,11 +39,6 @@ impl Rect {
         Self::new(self.x + left, self.y + top, self.w - left - right, self.h - top - bottom)
     }
 
-    /// Whether the two overlap.
-    pub fn meets(&self, other: &Rect) -> bool {
-        self.x < other.right() && other.x < self.right() && self.y < other.bottom() && other.y < self.bottom()
-    }
-
     /// Edges moved to whole pixels.
     pub fn snapped(&self) -> Self {
         let (x, y) = (self.x.round(), self.y.round());
@@ -250,29 +245,10 @@ impl Canvas<'_> {
 
     /// Writes a text with its baseline at `y`; returns its width (px).
     pub fn text(&mut self, x: f32, y: f32, kind: Type, text: &str) -> f32 {
-        let width = self.fonts.width(text, kind.size, kind.weight);
-        let start = x - width * share(kind.align);
-        self.glyphs(
-            text,
-            kind,
-            |gx, gy| ((start + gx).floor() as i32, (y + gy).floor() as i32),
-            start.fract(),
-            y.fract(),
-        );
-        width
-    }
-
-    /// Writes a text that runs upwards, its baseline at `x`.
-    pub fn text_upwards(&mut self, x: f32, y: f32, kind: Type, text: &str) {
-        let width = self.fonts.width(text, kind.size, kind.weight);
-        let start = y + width * share(kind.align);
-        self.glyphs(text, kind, |gx, gy| ((x + gy).floor() as i32, (start - gx).floor() as i32), 0.0, 0.0);
-    }
-
-    /// Rasterises a text; `to_pixel` maps a point relative to the start of the baseline to a pixel. The fractions
-    /// are the sub-pixel position of that start.
-    fn glyphs(&mut self, text: &str, kind: Type, to_pixel: impl Fn(f32, f32) -> (i32, i32), fx: f32, fy: f32) {
         let fonts = self.fonts;
+        let width = fonts.width(text, kind.size, kind.weight);
+        let start = x - width * share(kind.align);
+        let (fx, fy) = (start.fract(), y.fract());
         let font = fonts.get(kind.weight);
         let scale = em_scale(font, kind.size);
         fonts.layout(text, kind.size, kind.weight, |id, at| {
@@ -283,10 +259,10 @@ impl Canvas<'_> {
             let min = outline.px_bounds().min;
             outline.draw(|gx, gy, c| {
                 let (px, py) = (min.x + gx as f32 - fx + 0.5, min.y + gy as f32 - fy + 0.5);
-                let (px, py) = to_pixel(px, py);
-                self.blend(px, py, kind.colour, c);
+                self.blend((start + px).floor() as i32, (y + py).floor() as i32, kind.colour, c);
             });
         });
+        width
     }
 
     fn shade(&mut self, r: Rect, distance: impl Fn(f32, f32) -> f32, colour: Rgb, alpha: f32) {

@@ -1,7 +1,8 @@
 //! From quantities to colours: perceptually uniform maps for numbers, a categorical palette for layers and wires.
 
 use super::style::{Rgb, SIGNAL};
-use crate::engine::view::{BondState, RunInfo, Snapshot};
+use crate::engine::view::{RunInfo, Snapshot};
+use crate::observe::colouring::{range, shown};
 use crate::scene::spec::ColourBy;
 
 /// Categorical palette: Okabe & Ito (2008) without vermilion, which is too near the colour of ruptures, and with
@@ -24,22 +25,20 @@ pub const DARKEST: f64 = 0.1;
 /// A quantity, its fixed range and its colours.
 pub struct ColourScale {
     by: ColourBy,
-    range: [f32; 2],
+    /// In SI.
+    range: [f64; 2],
     map: Option<colorous::Gradient>,
 }
 
 impl ColourScale {
     /// The scale of `by` over the range that [`RunInfo`] fixes for the whole sequence.
     pub fn new(info: &RunInfo, by: ColourBy) -> Self {
-        let (range, map) = match by {
-            ColourBy::Stress => (info.stress_range, Some(colorous::VIRIDIS)),
-            ColourBy::PlasticStrain => (info.plastic_strain_range, Some(colorous::CIVIDIS)),
-            ColourBy::Utilisation => ([0.0, 1.0], Some(colorous::VIRIDIS)),
-            ColourBy::ContactPressure => (info.contact_pressure_range, Some(colorous::CIVIDIS)),
-            ColourBy::Velocity => (info.speed_range, Some(colorous::CIVIDIS)),
-            ColourBy::Layer | ColourBy::Wire => ([0.0, 1.0], None),
+        let map = match by {
+            ColourBy::Stress | ColourBy::Utilisation => colorous::VIRIDIS,
+            _ => colorous::CIVIDIS,
         };
-        Self { by, range, map }
+        let range = range(info, by);
+        Self { by, range: range.unwrap_or([0.0, 1.0]), map: range.map(|_| map) }
     }
 
     /// What the scale shows.
@@ -62,9 +61,7 @@ impl ColourScale {
 
     /// Ends of the range, in the unit of the title; `None` for categories.
     pub fn shown_range(&self) -> Option<[f64; 2]> {
-        let percent = matches!(self.by, ColourBy::PlasticStrain | ColourBy::Utilisation);
-        let factor = if percent { 100.0 } else { 1.0 };
-        self.map.map(|_| self.range.map(|v| f64::from(v) * factor))
+        self.map.map(|_| self.range.map(|value| shown(self.by, value)))
     }
 
     /// Whether values below and above the range occur, drawn in the colours of its ends: wires that spring back are
@@ -88,7 +85,7 @@ impl ColourScale {
 
     fn of_value(&self, value: f32) -> Rgb {
         let [low, high] = self.range;
-        self.at(f64::from((value - low) / (high - low).max(f32::MIN_POSITIVE)))
+        self.at((f64::from(value) - low) / (high - low).max(f64::MIN_POSITIVE))
     }
 
     /// Colour of layer or wire number `index`.
@@ -100,7 +97,7 @@ impl ColourScale {
     pub fn particles(&self, info: &RunInfo, snapshot: &Snapshot) -> Vec<Rgb> {
         let mut colours = vec![[150, 156, 166]; snapshot.position.len()];
         for (number, wire) in info.wires.iter().enumerate() {
-            for (k, colour) in colours[wire.first..wire.first + wire.len].iter_mut().enumerate() {
+            for (k, colour) in colours[wire.particles()].iter_mut().enumerate() {
                 let i = wire.first + k;
                 *colour = match self.by {
                     ColourBy::Stress => self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i)),
@@ -133,7 +130,7 @@ impl ColourScale {
 
 /// Mean over the bonds that hold particle `i` of a wire starting at `first`; 0 when none does.
 fn beside(snapshot: &Snapshot, values: &[f32], first: usize, i: usize) -> f32 {
-    let holds = |b: usize| matches!(snapshot.bond_state[b], BondState::Whole | BondState::Yielding);
+    let holds = |b: usize| snapshot.bond_state[b].holds();
     let before = (i > first && holds(i - 1)).then(|| values[i - 1]);
     let after = holds(i).then(|| values[i]);
     match (before, after) {

@@ -3,17 +3,20 @@
 //! Which particles are left out follows from their places before loading alone: wires are cut where they were
 //! marked, and the cut moves with them, so that nothing flickers from frame to frame.
 
+use super::body::{Body, UNKNOWN_STRAIN};
 use super::camera::Camera;
-use super::canvas::{Canvas, Rect};
-use super::frame::Data;
+use super::canvas::{Canvas, Rect, Weight};
+use super::data::Data;
 use super::labels::{self, Mark};
-use super::style::CameraOptions;
-use super::viewpoint::{self, Body};
+use super::panel::{Panel, Shot};
+use super::viewpoint::{around, section};
+use super::wires::Looks;
 use crate::engine::view::{RunInfo, Rupture};
+use crate::scene::spec::View;
 use glam::Vec3;
 
-/// Turn of the eye from the plain side view, so that cut faces are seen (°): about the vertical and the horizontal.
-const TURN: [f32; 2] = [-24.0, 12.0];
+/// Turn of the eye from the plain side view, so that cut faces are seen (rad): about the vertical and the horizontal.
+const TURN: [f64; 2] = [-24f64.to_radians(), 12f64.to_radians()];
 /// Half the length of the opening over the body's radius (-): of the layer next to the innermost, and what each
 /// layer further out has more.
 const HALF_LENGTH: [f32; 2] = [1.0, 1.15];
@@ -22,29 +25,48 @@ const HALF_LENGTH: [f32; 2] = [1.0, 1.15];
 const BESIDE: [f32; 2] = [0.35, 0.8];
 /// By how much the opening ends earlier in each layer further in, over the body's radius (-), where it lies beside.
 const STEP: f32 = 0.45;
-/// Half the angle of the opening about the eye's direction (°): of the outermost layer, and what each layer further
+/// Half the angle of the opening about the eye's direction (rad): of the outermost layer, and what each layer further
 /// in has less.
-const HALF_ANGLE: [f32; 2] = [80.0, 12.0];
+const HALF_ANGLE: [f32; 2] = [80f32.to_radians(), 12f32.to_radians()];
 
-/// Camera on the section that is now at `z` (mm), wide enough for the whole opening.
-pub fn camera(info: &RunInfo, body: &Body, options: &CameraOptions, panel: Rect, z: f32) -> Camera {
-    let turned = CameraOptions {
-        azimuth_deg: options.azimuth_deg + TURN[0],
-        elevation_deg: options.elevation_deg + TURN[1],
-        ..*options
-    };
-    let mut camera = viewpoint::section(body, &turned, panel, z, 0.0);
-    let longest = half_length(info.layers.len().saturating_sub(1), body) * (1.0 + stretch(info));
-    let needed = 2.0 * 1.25 * (longest * turned.azimuth_deg.to_radians().cos().abs() + body.radius);
-    camera.scale = camera.scale.min(options.zoom * panel.w / needed);
+/// The panel.
+pub struct Cutaway;
+
+impl Panel for Cutaway {
+    fn shots(&self, data: &Data, panel: Rect, _unit: f32) -> Vec<Shot> {
+        let camera = camera(data, panel);
+        let fade = 2.0 * data.body.radius;
+        vec![Shot { view: View::Cutaway, camera, caption: "cut open", remark: around(data), fade }]
+    }
+
+    fn looks(&self, data: &Data, camera: &Camera) -> Option<Looks> {
+        Some(data.looks(data.snapshot.position.clone(), opening(data, camera).removed()))
+    }
+
+    fn annotate(&self, canvas: &mut Canvas, shot: &Shot, data: &Data, _frame: &[Shot]) {
+        annotate(canvas, &shot.camera, data, &opening(data, &shot.camera));
+    }
+}
+
+/// Camera on the section in view, wide enough for the whole opening.
+fn camera(data: &Data, panel: Rect) -> Camera {
+    let (info, body, look) = (data.info, data.body, data.camera);
+    let azimuth = look.azimuth + TURN[0];
+    let mut camera = section(data, [azimuth, look.elevation + TURN[1]], panel, data.current_z(data.focus()));
+    let stretch = info.strain_end.unwrap_or(UNKNOWN_STRAIN) as f32;
+    let longest = half_length(info.layers.len().saturating_sub(1), body) * (1.0 + stretch);
+    let needed = 2.0 * 1.25 * (longest * azimuth.cos().abs() as f32 + body.radius);
+    camera.scale = camera.scale.min(look.zoom as f32 * panel.w / needed);
     camera
 }
 
-fn stretch(info: &RunInfo) -> f32 {
-    info.strain_end.unwrap_or(viewpoint::UNKNOWN_STRAIN) as f32
+/// The opening of a frame, around the section in view and towards the eye.
+fn opening<'a>(data: &Data<'a>, camera: &Camera) -> Opening<'a> {
+    let first = data.ruptures.first().map(|r| r.layer);
+    Opening::new(data.info, data.body, first, camera.to_eye(), data.focus())
 }
 
-/// Half the length of the opening in a layer (mm); 0 for the innermost, which stays whole.
+/// Half the length of the opening in a layer (m); 0 for the innermost, which stays whole.
 fn half_length(layer: usize, body: &Body) -> f32 {
     match layer {
         0 => 0.0,
@@ -52,7 +74,7 @@ fn half_length(layer: usize, body: &Body) -> f32 {
     }
 }
 
-/// Where each layer is open, from and to, about the section in view (mm before loading). Layers outside `first`, the
+/// Where each layer is open, from and to, about the section in view (m before loading). Layers outside `first`, the
 /// layer that broke first, are open around the section; from that layer inwards they are open beside it.
 fn intervals(body: &Body, first: Option<usize>) -> Vec<[f32; 2]> {
     let count = body.layer_radius.len();
@@ -69,7 +91,7 @@ fn intervals(body: &Body, first: Option<usize>) -> Vec<[f32; 2]> {
     (0..count).map(one).collect()
 }
 
-/// An opening around what was at `rest_z` before loading (mm), towards the eye of a camera.
+/// An opening of the outer layers.
 pub struct Opening<'a> {
     info: &'a RunInfo,
     body: &'a Body,
@@ -80,22 +102,21 @@ pub struct Opening<'a> {
 }
 
 impl<'a> Opening<'a> {
-    /// The opening that `camera` looks into.
-    pub fn new(data: &Data<'a>, camera: &Camera, rest_z: f32) -> Self {
-        let towards = camera.rotation.transpose() * Vec3::Z;
-        let eye = Vec3::new(towards.x, towards.y, 0.0).try_normalize().unwrap_or(Vec3::NEG_X);
-        let intervals = intervals(data.body, data.ruptures.first().map(|r| r.layer));
-        Self { info: data.info, body: data.body, rest_z, intervals, eye }
+    /// An opening around what was at `rest_z` before loading (m), towards an eye in direction `to_eye`. The layer that
+    /// broke `first`, and those in it, are opened beside the section, so that the break is seen.
+    pub fn new(info: &'a RunInfo, body: &'a Body, first: Option<usize>, to_eye: Vec3, rest_z: f32) -> Self {
+        let eye = to_eye.with_z(0.0).try_normalize().unwrap_or(Vec3::NEG_X);
+        Self { info, body, rest_z, intervals: intervals(body, first), eye }
     }
 
-    /// Whether `layer` is cut off at a place before loading (mm).
+    /// Whether `layer` is cut off at a place before loading (m).
     fn opens(&self, layer: usize, rest: [f32; 3]) -> bool {
         let across = Vec3::new(rest[0], rest[1], 0.0) - self.body.axis;
         let inwards = self.info.layers.len().saturating_sub(1 + layer) as f32;
         let angle = HALF_ANGLE[0] - HALF_ANGLE[1] * inwards;
         let [from, to] = self.intervals[layer];
         let near = (from..to).contains(&(rest[2] - self.rest_z));
-        near && across.normalize_or_zero().dot(self.eye) > angle.to_radians().cos()
+        near && across.normalize_or_zero().dot(self.eye) > angle.cos()
     }
 
     /// Which particles are left out.
@@ -103,8 +124,7 @@ impl<'a> Opening<'a> {
         let rest = &self.info.rest_position;
         let mut removed = vec![false; rest.len()];
         for wire in &self.info.wires {
-            let particles = wire.first..wire.first + wire.len;
-            for (gone, place) in removed[particles.clone()].iter_mut().zip(&rest[particles]) {
+            for (gone, place) in removed[wire.particles()].iter_mut().zip(&rest[wire.particles()]) {
                 *gone = self.opens(wire.layer, *place);
             }
         }
@@ -120,7 +140,7 @@ impl<'a> Opening<'a> {
 }
 
 /// Names of the layers where each comes to light, and the numbers of the breaks that are seen.
-pub fn annotate(canvas: &mut Canvas, camera: &Camera, data: &Data, opening: &Opening) {
+fn annotate(canvas: &mut Canvas, camera: &Camera, data: &Data, opening: &Opening) {
     let u = canvas.unit;
     let panel = camera.panel;
     let marks: Vec<Mark> = data
@@ -134,8 +154,7 @@ pub fn annotate(canvas: &mut Canvas, camera: &Camera, data: &Data, opening: &Ope
     let names: Vec<([f32; 2], &str)> = ledges(data, camera, opening).into_iter().zip(names(data)).collect();
     let level = panel.bottom() - 20.0 * u;
     let wanted: Vec<f32> = names.iter().map(|(at, _)| at[0]).collect();
-    let widest =
-        names.iter().map(|(_, n)| canvas.fonts.width(n, 11.0 * u, super::canvas::Weight::Bold)).fold(0.0, f32::max);
+    let widest = names.iter().map(|(_, n)| canvas.fonts.width(n, 11.0 * u, Weight::Bold)).fold(0.0, f32::max);
     let pitch = widest + 16.0 * u;
     // The scale bar lies in the right corner.
     let places = labels::spread(&wanted, pitch, panel.x + 0.6 * pitch, panel.right() - 190.0 * u);
@@ -166,7 +185,7 @@ fn ledges(data: &Data, camera: &Camera, opening: &Opening) -> Vec<[f32; 2]> {
                 (Some(from), 0) => 0.5 * (from + opening.intervals[1][1]),
                 (Some(from), _) => 0.5 * (from + own),
             };
-            let z = viewpoint::current_z(data.info, data.snapshot, opening.rest_z + away);
+            let z = data.current_z(opening.rest_z + away);
             let radius = 0.85 * data.body.layer_radius[layer];
             camera.project(Vec3::new(data.body.axis.x, data.body.axis.y, z) + radius * opening.eye)
         })

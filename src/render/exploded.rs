@@ -1,18 +1,48 @@
 //! The layers taken apart: each is drawn beside the others, so that inner wires are seen.
 
+use super::body::Body;
 use super::camera::Camera;
 use super::canvas::{Canvas, Rect, Weight};
-use super::frame::Data;
+use super::data::Data;
 use super::labels::{self, Mark};
-use super::style::CameraOptions;
-use super::viewpoint::Body;
+use super::panel::{Panel, Shot};
+use super::sides::{FRONT, facing, sides};
+use super::wires::Looks;
+use crate::scene::spec::View;
 use glam::Vec3;
 
 /// Space between layers over the body's radius (-).
 const SPACE: f32 = 0.62;
 
-/// How far each layer is moved up in the picture (mm), outermost on top, and the total height of the stack (mm).
-pub fn lifts(body: &Body) -> (Vec<f32>, f32) {
+/// The panel.
+pub struct Exploded;
+
+impl Panel for Exploded {
+    fn shots(&self, data: &Data, panel: Rect, unit: f32) -> Vec<Shot> {
+        let z = data.current_z(data.focus());
+        // It faces the first break whatever its layer.
+        let preferred = data.ruptures.first().map_or(FRONT, |first| facing(data, first));
+        let shots = sides(panel, unit, preferred).into_iter().map(|(panel, side)| Shot {
+            view: View::Exploded,
+            camera: camera(data, panel, unit, z, side.turn),
+            caption: "layers apart",
+            remark: side.name.to_owned(),
+            fade: data.body.radius,
+        });
+        shots.collect()
+    }
+
+    fn looks(&self, data: &Data, camera: &Camera) -> Option<Looks> {
+        Some(data.looks(positions(data, camera), Vec::new()))
+    }
+
+    fn annotate(&self, canvas: &mut Canvas, shot: &Shot, data: &Data, _frame: &[Shot]) {
+        annotate(canvas, &shot.camera, data);
+    }
+}
+
+/// How far each layer is moved up in the picture (m), outermost on top, and the total height of the stack (m).
+fn lifts(body: &Body) -> (Vec<f32>, f32) {
     let space = SPACE * body.radius;
     let height = body.layer_radius.iter().map(|r| 2.0 * r + space).sum::<f32>();
     let mut bottom = -0.5 * height;
@@ -24,33 +54,35 @@ pub fn lifts(body: &Body) -> (Vec<f32>, f32) {
     (body.layer_radius.iter().map(lift).collect(), height)
 }
 
-/// Positions with every layer moved to its place (mm).
-pub fn positions(data: &Data, lifts: &[f32], camera: &Camera) -> Vec<[f32; 3]> {
+/// Positions with every layer moved to its place (m).
+fn positions(data: &Data, camera: &Camera) -> Vec<[f32; 3]> {
+    let (lifts, _) = lifts(data.body);
     let up = camera.rotation.transpose() * Vec3::Y;
     let mut position = data.snapshot.position.clone();
     for wire in &data.info.wires {
         let move_by = up * lifts[wire.layer];
-        for p in &mut position[wire.first..wire.first + wire.len] {
+        for p in &mut position[wire.particles()] {
             *p = (Vec3::from(*p) + move_by).to_array();
         }
     }
     position
 }
 
-/// Camera on the section at `z` (mm) that holds the whole stack; `turn_deg` is added to the elevation.
-pub fn camera(body: &Body, options: &CameraOptions, panel: Rect, unit: f32, z: f32, turn_deg: f32) -> Camera {
+/// Camera on the section that is now at `z` (m) that holds the whole stack; `turn` (rad) is added to the elevation.
+fn camera(data: &Data, panel: Rect, unit: f32, z: f32, turn: f64) -> Camera {
+    let body = data.body;
     // The title needs room above, the scale bar below.
     let (above, below) = (20.0 * unit, 14.0 * unit);
     let (_, height) = lifts(body);
-    let scale = options.zoom * (panel.h - above - below) / height.max(1e-6);
-    let rotation = Camera::orientation(0.0, options.elevation_deg + turn_deg);
+    let scale = data.camera.zoom as f32 * (panel.h - above - below) / height.max(1e-9);
+    let rotation = Camera::orientation(0.0, data.camera.elevation + turn);
     let shift = rotation.transpose() * Vec3::Y * (0.5 * (above - below) / scale);
     let middle = Vec3::new(body.axis.x, body.axis.y, z) + shift;
-    Camera { rotation, centre: middle, panel, scale, depth: 10.0 * (body.high - body.low).length().max(body.radius) }
+    Camera { rotation, centre: middle, panel, scale, depth: body.depth_of_view() }
 }
 
 /// Names of the layers beside them, and above each the numbers of its breaks on the side that is seen.
-pub fn annotate(canvas: &mut Canvas, camera: &Camera, data: &Data) {
+fn annotate(canvas: &mut Canvas, camera: &Camera, data: &Data) {
     let u = canvas.unit;
     let panel = camera.panel;
     let (lifts, _) = lifts(data.body);

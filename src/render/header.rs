@@ -2,8 +2,9 @@
 
 use super::canvas::{Align, Canvas, Rect, Type, Weight};
 use super::colour::ColourScale;
-use super::frame::Data;
-use super::ticks::{label, ticks};
+use super::data::Data;
+use crate::base::ticks::{label, ticks};
+use crate::base::units::{mm, mpa, ms, percent};
 use crate::base::wording::counted;
 use crate::engine::view::RunInfo;
 use crate::observe::wording::FIRST_BREAK;
@@ -54,8 +55,8 @@ fn caption(data: &Data) -> Vec<Block> {
     let bonds: usize = data.info.wires.iter().map(|w| w.len.saturating_sub(1)).sum();
     let none = String::new;
     let mut blocks = vec![
-        Block::new("strain", format!("{} %", label(sample.strain * 100.0, 2)), none()),
-        Block::new("nominal stress", format!("{} MPa", label(sample.stress / 1e6, 1)), none()),
+        Block::new("strain", format!("{} %", label(percent(sample.strain), 2)), none()),
+        Block::new("nominal stress", format!("{} MPa", label(mpa(sample.stress), 1)), none()),
         Block::new("wires broken", format!("{} / {}", sample.wires_broken, data.info.wires.len()), none()),
         Block::new("bonds broken", sample.bonds_broken.to_string(), format!("of {bonds}")),
     ];
@@ -64,9 +65,10 @@ fn caption(data: &Data) -> Vec<Block> {
             [_, _, ..] => format!("{} layer · ", data.info.layers[first.layer]),
             _ => String::new(),
         };
-        let value = format!("wire {} · {layer}z {:.1} mm before loading", first.wire + 1, first.rest_z * 1e3);
-        let [strand, wire] = [first.body_stress, first.stress].map(|s| s / 1e6);
-        let detail = format!("strand at {:.2} % and {strand:.1} MPa, wire at {wire:.0} MPa true", first.strain * 100.0);
+        let value = format!("wire {} · {layer}z {:.1} mm before loading", first.wire + 1, mm(first.rest_z));
+        let [strand, wire] = [first.body_stress, first.stress].map(mpa);
+        let detail =
+            format!("strand at {:.2} % and {strand:.1} MPa, wire at {wire:.0} MPa true", percent(first.strain));
         blocks.push(Block { size: 14.0, ..Block::new(FIRST_BREAK, value, detail) });
     }
     blocks
@@ -75,8 +77,8 @@ fn caption(data: &Data) -> Vec<Block> {
 fn time_text(seconds: f64) -> String {
     match seconds {
         s if s >= 1.0 => format!("{s:.3} s"),
-        s if s >= 1e-3 => format!("{:.3} ms", s * 1e3),
-        s => format!("{:.2} µs", s * 1e6),
+        s if s >= 1e-3 => format!("{:.3} ms", ms(s)),
+        s => format!("{:.2} µs", ms(ms(s))),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Places for labels that must not cover one another: as near as possible to what they name, in its order.
 
 use super::canvas::{Align, Canvas, Rect, Type, Weight};
-use super::frame::Data;
+use super::data::Data;
 
 /// Radius of a numbered disc in units.
 pub const BADGE: f32 = 8.5;

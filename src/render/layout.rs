@@ -1,8 +1,9 @@
 //! Where the panels of a frame lie.
 
 use super::canvas::Rect;
-use super::style::View;
-use crate::engine::view::RunInfo;
+use super::panel::GAP;
+use super::panels::PANELS;
+use crate::scene::spec::View;
 
 /// A frame divided into header and panels.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,41 +18,8 @@ pub struct Layout {
 
 /// Height of the header in units.
 const HEADER: f32 = 62.0;
-/// Space around panels in units.
-pub const GAP: f32 = 6.0;
-
-/// Rows of a frame: which views, share of the height, shares of the width.
-const ROWS: [(&[(View, f32)], f32); 3] = [
-    (&[(View::Overview, 1.0)], 0.13),
-    (
-        &[
-            (View::Midsection, 1.0),
-            (View::Cutaway, 0.8),
-            (View::Exploded, 0.72),
-            (View::CrossSection, 0.4),
-            (View::Scene, 1.0),
-        ],
-        0.46,
-    ),
-    (&[(View::Unrolled, 0.6), (View::Curve, 0.4)], 0.41),
-];
-
-/// The default views: of a body between grips, or of free bodies. Left out is what would show nothing: layers of
-/// which there is one, the cut of a single wire, the curve of what is not pulled.
-pub fn default_views(info: &RunInfo) -> Vec<View> {
-    if info.gauge.is_none() {
-        return vec![View::Scene];
-    }
-    let all = [
-        (View::Overview, true),
-        (View::Midsection, true),
-        (View::Exploded, info.layers.len() > 1),
-        (View::CrossSection, info.wires.len() > 1),
-        (View::Unrolled, true),
-        (View::Curve, info.is_pulled()),
-    ];
-    all.into_iter().filter(|(_, shown)| *shown).map(|(view, _)| view).collect()
-}
+/// Rows of a frame, from top to bottom: share of the height (-).
+pub const ROWS: [f32; 3] = [0.13, 0.46, 0.41];
 
 /// Lays `views` out on a frame of `size` pixels: each view has its row, rows without a view vanish.
 pub fn layout(size: [u32; 2], views: &[View]) -> Layout {
@@ -60,18 +28,15 @@ pub fn layout(size: [u32; 2], views: &[View]) -> Layout {
     let gap = GAP * unit;
     let header = Rect::new(0.0, 0.0, w, HEADER * unit);
     let body = Rect::new(gap, header.h, w - 2.0 * gap, h - header.h - gap);
-    let rows: Vec<(Vec<(View, f32)>, f32)> = ROWS
-        .iter()
-        .map(|(row, share)| (row.iter().copied().filter(|(v, _)| views.contains(v)).collect::<Vec<_>>(), *share))
-        .filter(|(row, _)| !row.is_empty())
-        .collect();
+    let of_row = |k: usize| PANELS.iter().filter(|e| e.row == k && views.contains(&e.view)).collect::<Vec<_>>();
+    let rows: Vec<_> = (0..ROWS.len()).map(|k| (of_row(k), ROWS[k])).filter(|(row, _)| !row.is_empty()).collect();
     let mut panels = Vec::new();
     let heights = shares(rows.iter().map(|r| r.1), body.h, gap);
     let mut y = body.y;
     for ((row, _), height) in rows.iter().zip(heights) {
         let mut x = body.x;
-        for ((view, _), width) in row.iter().zip(shares(row.iter().map(|c| c.1), body.w, gap)) {
-            panels.push((*view, Rect::new(x, y, width, height).snapped()));
+        for (entry, width) in row.iter().zip(shares(row.iter().map(|e| e.width), body.w, gap)) {
+            panels.push((entry.view, Rect::new(x, y, width, height).snapped()));
             x += width + gap;
         }
         y += height + gap;
@@ -99,7 +64,8 @@ mod tests {
             for (k, (_, a)) in l.panels.iter().enumerate() {
                 assert!(a.x >= 0.0 && a.y >= l.header.bottom() - 1.0, "{a:?}");
                 assert!(a.right() <= size[0] as f32 && a.bottom() <= size[1] as f32, "{a:?} in {size:?}");
-                assert!(l.panels[k + 1..].iter().all(|(_, b)| !a.meets(b)));
+                let apart = |b: &Rect| a.right() <= b.x || b.right() <= a.x || a.bottom() <= b.y || b.bottom() <= a.y;
+                assert!(l.panels[k + 1..].iter().all(|(_, b)| apart(b)));
             }
         }
     }

@@ -1,40 +1,51 @@
 //! Floor 6: off-screen pictures of a run. The only folder that names `wgpu`.
 //!
-//! Wires are drawn on the graphics adapter ([`adapter`], [`target`], [`wires`]); charts and text are drawn over them
-//! on the processor ([`canvas`]). [`frame::Renderer`] turns one snapshot into one picture, [`writer::FrameWriter`] is
-//! the observer that writes a numbered PNG sequence while the simulation runs, and [`animation`] makes one file of it.
+//! | for | call |
+//! | --- | --- |
+//! | frames of a run, with all panels, titles and charts | [`Renderer`], one snapshot to one picture |
+//! | a numbered PNG sequence, and an animation of it, while a run goes on | [`FrameWriter`] |
+//! | wires alone, through any camera, into memory, and what lies under a pixel | [`stage::Stage`] |
+//!
+//! Wires are drawn on the graphics adapter (`painter`, `wires`); charts and text are drawn over them on the processor
+//! (`canvas`). A view of a frame is a file that implements `panel::Panel`, and a row of the table in `panels`. Everything
+//! is in SI; lengths become millimetres where they are written.
 
-pub mod adapter;
+mod adapter;
 pub mod animation;
-pub mod camera;
-pub mod canvas;
+mod body;
+mod camera;
+mod canvas;
 pub mod colour;
-pub mod curve;
-pub mod cut;
-pub mod cutaway;
-pub mod exploded;
-pub mod frame;
-pub mod header;
-pub mod labels;
-pub mod layout;
-pub mod marks;
-pub mod occlusion;
+mod cross_section;
+mod curve;
+mod cutaway;
+mod data;
+mod everything;
+mod exploded;
+mod frame;
+mod header;
+mod labels;
+mod layout;
+mod marks;
+mod midsection;
+mod occlusion;
+mod overview;
+mod painter;
+mod panel;
+mod panels;
 pub mod png;
-pub mod shots;
-pub mod solid;
-pub mod style;
-pub mod target;
-pub mod unrolled;
-pub mod viewpoint;
-pub mod wires;
-pub mod writer;
+mod sides;
+mod solid;
+pub mod stage;
+mod style;
+mod target;
+mod unrolled;
+mod viewpoint;
+mod wires;
+mod writer;
 
-use crate::base::ticks;
-
-pub use crate::observe::timings;
 pub use adapter::check;
-pub use animation::AnimationOptions;
 pub use frame::Renderer;
-pub use style::{CameraOptions, FrameOptions, Theme, View};
-pub use timings::Timings;
+pub use solid::SHADER;
+pub use style::{Rgb, SIGNAL, Style};
 pub use writer::FrameWriter;

@@ -27,7 +27,7 @@ pub fn occlusion(info: &RunInfo, position: &[[f32; 3]], radius: &[f32], removed:
             }
             let d = Vec3::from(position[j]) - centre;
             let square = d.length_squared();
-            if square > reach * reach || square < 1e-12 {
+            if square > reach * reach || square < 1e-18 {
                 continue;
             }
             let distance = square.sqrt();
@@ -46,7 +46,7 @@ pub fn occlusion(info: &RunInfo, position: &[[f32; 3]], radius: &[f32], removed:
 fn wire_numbers(info: &RunInfo, count: usize) -> Vec<u32> {
     let mut numbers: Vec<u32> = (0..count as u32).map(|i| u32::MAX - i).collect();
     for (w, wire) in info.wires.iter().enumerate() {
-        numbers[wire.first..wire.first + wire.len].fill(w as u32);
+        numbers[wire.particles()].fill(w as u32);
     }
     numbers
 }
@@ -65,7 +65,7 @@ impl Cells {
         let low = position.iter().map(|p| p[2]).fold(f32::MAX, f32::min);
         let high = position.iter().map(|p| p[2]).fold(f32::MIN, f32::max);
         // At most a million slabs, also when a sphere has flown away.
-        let slab = (REACH * 2.0 * widest).max((high - low) * 1e-6).max(1e-6);
+        let slab = (REACH * 2.0 * widest).max((high - low) * 1e-6).max(1e-9);
         let count = if position.is_empty() { 0 } else { ((high - low) / slab) as usize + 1 };
         let slab_of = |p: &[f32; 3]| (((p[2] - low) / slab) as usize).min(count.saturating_sub(1));
         let mut starts = vec![0; count + 1];

@@ -32,7 +32,7 @@ pub struct Drawing {
     pub camera: Camera,
     /// Which segments.
     pub instances: Range<u32>,
-    /// Depth over which things darken (mm).
+    /// Depth over which things darken (m).
     pub fade: f32,
 }
 
@@ -122,6 +122,15 @@ impl SolidPipeline {
         Self { pipeline, layout }
     }
 
+    /// Copies segments to the adapter.
+    pub fn upload(&self, gpu: &Gpu, segments: &[Segment]) -> wgpu::Buffer {
+        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("segments"),
+            contents: bytemuck::cast_slice(segments),
+            usage: wgpu::BufferUsages::VERTEX,
+        })
+    }
+
     /// Draws into `target`, whose top left corner is the frame's pixel `origin`.
     ///
     /// # Errors
@@ -132,31 +141,23 @@ impl SolidPipeline {
         target: &Target,
         origin: [f32; 2],
         style: &Style,
-        segments: &[Segment],
+        segments: &wgpu::Buffer,
         drawings: &[Drawing],
     ) -> Result<()> {
-        let instances = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("segments"),
-            contents: bytemuck::cast_slice(segments),
-            usage: wgpu::BufferUsages::VERTEX,
-        });
         let views: Vec<_> = drawings.iter().map(|d| self.bind(gpu, d, style)).collect();
         target.draw(gpu, super::colour::linear4(style.panel), |pass| {
             pass.set_pipeline(&self.pipeline);
-            for (drawing, view) in drawings.iter().zip(&views) {
-                if segments.is_empty() || drawing.instances.is_empty() {
-                    continue;
-                }
+            for (drawing, view) in drawings.iter().zip(&views).filter(|(d, _)| !d.instances.is_empty()) {
                 let Rect { x, y, w, h } = drawing.camera.panel;
                 let (x, y) = (x - origin[0], y - origin[1]);
                 pass.set_viewport(x, y, w, h, 0.0, 1.0);
                 pass.set_scissor_rect(x as u32, y as u32, w as u32, h as u32);
                 pass.set_bind_group(0, view, &[]);
-                pass.set_vertex_buffer(0, instances.slice(..));
+                pass.set_vertex_buffer(0, segments.slice(..));
                 pass.draw(0..4, drawing.instances.clone());
             }
             // On the GL backend the last scissor also cuts what is resolved when the pass ends.
-            pass.set_scissor_rect(0, 0, target.width, target.height);
+            pass.set_scissor_rect(0, 0, target.size[0], target.size[1]);
         })
     }
 

@@ -1,59 +1,9 @@
-//! What a frame should show and how it should look.
+//! Colours of the themes.
 
-use crate::scene::spec::ColourBy;
-/// The words of a frame stand in the scene.
-pub use crate::scene::spec::{Theme, View};
+use crate::scene::spec::Theme;
 
 /// A colour as sRGB bytes.
 pub type Rgb = [u8; 3];
-
-/// What to draw.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrameOptions {
-    /// Width and height (px).
-    pub size: [u32; 2],
-    /// Quantity that colours the wires.
-    pub colour: ColourBy,
-    /// Panels. Empty means the default for the scene: overview, midsection, exploded layers, cross-section, unrolled
-    /// map and curve for a body between grips, one view of everything for free bodies.
-    pub views: Vec<View>,
-    /// Dark or light.
-    pub theme: Theme,
-    /// Viewpoint.
-    pub camera: CameraOptions,
-}
-
-impl Default for FrameOptions {
-    fn default() -> Self {
-        Self {
-            size: [1280, 720],
-            colour: ColourBy::Stress,
-            views: Vec::new(),
-            theme: Theme::Dark,
-            camera: CameraOptions::default(),
-        }
-    }
-}
-
-/// Viewpoint of the three-dimensional panels. The strand's axis z points right, y points up, the eye looks along +x.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CameraOptions {
-    /// Turn of the eye about the vertical (°).
-    pub azimuth_deg: f32,
-    /// Turn of the eye about the horizontal, which is the strand's axis when the azimuth is 0 (°).
-    pub elevation_deg: f32,
-    /// Magnification over what fits the panel (-).
-    pub zoom: f32,
-    /// Section that the close-up follows, as z before loading (mm). `None`: the middle of the gauge until a bond
-    /// breaks, then the place of the first rupture.
-    pub focus_z_mm: Option<f32>,
-}
-
-impl Default for CameraOptions {
-    fn default() -> Self {
-        Self { azimuth_deg: 0.0, elevation_deg: 0.0, zoom: 1.0, focus_z_mm: None }
-    }
-}
 
 impl Theme {
     /// The colours of the theme.

@@ -12,10 +12,8 @@ pub const SAMPLES: u32 = 4;
 
 /// The picture and what it takes to read it back.
 pub struct Target {
-    /// Width (px).
-    pub width: u32,
-    /// Height (px).
-    pub height: u32,
+    /// Width and height (px).
+    pub size: [u32; 2],
     resolved: wgpu::Texture,
     samples: wgpu::TextureView,
     depth: wgpu::TextureView,
@@ -24,13 +22,14 @@ pub struct Target {
 }
 
 impl Target {
-    /// A target of at least one pixel.
-    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    /// A target of `size` (px), at least one pixel.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+        let [width, height] = size;
+        let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = |format, sample_count, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("frame"),
-                size,
+                size: extent,
                 mip_level_count: 1,
                 sample_count,
                 dimension: wgpu::TextureDimension::D2,
@@ -51,7 +50,7 @@ impl Target {
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { width, height, resolved, samples, depth, staging, row_bytes }
+        Self { size, resolved, samples, depth, staging, row_bytes }
     }
 
     /// Clears to `background` (linear RGB), lets `draw` record, and waits until it is drawn.
@@ -100,7 +99,7 @@ impl Target {
                 layout: wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(self.row_bytes),
-                    rows_per_image: Some(self.height),
+                    rows_per_image: Some(self.size[1]),
                 },
             },
             self.resolved.size(),
@@ -116,7 +115,7 @@ impl Target {
                 .get_mapped_range()
                 .map_err(|e| failure(format!("cannot read the picture back from {}: {e}", gpu.name)))?;
             for (y, padded) in bytes.chunks_exact(self.row_bytes as usize).enumerate() {
-                row(y as u32, &padded[..self.width as usize * 4]);
+                row(y as u32, &padded[..self.size[0] as usize * 4]);
             }
         }
         self.staging.unmap();

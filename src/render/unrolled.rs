@@ -3,82 +3,85 @@
 
 use super::canvas::{Align, Canvas, Rect, Type, Weight};
 use super::colour::desaturated;
-use super::frame::Data;
+use super::data::Data;
 use super::labels::{self, Mark};
 use super::marks;
+use super::panel::Panel;
 use super::style::Rgb;
-use super::ticks::{label, ticks};
-use super::wires::{holds, in_grip};
+use crate::base::ticks::{label, ticks};
+use crate::base::units::mm;
 use crate::engine::view::{BondState, WireInfo};
+use crate::observe::unrolled;
 
 /// Breaks nearer together than this, in units, are numbered as one group: beside it there must be room for the
 /// columns of the next.
 const GROUP: f32 = 110.0;
 
+/// The panel.
+pub struct Unrolled;
+
+impl Panel for Unrolled {
+    fn draw(&self, canvas: &mut Canvas, panel: Rect, data: &Data) {
+        let u = canvas.unit;
+        canvas.fill(panel, data.style.panel, 1.0);
+        let x = marks::title(canvas, panel, data, "wires unrolled");
+        marks::subtitle(canvas, x, panel, data, "numbers: order of break");
+        let rows = rows(panel.inset(76.0 * u, 42.0 * u, 18.0 * u, 38.0 * u), data, u);
+        for (number, wire) in data.info.wires.iter().enumerate() {
+            row(canvas, &rows, rows.top(number), wire, data);
+        }
+        layers(canvas, panel, &rows, data);
+        axis(canvas, &rows, data);
+        numbers(canvas, &rows, data);
+        breaks(canvas, &rows, data);
+    }
+}
+
 /// Rows of the map.
 struct Rows {
+    map: unrolled::Unrolled,
     area: Rect,
-    range: [f32; 2],
-    /// Top of each wire's row (px).
-    top: Vec<f32>,
     height: f32,
 }
 
 impl Rows {
-    fn x(&self, z: f32) -> f32 {
-        self.area.x + self.area.w * (z - self.range[0]) / (self.range[1] - self.range[0]).max(1e-6)
+    fn x(&self, z_mm: f64) -> f32 {
+        let [low, high] = self.map.ends;
+        self.area.x + self.area.w * ((z_mm - low) / (high - low)) as f32
     }
-}
 
-/// Draws the panel.
-pub fn draw(canvas: &mut Canvas, panel: Rect, data: &Data) {
-    let u = canvas.unit;
-    canvas.fill(panel, data.style.panel, 1.0);
-    let x = marks::title(canvas, panel, data, "wires unrolled");
-    marks::subtitle(canvas, x, panel, data, "numbers: order of break");
-    let rows = rows(panel.inset(76.0 * u, 42.0 * u, 18.0 * u, 38.0 * u), data, u);
-    for (wire, top) in data.info.wires.iter().zip(&rows.top) {
-        row(canvas, &rows, *top, wire, data);
+    /// x of a particle before loading.
+    fn x_of(&self, data: &Data, particle: usize) -> f32 {
+        self.x(mm(data.info.rest_position[particle][2].into()))
     }
-    layers(canvas, panel, &rows, data);
-    axis(canvas, &rows, data);
-    numbers(canvas, &rows, data);
-    breaks(canvas, &rows, data);
+
+    /// Top of a wire's row (px).
+    fn top(&self, wire: usize) -> f32 {
+        self.area.y + self.height * (self.map.row[wire] - 0.5) as f32
+    }
 }
 
 fn rows(area: Rect, data: &Data, unit: f32) -> Rows {
-    let wires = &data.info.wires;
-    let gaps = data.info.layers.len().saturating_sub(1) as f32;
-    let height = (area.h / (wires.len() as f32 + 1.2 * gaps).max(1.0)).min(34.0 * unit);
-    let mut top = vec![area.y; wires.len()];
-    let mut y = area.y;
-    for layer in (0..data.info.layers.len()).rev() {
-        let members = (0..wires.len()).filter(|w| wires[*w].layer == layer);
-        for w in members {
-            top[w] = y;
-            y += height;
-        }
-        y += 1.2 * height;
-    }
+    let map = unrolled::Unrolled::new(data.info, 1.2, (0..data.info.layers.len()).rev());
+    let height = (area.h / map.rows.max(1.0) as f32).min(34.0 * unit);
     // Few wires do not fill the panel: the axis then follows the last row.
-    let area = Rect { h: (y - 1.2 * height - area.y).min(area.h), ..area };
-    Rows { area, range: [data.body.low.z, data.body.high.z], top, height }
+    let area = Rect { h: (map.rows as f32 * height).min(area.h), ..area };
+    Rows { map, area, height }
 }
 
 fn row(canvas: &mut Canvas, rows: &Rows, top: f32, wire: &WireInfo, data: &Data) {
     let shown = |i: usize| {
-        if in_grip(data.info, i) { desaturated(data.colours[i]) } else { data.colours[i] }
+        if data.info.in_grip(i) { desaturated(data.colours[i]) } else { data.colours[i] }
     };
     let gap = if rows.height >= 4.0 * canvas.unit { 0.16 * rows.height } else { 0.0 };
-    for i in wire.first..wire.first + wire.len.saturating_sub(1) {
-        if !holds(data.snapshot, i) {
+    for i in wire.bonds() {
+        if !data.snapshot.bond_state[i].holds() {
             continue;
         }
-        let (z0, z1) = (data.info.rest_position[i][2], data.info.rest_position[i + 1][2]);
-        let (x0, x1) = (rows.x(z0.min(z1)), rows.x(z0.max(z1)));
+        let [x0, x1] = [i, i + 1].map(|i| rows.x_of(data, i));
         let colour = mixed(shown(i), shown(i + 1));
         // Whole columns, each of exactly one bond: no seams between neighbours.
-        let (from, to) = (x0.round(), x1.round());
+        let (from, to) = (x0.min(x1).round(), x0.max(x1).round());
         canvas.fill(Rect::new(from, top, to - from, rows.height - gap), colour, 1.0);
     }
 }
@@ -91,38 +94,34 @@ fn layers(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
     let u = canvas.unit;
     let name = Type { size: 12.0 * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
     let detail = Type { size: 10.5 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Left };
-    for (layer, text) in data.info.layers.iter().enumerate() {
-        let members: Vec<usize> = (0..rows.top.len()).filter(|w| data.info.wires[*w].layer == layer).collect();
-        let (Some(first), Some(last)) = (members.first(), members.last()) else {
-            continue;
-        };
-        let middle = 0.5 * (rows.top[*first] + rows.top[*last] + rows.height);
-        let x = panel.x + 12.0 * u;
-        canvas.text(x, middle - u, name, text);
-        let span = if first == last { format!("{}", first + 1) } else { format!("{}–{}", first + 1, last + 1) };
-        canvas.text(x, middle + 12.0 * u, detail, &span);
+    let x = panel.x + 12.0 * u;
+    for layer in &rows.map.layers {
+        let middle = rows.area.y + rows.height * layer.row as f32;
+        canvas.text(x, middle - u, name, &data.info.layers[layer.layer]);
+        canvas.text(x, middle + 12.0 * u, detail, &layer.numbers());
     }
 }
 
 fn axis(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     let u = canvas.unit;
     let small = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Centre };
-    let marks = ticks(f64::from(rows.range[0]), f64::from(rows.range[1]), 8);
+    let [low, high] = rows.map.ends;
+    let marks = ticks(low, high, 8);
     let bottom = rows.area.bottom();
     for value in marks.values {
-        let x = rows.x(value as f32);
+        let x = rows.x(value);
         canvas.fill(Rect::new((x - 0.5 * u).round(), bottom, u.max(1.0), 4.0 * u), data.style.muted, 1.0);
         canvas.text(x, bottom + 16.0 * u, small, &label(value, marks.decimals));
     }
     let kind = Type { align: Align::Right, colour: data.style.text, ..small };
     canvas.text(rows.area.right(), bottom + 31.0 * u, kind, "axial position before loading (mm)");
-    if let Some(faces) = data.info.gauge {
+    if let Some(faces) = rows.map.grips {
         for z in faces {
             let x = rows.x(z);
             canvas.fill(Rect::new(x - 0.5 * u, rows.area.y - 4.0 * u, u, rows.area.h + 4.0 * u), data.style.text, 0.5);
         }
-        let middle = |a: f32, b: f32| 0.5 * (rows.x(a) + rows.x(b));
-        for x in [middle(rows.range[0], faces[0]), middle(faces[1], rows.range[1])] {
+        let middle = |a: f64, b: f64| 0.5 * (rows.x(a) + rows.x(b));
+        for x in [middle(low, faces[0]), middle(faces[1], high)] {
             canvas.text(x, rows.area.y - 5.0 * u, Type { size: 10.0 * u, ..small }, "grip");
         }
     }
@@ -130,13 +129,13 @@ fn axis(canvas: &mut Canvas, rows: &Rows, data: &Data) {
 
 fn breaks(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     let u = canvas.unit;
-    for (wire, top) in data.info.wires.iter().zip(&rows.top) {
-        for i in wire.first..wire.first + wire.len.saturating_sub(1) {
+    for (number, wire) in data.info.wires.iter().enumerate() {
+        for i in wire.bonds() {
             if data.snapshot.bond_state[i] == BondState::Broken {
-                let z = 0.5 * (data.info.rest_position[i][2] + data.info.rest_position[i + 1][2]);
+                let x = 0.5 * (rows.x_of(data, i) + rows.x_of(data, i + 1));
                 let reach = 0.5 * rows.height.max(9.0 * u);
-                let middle = top + 0.45 * rows.height;
-                let mark = Rect::new(rows.x(z) - 2.5 * u, middle - reach, 5.0 * u, 2.0 * reach);
+                let middle = rows.top(number) + 0.45 * rows.height;
+                let mark = Rect::new(x - 2.5 * u, middle - reach, 5.0 * u, 2.0 * reach);
                 canvas.fill(mark.inset(-u, -u, -u, -u), data.style.panel, 1.0);
                 canvas.fill(mark, data.style.signal, 1.0);
             }
@@ -151,7 +150,7 @@ fn numbers(canvas: &mut Canvas, rows: &Rows, data: &Data) {
     let mut places: Vec<Mark> = data
         .first_breaks()
         .map(|(number, r)| {
-            let at = [rows.x(r.rest_z as f32 * 1e3), rows.top[r.wire] + 0.45 * rows.height];
+            let at = [rows.x(mm(r.rest_z)), rows.top(r.wire) + 0.45 * rows.height];
             Mark { number, at }
         })
         .collect();

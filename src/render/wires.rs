@@ -1,17 +1,18 @@
 //! Wires as a list of capsules, one per holding bond, for the shader `wires.wgsl`.
 
 use super::colour::{desaturated, linear4, signal4};
+use super::occlusion::occlusion;
 use super::style::Rgb;
-use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
+use crate::engine::view::{RunInfo, Snapshot, WireInfo};
 use glam::Vec3;
 
 /// A piece of wire between two bonded particles, or a sphere (both ends the same).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Segment {
-    /// First centre and radius (mm).
+    /// First centre and radius (m).
     pub a: [f32; 4],
-    /// Second centre and radius (mm).
+    /// Second centre and radius (m).
     pub b: [f32; 4],
     /// Unit tangent of the wire at `a`, and the kind of this end ([`JOINT`], [`END`], [`CUT`], [`NECK`],
     /// [`BROKEN`]).
@@ -45,7 +46,7 @@ const TIP: [f32; 2] = [0.8, 0.55];
 
 /// What is drawn of a snapshot, per particle.
 pub struct Looks {
-    /// Centres (mm): those of the snapshot, or moved apart.
+    /// Centres (m): those of the snapshot, or moved apart.
     pub position: Vec<[f32; 3]>,
     /// Colours, sRGB.
     pub colour: Vec<Rgb>,
@@ -58,7 +59,21 @@ pub struct Looks {
 }
 
 impl Looks {
-    fn shows(&self, i: usize) -> bool {
+    /// Wires with their particles at `position` (m), each in its `shade` (-), without the `removed` ones.
+    pub fn new(
+        info: &RunInfo,
+        snapshot: &Snapshot,
+        position: Vec<[f32; 3]>,
+        colours: &[Rgb],
+        shade: Vec<f32>,
+        removed: Vec<bool>,
+    ) -> Self {
+        let occlusion = occlusion(info, &position, &snapshot.radius, &removed);
+        Self { position, colour: colours.to_vec(), occlusion, shade, removed }
+    }
+
+    /// Whether particle `i` is shown.
+    pub fn shows(&self, i: usize) -> bool {
         !self.removed.get(i).copied().unwrap_or(false)
     }
 }
@@ -75,17 +90,6 @@ pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks, stride: usiz
         all.push(sphere(snapshot, looks, i));
     }
     all
-}
-
-/// Whether bond slot `b` holds.
-pub fn holds(snapshot: &Snapshot, b: usize) -> bool {
-    matches!(snapshot.bond_state[b], BondState::Whole | BondState::Yielding)
-}
-
-/// Whether a particle lies in a grip before loading.
-pub fn in_grip(info: &RunInfo, i: usize) -> bool {
-    let z = info.rest_position[i][2];
-    info.gauge.is_some_and(|[low, high]| z < low || z > high)
 }
 
 struct Chain<'a> {
@@ -112,16 +116,20 @@ impl Chain<'_> {
             }
             i = j;
         }
-        for i in self.wire.first..self.wire.first + self.wire.len {
+        for i in self.wire.particles() {
             if self.looks.shows(i) && !self.holds_before(i) && !self.holds_after(i) {
                 all.push(self.lone(i));
             }
         }
     }
 
+    fn holds(&self, bond: usize) -> bool {
+        self.snapshot.bond_state[bond].holds()
+    }
+
     /// Whether the bond after particle `i` holds and both its particles are shown.
     fn drawn(&self, i: usize) -> bool {
-        holds(self.snapshot, i) && self.looks.shows(i) && self.looks.shows(i + 1)
+        self.holds(i) && self.looks.shows(i) && self.looks.shows(i + 1)
     }
 
     /// Whether the wire turns by less than 2.5° between two particles.
@@ -130,11 +138,11 @@ impl Chain<'_> {
     }
 
     fn holds_before(&self, i: usize) -> bool {
-        i > self.wire.first && holds(self.snapshot, i - 1)
+        i > self.wire.first && self.holds(i - 1)
     }
 
     fn holds_after(&self, i: usize) -> bool {
-        i + 1 < self.wire.first + self.wire.len && holds(self.snapshot, i)
+        i + 1 < self.wire.first + self.wire.len && self.holds(i)
     }
 
     fn position(&self, i: usize) -> Vec3 {
@@ -154,7 +162,7 @@ impl Chain<'_> {
         match outside {
             None => END,
             Some(bond) if self.drawn(bond) => JOINT,
-            Some(bond) if holds(self.snapshot, bond) => CUT,
+            Some(bond) if self.holds(bond) => CUT,
             Some(_) => NECK,
         }
     }
@@ -183,14 +191,14 @@ impl Chain<'_> {
         alone(self.point(i), tangent, colour, self.looks.occlusion[i])
     }
 
-    /// Centre and radius (mm).
+    /// Centre and radius (m).
     fn point(&self, i: usize) -> [f32; 4] {
         self.position(i).extend(self.snapshot.radius[i]).to_array()
     }
 
     fn colour(&self, i: usize) -> [f32; 4] {
         let colour = self.looks.colour[i];
-        let shown = if in_grip(self.info, i) { desaturated(colour) } else { colour };
+        let shown = if self.info.in_grip(i) { desaturated(colour) } else { colour };
         let [r, g, b, _] = linear4(shown);
         [r, g, b, self.shade]
     }

@@ -2,18 +2,18 @@
 
 struct View {
   rotation: mat3x3<f32>,
-  centre: vec4<f32>,   // xyz [mm]
-  scale: vec4<f32>,    // x, y: view mm -> clip; z: half depth [mm]; w: size of a pixel [mm]
+  centre: vec4<f32>,   // xyz [m]
+  scale: vec4<f32>,    // x, y: view m -> clip; z: half depth [m]; w: size of a pixel [m]
   rim: vec4<f32>,      // rgb: light added along silhouettes; w: darkening along silhouettes
-  fade: vec4<f32>,     // x: depth of the axis in view [mm], y: radius over which depth darkens [mm]
+  fade: vec4<f32>,     // x: depth of the axis in view [m], y: radius over which depth darkens [m]
   signal: vec4<f32>,   // colour of broken ends, linear
   cut: vec4<f32>,      // colour of faces where a wire was cut to show what lies behind, linear
 };
 @group(0) @binding(0) var<uniform> view: View;
 
 struct Segment {
-  @location(0) a: vec4<f32>,   // first centre, radius [mm]
-  @location(1) b: vec4<f32>,   // second centre, radius [mm]
+  @location(0) a: vec4<f32>,   // first centre, radius [m]
+  @location(1) b: vec4<f32>,   // second centre, radius [m]
   @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 round end, 2 flat, 3 neck, 4 broken face
   @location(3) tb: vec4<f32>,
   @location(4) ca: vec4<f32>,  // linear colour at a; w: shade of wires inside the strand
@@ -58,8 +58,8 @@ fn reach(kind: f32, r: f32, tangent: vec3<f32>, along: vec3<f32>) -> f32 {
   let length3 = length(d);
   let length2 = length(d.xy);
   let pixel = view.scale.w;
-  let along = select(vec3<f32>(1.0, 0.0, 0.0), d / length3, length3 > 1e-9);
-  let right = select(vec2<f32>(1.0, 0.0), d.xy / length2, length2 > 1e-9);
+  let along = select(vec3<f32>(1.0, 0.0, 0.0), d / length3, length3 > 1e-12);
+  let right = select(vec2<f32>(1.0, 0.0), d.xy / length2, length2 > 1e-12);
   let up = vec2<f32>(-right.y, right.x);
   let before = reach(in.ta.w, in.a.w, o.ta.xyz, along) + pixel;
   let after = reach(in.tb.w, in.b.w, o.tb.xyz, along) + pixel;
@@ -96,7 +96,7 @@ fn covers(p: vec2<f32>, in: Varying, along: vec2<f32>) -> bool {
 
 fn outline_axis(in: Varying) -> vec2<f32> {
   let d = in.b.xy - in.a.xy;
-  return d / max(dot(d, d), 1e-12);
+  return d / max(dot(d, d), 1e-18);
 }
 
 struct Hit {
@@ -124,9 +124,9 @@ fn intersect(p: vec2<f32>, in: Varying) -> Hit {
   let hb = select(b.w * b.w - dot(wb, wb), -1.0, is_flat(in.tb.w));
   let za = a.z + sqrt(max(ha, 0.0));
   let zb = b.z + sqrt(max(hb, 0.0));
-  if (ha > 0.0 || l < 1e-9) { hit.z = za; hit.s = 0.0; hit.found = true; }
+  if (ha > 0.0 || l < 1e-12) { hit.z = za; hit.s = 0.0; hit.found = true; }
   if (hb > 0.0 && zb > hit.z) { hit.z = zb; hit.s = 1.0; hit.found = true; }
-  if (l > 1e-9) {
+  if (l > 1e-12) {
     // |w|^2 - (w.d)^2 = (ra + k w.d)^2 with w = (p, a.z + t) - a, solved for the greater t.
     let d = axis / l;
     let k = (b.w - a.w) / l;
@@ -182,17 +182,17 @@ fn shade(p: vec2<f32>, in: Varying, pixel: vec2<f32>) -> Lit {
   // Normals turn steadily along the wire: what lies along the wire's own tangent is taken out, except on end caps.
   let axis = in.b.xyz - in.a.xyz;
   let l = length(axis);
-  let along = axis / max(l, 1e-9);
+  let along = axis / max(l, 1e-12);
   let behind = dot(vec3<f32>(p, hit.z) - in.a.xyz, axis) < 0.0;
   let beyond = dot(vec3<f32>(p, hit.z) - in.b.xyz, axis) > 0.0;
-  let lone = l < 1e-6;
+  let lone = l < 1e-9;
   let cap = lone || (behind && in.ta.w == 1.0) || (beyond && in.tb.w == 1.0);
   let tangent = normalize(mix(in.ta.xyz, in.tb.xyz, s) + vec3<f32>(0.0, 0.0, 1e-9));
   let radial = hit.from_axis - tangent * dot(hit.from_axis, tangent);
   // On a cone, normals lean towards the thin end.
-  let lean = tangent * (in.a.w - in.b.w) * length(radial) / max(l, 1e-9);
+  let lean = tangent * (in.a.w - in.b.w) * length(radial) / max(l, 1e-12);
   let face = hit.face != 0.0;
-  let n = normalize(select(select(radial + lean, hit.from_axis, cap), along * hit.face, face) + vec3<f32>(0.0, 0.0, 1e-6));
+  let n = normalize(select(select(radial + lean, hit.from_axis, cap), along * hit.face, face) + vec3<f32>(0.0, 0.0, 1e-9));
 
   // The signal colour begins a little before the neck of a broken end.
   let band = 0.5 * mix(in.a.w, in.b.w, s);

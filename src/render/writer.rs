@@ -1,13 +1,14 @@
 //! The observer that writes a numbered PNG sequence while the simulation goes on.
 
-use super::animation::{self, AnimationOptions, Still};
+use super::animation::{self, Still};
 use super::frame::Renderer;
-use super::png;
-use super::style::FrameOptions;
-use super::timings::Timings;
+use super::{adapter, png};
 use crate::base::error::{Error, Result};
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
+use crate::observe::animation::Animation;
+use crate::observe::timings::Timings;
+use crate::scene::spec::OutputSpec;
 use image::RgbImage;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -27,8 +28,8 @@ const DRAWN: usize = 2;
 /// frame is drawn while the one before is encoded and the simulation goes on.
 pub struct FrameWriter {
     folder: PathBuf,
-    options: FrameOptions,
-    animation: Option<AnimationOptions>,
+    look: OutputSpec,
+    animation: Option<Animation>,
     /// Memory for snapshots that wait to be drawn (bytes).
     memory: usize,
     curve: Vec<(f64, f64)>,
@@ -56,12 +57,12 @@ impl FrameWriter {
     ///
     /// # Errors
     /// When there is no adapter or when the folder cannot be made.
-    pub fn new(folder: &Path, options: FrameOptions) -> Result<Self> {
-        super::adapter::check()?;
+    pub fn new(folder: &Path, look: &OutputSpec) -> Result<Self> {
+        adapter::check()?;
         std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
         Ok(Self {
             folder: folder.to_owned(),
-            options,
+            look: look.clone(),
             animation: None,
             memory: 0,
             curve: Vec::new(),
@@ -73,7 +74,7 @@ impl FrameWriter {
     }
 
     /// Makes an animation of the pictures when the last one is written, also of those of a run that was stopped.
-    pub fn with_animation(mut self, animation: Option<AnimationOptions>) -> Self {
+    pub fn with_animation(mut self, animation: Option<Animation>) -> Self {
         self.animation = animation;
         self
     }
@@ -93,11 +94,6 @@ impl FrameWriter {
     /// The same for those who hand the writer over.
     pub fn shared_timings(&self) -> Arc<Mutex<Timings>> {
         self.timings.clone()
-    }
-
-    /// Frames handed over so far.
-    pub fn frames(&self) -> usize {
-        self.stills.len()
     }
 
     fn add(&self, timings: &Timings) {
@@ -122,9 +118,9 @@ impl FrameWriter {
     }
 
     fn animate(&mut self) -> Result<()> {
-        let Some(options) = self.animation.take() else { return Ok(()) };
+        let Some(animation) = self.animation.take() else { return Ok(()) };
         let begin = Instant::now();
-        let animation_bytes = animation::write(&options, &self.stills)?;
+        let animation_bytes = animation::write(&animation, &self.stills)?;
         self.add(&Timings { animation: begin.elapsed(), animation_bytes, ..Timings::default() });
         Ok(())
     }
@@ -136,7 +132,7 @@ fn picture(folder: &Path, number: usize) -> PathBuf {
 
 impl Observer for FrameWriter {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
-        let renderer = Renderer::new(info, &self.options)?;
+        let renderer = Renderer::new(info, &self.look)?;
         let waiting = self.memory / (PARTICLE_BYTES * info.particles.max(1));
         let (jobs, waiting) = sync_channel(waiting.clamp(*WAITING.start(), *WAITING.end()));
         let (pictures, drawn) = sync_channel(DRAWN);

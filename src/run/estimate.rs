@@ -3,6 +3,7 @@
 use super::size::{Output, gigabytes};
 use crate::base::error::Result;
 use crate::base::finding::StepLimit;
+use crate::base::units::ms;
 use crate::base::wording::counted;
 use crate::engine::Engine;
 use crate::engine::memory::StageBytes;
@@ -123,7 +124,7 @@ fn trial(engine: &mut Engine) -> Result<(f64, u64)> {
 /// Simulated time to the expected end (s): `stop.time`, or the expected strain at the pull's speed.
 fn duration(spec: &Spec, engine: &Engine) -> Option<f64> {
     let info = engine.info();
-    let gauge = info.gauge.map(|[lower, upper]| f64::from(upper - lower) * 1e-3);
+    let gauge = info.gauge.map(|[lower, upper]| upper - lower);
     let strain = info.strain_end.or(spec.stop.strain);
     let pull = match (gauge, strain, &spec.grip) {
         (Some(gauge), Some(strain), Some(grip)) => match grip.drive {
@@ -159,10 +160,10 @@ impl fmt::Display for Estimate {
         }
         match self.steps {
             Some(steps) => {
-                let first = self.step_wall * 1e3;
+                let first = ms(self.step_wall);
                 write!(f, "steps: about {steps:.0}, {first:.3} ms each over the first {}", self.measured)?;
                 match self.loaded_wall {
-                    Some(wall) => writeln!(f, ", {:.3} ms once wires flow and touch", wall * 1e3)?,
+                    Some(wall) => writeln!(f, ", {:.3} ms once wires flow and touch", ms(wall))?,
                     None => writeln!(f)?,
                 }
                 let wall = steps * self.loaded_wall.unwrap_or(self.step_wall);
@@ -171,7 +172,7 @@ impl fmt::Display for Estimate {
             None => writeln!(f, "steps: unknown, because the scene ends at no strain, time or number of steps")?,
         }
         let shares = self.stage_wall.iter().filter(|(_, wall)| *wall > 0.0);
-        let times: Vec<String> = shares.map(|(name, wall)| format!("{name} {:.4} ms", wall * 1e3)).collect();
+        let times: Vec<String> = shares.map(|(name, wall)| format!("{name} {:.4} ms", ms(*wall))).collect();
         writeln!(f, "by stage: {}", times.join(", "))?;
         let each = |bytes: usize| bytes / self.particles;
         let kept = self.bytes.stages().into_iter().filter(|(_, bytes)| each(bytes.kept) > 0);

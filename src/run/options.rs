@@ -1,5 +1,6 @@
 //! What a run is asked for.
 
+use crate::observe::animation::Animation;
 use std::path::{Path, PathBuf};
 
 /// Where a run goes and what it writes.
@@ -38,13 +39,4 @@ impl RunOptions {
             live,
         }
     }
-}
-
-/// An animation of the frames, as it is asked for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Animation {
-    /// Its file: `.gif`, or `.png` or `.apng` for an animated PNG.
-    pub file: PathBuf,
-    /// Width, when it is to be smaller than the frames (px).
-    pub width: Option<u32>,
 }

@@ -9,10 +9,6 @@ use crate::observe::Observer;
 use crate::observe::origin::Origin;
 use crate::observe::timings::Timings;
 use crate::observe::trajectory::TrajectoryWriter;
-#[cfg(feature = "render")]
-use crate::observe::units::mm;
-#[cfg(feature = "render")]
-use crate::scene::spec::OutputSpec;
 use crate::scene::spec::Spec;
 use std::sync::{Arc, Mutex};
 
@@ -38,7 +34,7 @@ pub fn built_without(what: &str, feature: &str, instead: &str) -> Error {
 /// # Errors
 /// [`Error::Missing`]: no graphics adapter, nobody listening, or a feature that was not built.
 pub(super) fn check(options: &RunOptions) -> Result<()> {
-    if options.frames {
+    if options.frames || options.animation.is_some() {
         check_frames()?;
     }
     if let Some(animation) = &options.animation {
@@ -48,17 +44,6 @@ pub(super) fn check(options: &RunOptions) -> Result<()> {
         check_recording(options.live.as_deref())?;
     }
     Ok(())
-}
-
-impl Animation {
-    /// Checks that it can be written without replacing anything.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a file name with another ending, or one that is taken while `overwrite` is not set.
-    pub fn check(&self, overwrite: bool) -> Result<()> {
-        check_animation(self)?;
-        check_target(&self.file, overwrite, "--animation")
-    }
 }
 
 /// A size for people.
@@ -107,47 +92,9 @@ fn check_frames() -> Result<()> {
 }
 
 #[cfg(feature = "render")]
-fn check_animation(animation: &Animation) -> Result<()> {
-    animation_options(animation).map(|_| ())
-}
-
-#[cfg(not(feature = "render"))]
-fn check_animation(_animation: &Animation) -> Result<()> {
-    check_frames()
-}
-
-/// The same for those who draw.
-///
-/// # Errors
-/// [`Error::Input`] for a file name with another ending.
-#[cfg(feature = "render")]
-pub fn animation_options(animation: &Animation) -> Result<crate::render::AnimationOptions> {
-    crate::render::AnimationOptions::new(animation.file.clone(), animation.width)
-}
-
-/// What a scene says of frames, for those who draw.
-#[cfg(feature = "render")]
-pub fn frame_options(output: &OutputSpec) -> crate::render::FrameOptions {
-    let camera = &output.camera;
-    crate::render::FrameOptions {
-        size: output.frame_size,
-        colour: output.colour,
-        views: output.views.clone(),
-        theme: output.theme,
-        camera: crate::render::CameraOptions {
-            azimuth_deg: camera.azimuth.to_degrees() as f32,
-            elevation_deg: camera.elevation.to_degrees() as f32,
-            zoom: camera.zoom as f32,
-            focus_z_mm: camera.focus_z.map(|z| mm(z) as f32),
-        },
-    }
-}
-
-#[cfg(feature = "render")]
 fn frames(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Frames> {
-    let animation = options.animation.as_ref().map(animation_options).transpose()?;
-    let writer = crate::render::FrameWriter::new(&folder.file(folder::FRAMES), frame_options(&spec.output))?;
-    let writer = writer.with_animation(animation).with_memory(WAITING_FRAMES);
+    let writer = crate::render::FrameWriter::new(&folder.file(folder::FRAMES), &spec.output)?;
+    let writer = writer.with_animation(options.animation.clone()).with_memory(WAITING_FRAMES);
     let timings = writer.shared_timings();
     Ok((Box::new(writer), timings))
 }

@@ -138,7 +138,7 @@ fn the_stress_of_a_broken_bond() {
     };
     copy.snapshots(set(0.0));
     assert!(copy.passes("broken-bonds"), "{:?}", wrong(&copy.run));
-    copy.snapshots(set(9614.0));
+    copy.snapshots(set(9614e6));
     assert!(copy.fails("broken-bonds"));
 }
 
@@ -147,7 +147,7 @@ fn a_bond_above_its_law() {
     // A bond that flows is at its yield stress.
     let more = |snapshot: &mut Snapshot| {
         if let Some(slot) = snapshot.bond_state.iter().position(|state| *state == BondState::Yielding) {
-            snapshot.bond_stress[slot] = 500.0;
+            snapshot.bond_stress[slot] = 500e6;
         }
     };
     caught(&["bond-law"], |run| run.snapshots(more));

@@ -4,21 +4,21 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 use std::f32::consts::TAU;
-use strandsnap::engine::view::{BondState, RunInfo, Rupture, RuptureCause, Sample, Snapshot, WireInfo};
+use strandsnap::engine::view::{BondState, RunInfo, Rupture, RuptureCause, Snapshot, WireInfo};
 
-/// Wire diameter (mm).
-pub const DIAMETER: f32 = 0.39;
-/// Length of the strand (mm).
-pub const LENGTH: f32 = 120.0;
-/// Wires per layer, inside out.
-const LAYERS: [(usize, f32); 3] = [(5, 0.332), (11, 0.722), (18, 1.165)];
-const PITCH: f32 = 39.0;
+/// Wire diameter (m).
+pub const DIAMETER: f32 = 0.39e-3;
+/// Length of the strand (m).
+pub const LENGTH: f32 = 120e-3;
+/// Wires per layer, inside out, and their lay radius (m).
+const LAYERS: [(usize, f32); 3] = [(5, 0.332e-3), (11, 0.722e-3), (18, 1.165e-3)];
+const PITCH: f32 = 39e-3;
 /// Particles per wire.
 const PARTICLES: usize = 312;
 
-/// What broke: wire from 0, and z before loading (mm), in the order of rupture.
+/// What broke: wire from 0, and z before loading (m), in the order of rupture.
 pub const BREAKS: [(usize, f32); 7] =
-    [(24, 64.0), (25, 62.5), (26, 66.0), (31, 58.0), (17, 70.0), (12, 63.0), (24, 69.0)];
+    [(24, 64e-3), (25, 62.5e-3), (26, 66e-3), (31, 58e-3), (17, 70e-3), (12, 63e-3), (24, 69e-3)];
 
 /// The strand before loading.
 pub fn ka4_like() -> RunInfo {
@@ -33,25 +33,23 @@ pub fn single_wire() -> RunInfo {
 fn strand(name: &str, layers: &[&str], wires: &[(usize, f32)]) -> RunInfo {
     let mut info = RunInfo {
         name: name.into(),
-        about: "A made-up strand for tests of pictures.".into(),
         layers: layers.iter().map(|l| (*l).into()).collect(),
-        wires: Vec::new(),
-        wire_particles: 0,
-        particles: 0,
-        radius: Vec::new(),
-        rest_position: Vec::new(),
-        gauge: Some([10.0, 110.0]),
-        stress_range: [0.0, 420.0],
+        gauge: Some([10e-3, 110e-3]),
+        stress_range: [0.0, 420e6],
         plastic_strain_range: [0.0, 0.3],
         speed_range: [0.0, 2.0],
-        contact_pressure_range: [0.0, 30.0],
+        contact_pressure_range: [0.0, 30e6],
         strain_end: Some(0.2857),
-        negligible_energy: 1e-12,
-        wave_passage: 3e-5,
+        ..RunInfo::default()
     };
     for (layer, (count, lay_radius)) in wires.iter().copied().enumerate() {
         for k in 0..count {
-            info.wires.push(WireInfo { layer, first: info.rest_position.len(), len: PARTICLES, diameter: DIAMETER });
+            info.wires.push(WireInfo {
+                layer,
+                first: info.rest_position.len(),
+                len: PARTICLES,
+                diameter: DIAMETER.into(),
+            });
             for i in 0..PARTICLES {
                 let z = LENGTH * i as f32 / (PARTICLES - 1) as f32;
                 let angle = TAU * (k as f32 / count as f32 + z / PITCH);
@@ -67,22 +65,12 @@ fn strand(name: &str, layers: &[&str], wires: &[(usize, f32)]) -> RunInfo {
 
 /// The strand at a strain (-), whole.
 pub fn stretched(info: &RunInfo, strain: f32) -> Snapshot {
-    let [low, high] = info.gauge.expect("the strand has grips");
+    let [low, high] = info.gauge.expect("the strand has grips").map(|z| z as f32);
     let thin = (1.0 + strain).powf(-0.5);
     let stress = hardening(strain);
-    let mut s = Snapshot {
-        sample: Sample::default(),
-        position: Vec::new(),
-        radius: Vec::new(),
-        speed: Vec::new(),
-        bond_state: Vec::new(),
-        bond_stress: Vec::new(),
-        plastic_strain: Vec::new(),
-        utilisation: Vec::new(),
-        contact_pressure: Vec::new(),
-    };
+    let mut s = Snapshot::default();
     s.sample.strain = f64::from(strain);
-    s.sample.stress = f64::from(stress * 1e6 / (1.0 + strain));
+    s.sample.stress = f64::from(stress / (1.0 + strain));
     for (w, wire) in info.wires.iter().enumerate() {
         for i in 0..wire.len {
             let p = info.rest_position[wire.first + i];
@@ -94,19 +82,19 @@ pub fn stretched(info: &RunInfo, strain: f32) -> Snapshot {
             s.speed.push(2.0 * (z / (LENGTH * (1.0 + strain))));
             let last = i + 1 == wire.len;
             s.bond_state.push(if last { BondState::Absent } else { BondState::Yielding });
-            let ripple = 1.0 + 0.05 * (0.35 * p[2] + 1.7 * w as f32).sin();
+            let ripple = 1.0 + 0.05 * (350.0 * p[2] + 1.7 * w as f32).sin();
             let level = if free { stress * ripple * (0.9 + 0.05 * wire.layer as f32) } else { 0.25 * stress };
             s.bond_stress.push(if last { 0.0 } else { level });
             s.plastic_strain.push(if last || !free { 0.0 } else { (strain * ripple).max(0.0) });
             s.utilisation.push(strain / 0.3);
-            s.contact_pressure.push(if free { 60.0 * strain } else { 0.0 });
+            s.contact_pressure.push(if free { 60e6 * strain } else { 0.0 });
         }
     }
     s
 }
 
 fn hardening(strain: f32) -> f32 {
-    (110e3 * strain).min(110.0 + 300.0 * (1.0 - (-6.0 * strain).exp()))
+    (110e9 * strain).min(110e6 + 300e6 * (1.0 - (-6.0 * strain).exp()))
 }
 
 /// The same with the first `count` of [`BREAKS`], ends sprung back and out by up to a millimetre.
@@ -116,7 +104,7 @@ pub fn snapped(info: &RunInfo, strain: f32, count: usize) -> (Snapshot, Vec<Rupt
 
 /// Every wire broken, most of them near the middle.
 pub fn all_snapped(info: &RunInfo, strain: f32) -> (Snapshot, Vec<Rupture>) {
-    let place = |w: usize| 60.0 + 14.0 * (2.7 * w as f32).sin();
+    let place = |w: usize| 60e-3 + 14e-3 * (2.7 * w as f32).sin();
     let breaks: Vec<_> = (0..info.wires.len()).map(|k| (k * 23) % info.wires.len()).map(|w| (w, place(w))).collect();
     broken(info, strain, &breaks)
 }
@@ -138,8 +126,8 @@ fn broken(info: &RunInfo, strain: f32, breaks: &[(usize, f32)]) -> (Snapshot, Ve
             layer: info.wires[w].layer,
             bond,
             bond_in_wire: bond - info.wires[w].first,
-            position: s.position[bond].map(|v| f64::from(v) * 1e-3),
-            rest_z: f64::from(info.rest_position[bond][2]) * 1e-3,
+            position: s.position[bond].map(f64::from),
+            rest_z: f64::from(info.rest_position[bond][2]),
             cause: RuptureCause::PlasticStrain,
             stress: 400e6,
             body_stress: 300e6,
@@ -152,7 +140,7 @@ fn broken(info: &RunInfo, strain: f32, breaks: &[(usize, f32)]) -> (Snapshot, Ve
     (s, ruptures)
 }
 
-/// Bond slot of wire `w` nearest to `z` before loading (mm).
+/// Bond slot of wire `w` nearest to `z` before loading (m).
 pub fn bond_at(info: &RunInfo, w: usize, z: f32) -> usize {
     let wire = &info.wires[w];
     let distance = |i: &usize| (info.rest_position[*i][2] - z).abs();
@@ -173,50 +161,39 @@ fn spring_back(info: &RunInfo, s: &mut Snapshot, w: usize, bond: usize) {
             let lift = 1.0 + 0.35 * (-(away as f32) / 4.0).exp() * if wire.layer == 2 { 1.0 } else { 0.0 };
             s.position[i][0] *= lift;
             s.position[i][1] *= lift;
-            s.position[i][2] += side * 0.5 * (1.0 - away as f32 / 40.0);
+            s.position[i][2] += side * 0.5e-3 * (1.0 - away as f32 / 40.0);
         }
     }
 }
 
 /// A curve up to `strain` (-).
 pub fn curve(strain: f32) -> Vec<(f64, f64)> {
-    (0..=400)
-        .map(|k| strain * k as f32 / 400.0)
-        .map(|e| (f64::from(e), f64::from(hardening(e) * 1e6 / (1.0 + e))))
-        .collect()
+    (0..=400).map(|k| strain * k as f32 / 400.0).map(|e| (f64::from(e), f64::from(hardening(e) / (1.0 + e)))).collect()
 }
 
 /// Two free spheres.
 pub fn two_spheres() -> (RunInfo, Snapshot) {
-    let position = vec![[0.0, 0.0, 0.0], [0.1, 0.2, 1.3]];
+    let position = vec![[0.0, 0.0, 0.0], [0.1e-3, 0.2e-3, 1.3e-3]];
     let info = RunInfo {
         name: "two-spheres".into(),
-        about: "Two spheres".into(),
-        layers: Vec::new(),
-        wires: Vec::new(),
-        wire_particles: 0,
         particles: 2,
-        radius: vec![0.5, 0.6],
+        radius: vec![0.5e-3, 0.6e-3],
         rest_position: position.clone(),
-        gauge: None,
         stress_range: [0.0, 1.0],
         plastic_strain_range: [0.0, 1.0],
         speed_range: [0.0, 1.0],
-        contact_pressure_range: [0.0, 30.0],
-        strain_end: None,
-        negligible_energy: 1e-12,
-        wave_passage: 3e-5,
+        ..RunInfo::default()
     };
     let snapshot = Snapshot {
-        sample: Sample::default(),
         position,
-        radius: vec![0.5, 0.6],
+        radius: vec![0.5e-3, 0.6e-3],
         speed: vec![0.3, 0.8],
         bond_state: vec![BondState::Absent; 2],
         bond_stress: vec![0.0; 2],
         plastic_strain: vec![0.0; 2],
         utilisation: vec![0.0; 2],
         contact_pressure: vec![0.0; 2],
+        ..Snapshot::default()
     };
     (info, snapshot)
 }
@@ -226,12 +203,12 @@ pub fn bent_wire() -> (RunInfo, Snapshot) {
     let mut info = single_wire();
     info.name = "cantilever-like".into();
     info.gauge = None;
-    let mut snapshot = stretched(&RunInfo { gauge: Some([0.0, LENGTH]), ..info.clone() }, 0.0);
+    let mut snapshot = stretched(&RunInfo { gauge: Some([0.0, LENGTH.into()]), ..info.clone() }, 0.0);
     let bend = LENGTH * 2.0 / std::f32::consts::PI;
     for (k, p) in snapshot.position.iter_mut().enumerate() {
         let angle = p[2] / bend;
         *p = [0.0, bend * (1.0 - angle.cos()), bend * angle.sin()];
-        snapshot.bond_stress[k] = 300.0 * angle.cos();
+        snapshot.bond_stress[k] = 300e6 * angle.cos();
     }
     (info, snapshot)
 }

@@ -10,10 +10,11 @@ use strandsnap::base::random::uniform;
 use strandsnap::engine::view::{BondState, Energy, RunInfo, Rupture, RuptureCause, Sample, Snapshot, WireInfo};
 use strandsnap::observe::Observer;
 
-const DIAMETER: f64 = 0.39;
-const PITCH: f64 = 39.0;
-const LENGTH: f64 = 120.0;
-const LAYERS: [(&str, usize, f64); 3] = [("inner", 5, 0.332), ("middle", 11, 0.722), ("outer", 18, 1.165)];
+// Diameter, pitch, length and lay radii (m).
+const DIAMETER: f64 = 0.39e-3;
+const PITCH: f64 = 39e-3;
+const LENGTH: f64 = 120e-3;
+const LAYERS: [(&str, usize, f64); 3] = [("inner", 5, 0.332e-3), ("middle", 11, 0.722e-3), ("outer", 18, 1.165e-3)];
 /// Strain at the end (-).
 const STRAIN_END: f64 = 0.27;
 /// Wire (from 0), strain at which it breaks (-), place along it (-).
@@ -91,7 +92,7 @@ fn info() -> RunInfo {
         let arc = LENGTH * (1.0 + (radius * turn).powi(2)).sqrt();
         let len = (arc / DIAMETER) as usize + 1;
         for wire in 0..*count {
-            wires.push(WireInfo { layer, first: rest_position.len(), len, diameter: DIAMETER as f32 });
+            wires.push(WireInfo { layer, first: rest_position.len(), len, diameter: DIAMETER });
             rest_position.extend((0..len).map(|k| {
                 let z = LENGTH * k as f64 / (len - 1) as f64;
                 let angle = turn * z + TAU * wire as f64 / *count as f64;
@@ -109,11 +110,11 @@ fn info() -> RunInfo {
         particles,
         radius: vec![(0.5 * DIAMETER) as f32; particles],
         rest_position,
-        gauge: Some([10.0, 110.0]),
-        stress_range: [0.0, 420.0],
+        gauge: Some([10e-3, 110e-3]),
+        stress_range: [0.0, 420e6],
         plastic_strain_range: [0.0, 0.3],
         speed_range: [0.0, 10.0],
-        contact_pressure_range: [0.0, 40.0],
+        contact_pressure_range: [0.0, 40e6],
         strain_end: Some(STRAIN_END),
         negligible_energy: 1e-12,
         wave_passage: 3e-5,
@@ -164,16 +165,16 @@ fn snapshot(info: &RunInfo, sample: &Sample, broken: &[(usize, f64)]) -> Snapsho
         position: (0..n)
             .map(|i| {
                 let [x, y, z] = info.rest_position[i];
-                [x * thin + 2e-3 * noise(i, 1), y * thin + 2e-3 * noise(i, 2), z * stretch + 2e-3 * noise(i, 3)]
+                [x * thin + 2e-6 * noise(i, 1), y * thin + 2e-6 * noise(i, 2), z * stretch + 2e-6 * noise(i, 3)]
             })
             .collect(),
         radius: info.radius.iter().map(|r| r * thin).collect(),
         speed: (0..n).map(|i| 1.0 + noise(i, 4)).collect(),
         bond_state: vec![if sample.strain > 8e-4 { BondState::Yielding } else { BondState::Whole }; n],
-        bond_stress: (0..n).map(|i| (stress(sample.strain) * 1e-6) as f32 * stretch + 8.0 * noise(i, 5)).collect(),
+        bond_stress: (0..n).map(|i| stress(sample.strain) as f32 * stretch + 8e6 * noise(i, 5)).collect(),
         plastic_strain: (0..n).map(|i| stretch.ln() * (1.0 + 0.02 * noise(i, 6))).collect(),
         utilisation: (0..n).map(|i| stretch.ln() / 0.3 * (1.0 + 0.02 * noise(i, 6))).collect(),
-        contact_pressure: (0..n).map(|i| 100.0 * (stretch - 1.0) * (1.0 + noise(i, 7))).collect(),
+        contact_pressure: (0..n).map(|i| 100e6 * (stretch - 1.0) * (1.0 + noise(i, 7))).collect(),
     };
     for wire in &info.wires {
         all.bond_state[wire.first + wire.len - 1] = BondState::Absent;
@@ -186,9 +187,9 @@ fn snapshot(info: &RunInfo, sample: &Sample, broken: &[(usize, f64)]) -> Snapsho
 fn open(all: &mut Snapshot, wire: &WireInfo, along: f64) {
     let at = bond_of(wire, along);
     for k in 0..wire.len {
-        let distance = (k as f32 - at as f32 - 0.5) * 0.39;
-        let near = (-distance.abs() / 12.0).exp();
-        all.position[wire.first + k][2] += 0.9 * near * distance.signum();
+        let distance = (k as f32 - at as f32 - 0.5) * 0.39e-3;
+        let near = (-distance.abs() / 12e-3).exp();
+        all.position[wire.first + k][2] += 0.9e-3 * near * distance.signum();
         all.bond_stress[wire.first + k] *= 1.0 - near;
     }
     all.bond_state[wire.first + at] = BondState::Broken;
@@ -204,7 +205,7 @@ fn rupture(info: &RunInfo, order: usize, wire: usize, strain: f64, along: f64) -
     let bond_in_wire = bond_of(of, along);
     let bond = of.first + bond_in_wire;
     let rest: [f64; 3] = std::array::from_fn(|axis| {
-        0.5 * f64::from(info.rest_position[bond][axis] + info.rest_position[bond + 1][axis]) * 1e-3
+        0.5 * f64::from(info.rest_position[bond][axis] + info.rest_position[bond + 1][axis])
     });
     let thin = (1.0 + strain).powf(-0.5);
     Rupture {

@@ -1,10 +1,10 @@
 //! The curve and what goes with it: scalars over the timelines.
 
-use super::map::wires_of;
 use super::names;
 use super::paint::distinct;
 use super::stream::{Instant, Stream};
 use crate::base::error::Result;
+use crate::base::units::mpa;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::wording::wire_number;
 use rerun::external::arrow::array::Float64Array;
@@ -37,7 +37,7 @@ pub(super) fn send_names(stream: &Stream, info: &RunInfo) -> Result<()> {
         .with_widths(vec![2.0; info.layers.len()]);
     stream.fixed(names::LAYER_STRESS, &layers)?;
     for layer in 0..info.layers.len() {
-        let wires = wires_of(info, layer).map(|(number, _)| format!("wire {} [MPa]", wire_number(number)));
+        let wires = info.wires_of(layer).map(|(number, _)| format!("wire {} [MPa]", wire_number(number)));
         stream.fixed(names::layer(names::WIRE_STRESS, info, layer), &SeriesLines::new().with_names(wires))?;
     }
     stream.fixed(names::BROKEN, &SeriesLines::new().with_names(["wires broken", "bonds broken"]))?;
@@ -56,11 +56,11 @@ pub(super) fn send(stream: &Stream, info: &RunInfo, samples: &[Sample]) -> Resul
         let array = Arc::new(Float64Array::from(rows.concat()));
         stream.rows(path, &instants, [(SerializedComponentBatch::new(array, Scalars::descriptor_scalars()), lengths)])
     };
-    series(names::BODY_STRESS.into(), &|s| vec![s.stress * 1e-6])?;
-    series(names::LAYER_STRESS.into(), &|s| s.layer_stress.iter().map(|v| v * 1e-6).collect())?;
+    series(names::BODY_STRESS.into(), &|s| vec![mpa(s.stress)])?;
+    series(names::LAYER_STRESS.into(), &|s| s.layer_stress.iter().copied().map(mpa).collect())?;
     for layer in 0..info.layers.len() {
-        let wires: Vec<_> = wires_of(info, layer).map(|(number, _)| number).collect();
-        let stress = |s: &Sample| wires.iter().map(|w| s.wire_stress[*w] * 1e-6).collect();
+        let wires: Vec<_> = info.wires_of(layer).map(|(number, _)| number).collect();
+        let stress = |s: &Sample| wires.iter().map(|w| mpa(s.wire_stress[*w])).collect();
         series(names::layer(names::WIRE_STRESS, info, layer), &stress)?;
     }
     series(names::BROKEN.into(), &|s| vec![s.wires_broken as f64, s.bonds_broken as f64])?;

@@ -1,11 +1,12 @@
 //! The first break, told apart from all others: marked and named in space, where it moves along with the wire's ends.
 
-use super::map::extent;
 use super::sections::thickness;
-use super::stream::{Instant, Stream, strips, vectors};
+use super::stream::{Instant, Stream, in_mm, strips, vectors};
 use super::{curve, names, paint};
 use crate::base::error::Result;
+use crate::base::units::mm;
 use crate::engine::view::{RunInfo, Rupture, Snapshot};
+use crate::observe::unrolled::ends;
 use rerun::{Color, LineStrips3D, Points3D, Radius};
 
 /// Distance of the label from the axis in the close view, in thicknesses of the body (-).
@@ -47,19 +48,19 @@ pub(super) struct FirstBreak {
 impl FirstBreak {
     /// Where it happened.
     pub fn new(rupture: &Rupture) -> Self {
-        Self { rupture: rupture.clone(), places: vec![(rupture.into(), rupture.position.map(|x| (x * 1e3) as f32))] }
+        Self { rupture: rupture.clone(), places: vec![(rupture.into(), super::marks::place(rupture))] }
     }
 
     /// Takes note of where the two ends are.
     pub fn snapshot(&mut self, snapshot: &Snapshot) {
-        let [a, b] = [self.rupture.bond, self.rupture.bond + 1].map(|i| snapshot.position[i]);
+        let [a, b] = [self.rupture.bond, self.rupture.bond + 1].map(|i| in_mm(snapshot.position[i]));
         let middle = std::array::from_fn(|axis| 0.5 * (a[axis] + b[axis]));
         self.places.push((curve::instant(&snapshot.sample), middle));
     }
 
     /// z of the place before loading (mm).
     pub fn rest_z(&self) -> f32 {
-        (self.rupture.rest_z * 1e3) as f32
+        mm(self.rupture.rest_z) as f32
     }
 
     /// Where it was last (mm).
@@ -77,7 +78,7 @@ impl FirstBreak {
     /// # Errors
     /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&self, stream: &Stream, info: &RunInfo, gaze: Gaze, from: usize) -> Result<()> {
-        let [low, high] = extent(info);
+        let [low, high] = ends(info).map(|z| z as f32);
         self.send_at(names::FIRST_BREAK, NEAR * thickness(info), stream, info, gaze, from)?;
         self.send_at(names::FIRST_BREAK_FAR, FAR * (high - low), stream, info, gaze, from)
     }

@@ -1,6 +1,6 @@
 //! Grips: a box around what each holds.
 
-use super::stream::{Instant, Stream, vectors};
+use super::stream::{Instant, Stream, in_mm, vectors};
 use super::{names, paint};
 use crate::base::error::Result;
 use crate::engine::view::{RunInfo, Snapshot};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// # Errors
 /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
 pub(super) fn send(stream: &Stream, info: &RunInfo, instants: &[Instant], snapshots: &[Arc<Snapshot>]) -> Result<()> {
-    let Some([lower, upper]) = info.gauge else { return Ok(()) };
+    let Some([lower, upper]) = info.gauge.map(|faces| faces.map(|z| z as f32)) else { return Ok(()) };
     let held = [held(info, |z| z <= lower), held(info, |z| z >= upper)];
     if held.iter().any(Vec::is_empty) {
         return Ok(());
@@ -41,17 +41,17 @@ pub(super) fn send_style(stream: &Stream) -> Result<()> {
 fn held(info: &RunInfo, beyond: impl Fn(f32) -> bool) -> Vec<usize> {
     let outermost = info.layers.len().saturating_sub(1);
     let wires = info.wires.iter().filter(|wire| wire.layer == outermost);
-    wires.flat_map(|wire| wire.first..wire.first + wire.len).filter(|i| beyond(info.rest_position[*i][2])).collect()
+    wires.flat_map(|wire| wire.particles()).filter(|i| beyond(info.rest_position[*i][2])).collect()
 }
 
 /// Centre and half size of the box around particles (mm).
 fn bounds(snapshot: &Snapshot, particles: &[usize]) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for &i in particles {
-        let r = snapshot.radius[i];
+        let ([r], place) = (in_mm([snapshot.radius[i]]), in_mm(snapshot.position[i]));
         for axis in 0..3 {
-            low[axis] = low[axis].min(snapshot.position[i][axis] - r);
-            high[axis] = high[axis].max(snapshot.position[i][axis] + r);
+            low[axis] = low[axis].min(place[axis] - r);
+            high[axis] = high[axis].max(place[axis] + r);
         }
     }
     let halves = |f: fn(f32, f32) -> f32| std::array::from_fn(|axis| f(low[axis], high[axis]));

@@ -1,15 +1,16 @@
 //! What the run found, in a few words that are read without a click: the first break, then the result.
 
-use super::stream::Stream;
-use super::{RERUN_VERSION, names};
+use super::names;
+use super::sink::RERUN_VERSION;
+use super::stream::{self, Stream};
 use crate::base::error::Result;
 use crate::base::finding::Notice;
+use crate::base::units::{mm, mpa, percent};
 use crate::base::wording::counted;
 use crate::base::worst::renew;
 use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::summary::RunSummary;
-use crate::observe::units::{mm, mpa, percent};
-use crate::observe::wording::{OneDraw, wire_number};
+use crate::observe::wording::{OneDraw, layer_words, wire_number};
 use rerun::TextDocument;
 use std::fmt::Write;
 
@@ -107,7 +108,7 @@ fn send(stream: &Stream, text: &str) -> Result<()> {
 }
 
 fn first_break(info: &RunInfo, first: &Rupture, one_draw: bool) -> String {
-    let of = if info.wires.len() > 1 { format!(", {}", names::layer_name(info, first.layer)) } else { String::new() };
+    let of = if info.wires.len() > 1 { format!(", {}", layer_words(info, first.layer)) } else { String::new() };
     let body = if info.wires.len() > 1 { "strand" } else { "wire" };
     format!(
         "# 1st break{}: wire {}{of}\n## z = {:.1} mm, strain {:.2} %, {:.1} MPa\n\
@@ -154,7 +155,7 @@ fn result(summary: &RunSummary, warnings: usize) -> String {
 /// What the run is.
 pub(super) fn about(info: &RunInfo) -> String {
     let wires = info.layers.iter().enumerate().map(|(layer, name)| {
-        let count = super::map::wires_of(info, layer).count();
+        let count = info.wires_of(layer).count();
         format!("- {name}: {}\n", counted(count, "wire"))
     });
     let wires: String = wires.collect();
@@ -166,9 +167,9 @@ pub(super) fn about(info: &RunInfo) -> String {
         info.name,
         info.about,
         counted(info.particles, "particle"),
-        super::STRAIN,
-        info.stress_range[0],
-        info.stress_range[1],
+        stream::STRAIN,
+        mpa(info.stress_range[0]),
+        mpa(info.stress_range[1]),
         env!("CARGO_PKG_VERSION"),
     )
 }

@@ -5,11 +5,13 @@
 
 use super::chart::Chart;
 use super::first_break::Gaze;
-use super::map::{Map, extent};
+use super::map::Map;
 use super::sections::thickness;
 use super::{names, stream};
 use crate::base::error::Result;
 use crate::engine::view::RunInfo;
+use crate::observe::unrolled::ends;
+use crate::observe::wording::layer_words;
 use rerun::blueprint::components::{
     BackgroundKind, ContainerKind, Corner2D, Eye3DKind, IncludedContent, PanelState, PlayState, RootContainer,
     VisualBounds2D,
@@ -67,7 +69,7 @@ pub(super) fn send(
 }
 
 fn messages(id: &str, scenery: &Scenery) -> RecordingStreamResult<Vec<LogMsg>> {
-    let (store, memory) = RecordingStreamBuilder::new(super::APPLICATION)
+    let (store, memory) = RecordingStreamBuilder::new(names::APPLICATION)
         .enabled(true)
         .recording_id(id.to_owned())
         .blueprint()
@@ -146,7 +148,7 @@ impl Layout {
         let outside = self.close_view(place, scenery, outermost, Wires::Tubes)?;
         let mut shown = Vec::new();
         if let Some(layer) = scenery.broken_layer.filter(|layer| *layer < outermost) {
-            let off: Vec<_> = (layer + 1..=outermost).map(|layer| names::layer_name(info, layer)).collect();
+            let off: Vec<_> = (layer + 1..=outermost).map(|layer| layer_words(info, layer)).collect();
             let name = format!("The same without the {}", off.join(" and "));
             let inside = self.close_view(&name, scenery, layer, Wires::Tubes)?;
             let particles = self.close_view("Particles", scenery, layer, Wires::Particles)?;
@@ -322,7 +324,7 @@ fn wires_of_all(info: &RunInfo) -> std::ops::Range<usize> {
 
 /// The camera that sees the whole strand at its longest, its axis to the right.
 fn whole_eye(scenery: &Scenery) -> blueprint::EyeControls3D {
-    let [low, high] = extent(scenery.info);
+    let [low, high] = ends(scenery.info).map(|z| z as f32);
     let longest = (high - low) * (1.0 + scenery.info.strain_end.unwrap_or(0.0) as f32);
     let middle = [0.0, 0.0, low + 0.5 * longest];
     let distance = 0.5 * 1.04 * longest / ASPECT / (0.5 * FIELD_OF_VIEW).tan();

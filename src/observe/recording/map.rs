@@ -3,21 +3,19 @@
 
 use super::names;
 use super::paint::{FIRST, NEUTRAL, Scale};
-use super::stream::Stream;
+use super::stream::{Stream, in_mm};
 use crate::base::error::Result;
-use crate::engine::view::{RunInfo, Rupture, WireInfo};
-use crate::observe::wording::wire_number;
+use crate::base::ticks::{label, ticks};
+use crate::base::units::mm;
+use crate::engine::view::{RunInfo, Rupture};
+use crate::observe::unrolled::Unrolled;
+use crate::observe::wording::{layer_words, wire_number};
 use rerun::{Color, LineStrips2D, Points2D, Radius};
 
 /// Height of the map over its width (-): wires are far thinner than they are long.
 const ASPECT: f32 = 0.5;
 /// Gap between layers, in rows.
-const LAYER_GAP: f32 = 1.5;
-
-/// Wires of a layer with their indices.
-pub(super) fn wires_of(info: &RunInfo, layer: usize) -> impl Iterator<Item = (usize, &WireInfo)> {
-    info.wires.iter().enumerate().filter(move |(_, wire)| wire.layer == layer)
-}
+const LAYER_GAP: f64 = 1.5;
 
 /// Columns in which neighbours write their place in the order of break.
 const ORDER_COLUMNS: usize = 2;
@@ -32,33 +30,27 @@ pub(super) struct Order {
 
 /// Where things are on the map.
 pub(super) struct Map {
+    map: Unrolled,
     /// Extent along z before loading (mm).
-    pub z: [f32; 2],
+    z: [f32; 2],
     /// Row height, in the map's own units (those of z).
-    pub row: f32,
-    /// y of each wire.
-    pub wire_y: Vec<f32>,
+    row: f32,
     /// Total height.
-    pub height: f32,
+    height: f32,
 }
 
 impl Map {
     /// Lays the map out.
     pub fn new(info: &RunInfo) -> Self {
-        let z = extent(info);
-        let gaps = LAYER_GAP * info.layers.len().saturating_sub(1) as f32;
+        let map = Unrolled::new(info, LAYER_GAP, 0..info.layers.len());
+        let z = map.ends.map(|z| z as f32);
         let height = ASPECT * (z[1] - z[0]);
-        let row = height / (info.wires.len() as f32 + gaps).max(1.0);
-        let mut wire_y = vec![0.0; info.wires.len()];
-        let mut y = 0.5 * row;
-        for layer in 0..info.layers.len() {
-            for (number, _) in wires_of(info, layer) {
-                wire_y[number] = y;
-                y += row;
-            }
-            y += LAYER_GAP * row;
-        }
-        Self { z, row, wire_y, height }
+        Self { row: height / map.rows.max(1.0) as f32, map, z, height }
+    }
+
+    /// Height of a row, or between two.
+    fn y(&self, row: f64) -> f32 {
+        self.row * row as f32
     }
 
     /// Sends what does not change: places of bonds, names of layers.
@@ -67,9 +59,9 @@ impl Map {
     /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
         for layer in 0..info.layers.len() {
-            let places = wires_of(info, layer).flat_map(|(number, wire)| {
-                let y = self.wire_y[number];
-                info.rest_position[wire.first..wire.first + wire.len].iter().map(move |p| [p[2], y])
+            let places = info.wires_of(layer).flat_map(|(number, wire)| {
+                let y = self.y(self.map.row[number]);
+                info.rest_position[wire.particles()].iter().map(move |p| [in_mm(*p)[2], y])
             });
             let points = Points2D::new(places).with_radii([Radius::new_scene_units(0.4 * self.row)]);
             stream.fixed(names::layer(names::MAP, info, layer), &points)?;
@@ -88,13 +80,13 @@ impl Map {
 
     /// Where a rupture is on the map.
     pub fn place(&self, rupture: &Rupture) -> [f32; 2] {
-        [(rupture.rest_z * 1e3) as f32, self.wire_y[rupture.wire]]
+        [mm(rupture.rest_z) as f32, self.y(self.map.row[rupture.wire])]
     }
 
     /// Where a wire's place in the order of break is written: in a column on the right, beside its row. Texts are
     /// higher than rows, so neighbours take turns in [`ORDER_COLUMNS`] columns.
     pub fn order(&self, rupture: &Rupture) -> Order {
-        let y = self.wire_y[rupture.wire];
+        let y = self.y(self.map.row[rupture.wire]);
         let length = self.z[1] - self.z[0];
         let column = (rupture.wire % ORDER_COLUMNS) as f32;
         let x = self.z[1] + (0.08 + ORDER_WIDTH * column) * length;
@@ -126,9 +118,10 @@ impl Map {
     }
 
     fn send_ticks(&self, stream: &Stream) -> Result<()> {
-        let ticks = ticks(self.z);
-        let points = Points2D::new(ticks.iter().map(|z| [*z, self.height + 0.5 * self.row]))
-            .with_labels(ticks.iter().map(|z| format!("z = {z} mm")))
+        let [low, high] = self.map.ends;
+        let ticks = ticks(low, high, 6);
+        let points = Points2D::new(ticks.values.iter().map(|z| [*z as f32, self.height + 0.5 * self.row]))
+            .with_labels(ticks.values.iter().map(|z| format!("z = {} mm", label(*z, ticks.decimals))))
             .with_show_labels(true)
             .with_colors([Color::from_u32(NEUTRAL)])
             .with_radii([Radius::new_ui_points(1.0)]);
@@ -158,16 +151,9 @@ impl Map {
     }
 
     fn send_names(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
-        let first_and_last = (0..info.layers.len()).filter_map(|layer| {
-            let first = wires_of(info, layer).next()?.0;
-            let last = wires_of(info, layer).last()?.0;
-            Some((layer, first, last))
-        });
-        let (mut places, mut labels) = (Vec::new(), Vec::new());
-        for (layer, first, last) in first_and_last {
-            places.push([self.z[0] - 0.07 * (self.z[1] - self.z[0]), 0.5 * (self.wire_y[first] + self.wire_y[last])]);
-            labels.push(format!("{} {}–{}", info.layers[layer], wire_number(first), wire_number(last)));
-        }
+        let x = self.z[0] - 0.07 * (self.z[1] - self.z[0]);
+        let places = self.map.layers.iter().map(|of| [x, self.y(of.row)]);
+        let labels = self.map.layers.iter().map(|of| format!("{} {}", info.layers[of.layer], of.numbers()));
         let points = Points2D::new(places)
             .with_labels(labels)
             .with_show_labels(true)
@@ -175,25 +161,4 @@ impl Map {
             .with_radii([Radius::new_ui_points(0.5)]);
         stream.fixed(format!("{}/names", names::MAP), &points)
     }
-}
-
-/// Round positions along z (mm), about six of them.
-fn ticks([low, high]: [f32; 2]) -> Vec<f32> {
-    let step = round_step((high - low) / 6.0);
-    let first = (low / step).ceil() as i64;
-    let last = (high / step).floor() as i64;
-    (first..=last).map(|i| i as f32 * step).collect()
-}
-
-/// The least round number that is not below `rough`.
-pub(super) fn round_step(rough: f32) -> f32 {
-    let decade = 10f32.powf(rough.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(rough)
-}
-
-/// Extent of the particles along z before loading (mm).
-pub(super) fn extent(info: &RunInfo) -> [f32; 2] {
-    let z = info.rest_position.iter().zip(&info.radius).map(|(p, r)| [p[2] - r, p[2] + r]);
-    let [low, high] = z.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)]);
-    if low < high { [low, high] } else { [0.0, 1.0] }
 }

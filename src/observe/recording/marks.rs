@@ -5,8 +5,8 @@ use super::stream::{Instant, Stream, texts, vectors};
 use super::{names, paint};
 use crate::base::error::Result;
 use crate::base::finding::Notice;
+use crate::base::units::{mm, mpa};
 use crate::engine::view::{RunInfo, Rupture};
-use crate::observe::units::mpa;
 use crate::observe::wording::{rupture_line, wire_number};
 use rerun::{Color, LineStrips2D, Points2D, Points3D, Radius, TextLog, TextLogLevel};
 use std::collections::BTreeMap;
@@ -145,6 +145,6 @@ fn label(rupture: &Rupture) -> String {
 }
 
 /// Place of the bond when it broke (mm).
-fn place(rupture: &Rupture) -> [f32; 3] {
-    rupture.position.map(|x| (x * 1e3) as f32)
+pub(super) fn place(rupture: &Rupture) -> [f32; 3] {
+    rupture.position.map(|x| mm(x) as f32)
 }

@@ -5,6 +5,8 @@ use crate::observe::wording::{self, wire_number};
 use rerun::EntityPath;
 use rerun::external::re_log_types::EntityPathPart;
 
+/// Name under which the viewer files all recordings of this program.
+pub const APPLICATION: &str = "strandsnap";
 /// Strand, by layer and wire.
 pub const STRAND: &str = "strand";
 /// Free spheres.
@@ -42,6 +44,19 @@ pub const HEADLINE: &str = "headline";
 /// What the run is.
 pub const ABOUT: &str = "about";
 
+/// Field of a particle: true axial stress of its bond (MPa).
+pub const STRESS: &str = "Bond:true_axial_stress_MPa";
+/// Field of a particle: equivalent plastic strain of its bond (-).
+pub const PLASTIC_STRAIN: &str = "Bond:equivalent_plastic_strain";
+/// Field of a particle: share of the rupture limit that its bond has reached (-).
+pub const UTILISATION: &str = "Bond:utilisation_to_rupture";
+/// Field of a particle: contact pressure (MPa).
+pub const CONTACT_PRESSURE: &str = "Bond:contact_pressure_MPa";
+/// Field of a particle: state of its bond, named by the annotation context.
+pub const STATE: &str = "Bond:state";
+/// Field of a particle, recorded when speed gives the colour (m/s).
+pub const SPEED: &str = "Bond:speed_m_per_s";
+
 /// The layer's name as a part of a path; a layer without a name is called by its number.
 fn layer_part(info: &RunInfo, layer: usize) -> String {
     match info.layers[layer].as_str() {
@@ -50,17 +65,9 @@ fn layer_part(info: &RunInfo, layer: usize) -> String {
     }
 }
 
-/// The layer's name as people say it: "outer layer".
-pub fn layer_name(info: &RunInfo, layer: usize) -> String {
-    match info.layers[layer].as_str() {
-        "" => format!("layer {}", layer + 1),
-        name => format!("{name} layer"),
-    }
-}
-
 /// What the label of the first break says: "first break in this strand: wire 24, outer layer".
 pub fn first_break(info: &RunInfo, first: &Rupture) -> String {
-    format!("{}: wire {}, {}", wording::FIRST_BREAK, wire_number(first.wire), layer_name(info, first.layer))
+    format!("{}: wire {}, {}", wording::FIRST_BREAK, wire_number(first.wire), layer_words(info, first.layer))
 }
 
 /// Entity of a layer below `root`.

@@ -1,6 +1,7 @@
 //! Colours of particles: a perceptually uniform map over a range that is fixed for the whole run.
 
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
+use crate::observe::colouring::{range, shown};
 use crate::scene::spec::ColourBy;
 use colorous::{CIVIDIS, Gradient, PLASMA, TABLEAU10, VIRIDIS};
 
@@ -16,7 +17,8 @@ pub(super) const NEUTRAL: u32 = 0x9AA3AEFF;
 /// Colours particles by one quantity.
 pub(super) struct Palette {
     by: ColourBy,
-    range: [f32; 2],
+    /// In SI; `None` where colours only tell things apart.
+    range: Option<[f64; 2]>,
     table: Vec<u32>,
     /// The bond that broke first.
     first: Option<usize>,
@@ -31,15 +33,12 @@ pub(super) struct Scale {
 impl Palette {
     /// The palette of a run.
     pub fn new(by: ColourBy, info: &RunInfo) -> Self {
-        let (gradient, range) = match by {
-            ColourBy::Stress => (VIRIDIS, info.stress_range),
-            ColourBy::PlasticStrain => (PLASMA, info.plastic_strain_range),
-            ColourBy::Utilisation => (VIRIDIS, [0.0, 1.0]),
-            ColourBy::ContactPressure => (CIVIDIS, info.contact_pressure_range),
-            ColourBy::Velocity => (CIVIDIS, info.speed_range),
-            ColourBy::Layer | ColourBy::Wire => (VIRIDIS, [0.0, 1.0]),
+        let gradient = match by {
+            ColourBy::PlasticStrain => PLASMA,
+            ColourBy::ContactPressure | ColourBy::Velocity => CIVIDIS,
+            _ => VIRIDIS,
         };
-        Self { by, range, table: (0..256).map(|i| at(gradient, i)).collect(), first: None }
+        Self { by, range: range(info, by), table: (0..256).map(|i| at(gradient, i)).collect(), first: None }
     }
 
     /// Gives the ends of the bond that broke first a colour of their own.
@@ -81,12 +80,10 @@ impl Palette {
 
     /// What a colour bar shows; `None` where colours only tell things apart.
     pub fn scale(&self) -> Option<Scale> {
-        let [low, high] = self.range;
+        let [low, high] = self.range?.map(|value| shown(self.by, value));
         let ends = match self.by {
             ColourBy::Stress => [format!("true axial stress: {low:.0} MPa"), format!("{high:.0} MPa")],
-            ColourBy::PlasticStrain => {
-                [format!("plastic strain: {:.0} %", low * 100.0), format!("{:.0} %", high * 100.0)]
-            }
+            ColourBy::PlasticStrain => [format!("plastic strain: {low:.0} %"), format!("{high:.0} %")],
             ColourBy::Utilisation => ["utilisation to rupture: 0 %".to_owned(), "100 %".to_owned()],
             ColourBy::ContactPressure => [format!("contact pressure: {low:.0} MPa"), format!("{high:.0} MPa")],
             ColourBy::Velocity => [format!("speed: {low:.1} m/s"), format!("{high:.1} m/s")],
@@ -96,8 +93,8 @@ impl Palette {
     }
 
     fn value(&self, value: f32) -> u32 {
-        let [low, high] = self.range;
-        let t = if high > low { (value - low) / (high - low) } else { 0.0 };
+        let [low, high] = self.range.unwrap_or([0.0, 1.0]);
+        let t = if high > low { (f64::from(value) - low) / (high - low) } else { 0.0 };
         self.table[(t.clamp(0.0, 1.0) * 255.0).round() as usize]
     }
 }

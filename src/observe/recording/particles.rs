@@ -1,27 +1,16 @@
 //! Particles: a batch of snapshots becomes one chunk per wire.
 
+use super::names::{CONTACT_PRESSURE, PLASTIC_STRAIN, SPEED, STATE, STRESS, UTILISATION};
 use super::paint::{Palette, slot};
-use super::stream::{Instant, Stream, bond_field, classes, colours, numbers, vectors};
-use super::{map, names, tubes};
+use super::stream::{Instant, Stream, bond_field, classes, colours, in_mm, in_mpa, numbers, vectors};
+use super::{names, tubes};
 use crate::base::error::Result;
+use crate::base::units::mm;
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use crate::scene::spec::ColourBy;
 use rerun::components::FillMode;
 use rerun::{Capsules3D, Points2D, Points3D, SerializedComponentBatch};
 use std::sync::Arc;
-
-/// Field of a particle: true axial stress of its bond (MPa).
-pub const STRESS: &str = "Bond:true_axial_stress_MPa";
-/// Field of a particle: equivalent plastic strain of its bond (-).
-pub const PLASTIC_STRAIN: &str = "Bond:equivalent_plastic_strain";
-/// Field of a particle: share of the rupture limit that its bond has reached (-).
-pub const UTILISATION: &str = "Bond:utilisation_to_rupture";
-/// Field of a particle: contact pressure (MPa).
-pub const CONTACT_PRESSURE: &str = "Bond:contact_pressure_MPa";
-/// Field of a particle: state of its bond, named by the annotation context.
-pub const STATE: &str = "Bond:state";
-/// Field of a particle, recorded when speed gives the colour (m/s).
-pub const SPEED: &str = "Bond:speed_m_per_s";
 
 /// Names of the bond states, in the order of [`BondState`].
 pub(super) const STATE_NAMES: [&str; 4] = ["whole", "yielding", "broken", "no bond"];
@@ -58,20 +47,19 @@ impl Batch<'_> {
         let each = vec![wire.len; self.snapshots.len()];
         let once = vec![1; self.snapshots.len()];
         let particles = || self.snapshots.iter().flat_map(|s| (0..wire.len).map(move |k| (s, k)));
-        let range = wire.first..wire.first + wire.len;
-        let positions = self.snapshots.iter().flat_map(|s| s.position[range.clone()].iter().copied());
+        let positions = self.snapshots.iter().flat_map(|s| s.position[wire.particles()].iter().copied().map(in_mm));
         let paint = particles().map(|(s, k)| self.palette.particle(s, wire, number, k));
-        let field = |name, values: fn(&Snapshot) -> &[f32]| {
-            (numbers(bond_field(name), particles().map(|(s, k)| values(s)[slot(wire, k)])), each.clone())
+        let field = |name, value: fn(&Snapshot, usize) -> f32| {
+            (numbers(bond_field(name), particles().map(|(s, k)| value(s, slot(wire, k)))), each.clone())
         };
-        let pressure = particles().map(|(s, k)| s.contact_pressure[wire.first + k]);
+        let pressure = particles().map(|(s, k)| in_mpa(s.contact_pressure[wire.first + k]));
         let mut batches = vec![
             (vectors(Points3D::descriptor_positions(), positions), each.clone()),
             (colours(Points3D::descriptor_colors(), paint), each.clone()),
             (numbers(Points3D::descriptor_radii(), self.snapshots.iter().map(|s| mean_radius(s, wire))), once),
-            field(STRESS, |s| &s.bond_stress),
-            field(PLASTIC_STRAIN, |s| &s.plastic_strain),
-            field(UTILISATION, |s| &s.utilisation),
+            field(STRESS, |s, slot| in_mpa(s.bond_stress[slot])),
+            field(PLASTIC_STRAIN, |s, slot| s.plastic_strain[slot]),
+            field(UTILISATION, |s, slot| s.utilisation[slot]),
             (numbers(bond_field(CONTACT_PRESSURE), pressure), each.clone()),
             (classes(STATE, particles().map(|(s, k)| s.bond_state[slot(wire, k)] as u16)), each.clone()),
         ];
@@ -87,7 +75,7 @@ impl Batch<'_> {
     }
 
     fn map_colours(&self, layer: usize) -> (SerializedComponentBatch, Vec<usize>) {
-        let wires: Vec<_> = map::wires_of(self.info, layer).collect();
+        let wires: Vec<_> = self.info.wires_of(layer).collect();
         let count = wires.iter().map(|(_, wire)| wire.len).sum();
         let paint = self.snapshots.iter().flat_map(|s| {
             wires
@@ -100,7 +88,7 @@ impl Batch<'_> {
     fn spheres(&self) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
         let range = self.info.wire_particles..self.info.particles;
         let each = vec![range.len(); self.snapshots.len()];
-        let positions = self.snapshots.iter().flat_map(|s| s.position[range.clone()].iter().copied());
+        let positions = self.snapshots.iter().flat_map(|s| s.position[range.clone()].iter().copied().map(in_mm));
         let paint = self.snapshots.iter().flat_map(|s| range.clone().map(|i| self.palette.sphere(s, i)));
         let speed = self.snapshots.iter().flat_map(|s| s.speed[range.clone()].iter().copied());
         vec![
@@ -123,13 +111,13 @@ pub(super) fn send_styles(stream: &Stream, info: &RunInfo) -> Result<()> {
 /// Mean radius of a wire now (mm). One value per wire and snapshot: a wire thins as a whole, and a radius per
 /// particle would cost as much as its stress.
 fn mean_radius(snapshot: &Snapshot, wire: &WireInfo) -> f32 {
-    let radii = &snapshot.radius[wire.first..wire.first + wire.len];
-    (radii.iter().map(|r| f64::from(*r)).sum::<f64>() / radii.len().max(1) as f64) as f32
+    let radii = &snapshot.radius[wire.particles()];
+    (mm(radii.iter().map(|r| f64::from(*r)).sum::<f64>()) / radii.len().max(1) as f64) as f32
 }
 
 /// The worst state of a wire's bonds.
 pub(super) fn wire_state(snapshot: &Snapshot, wire: &WireInfo) -> BondState {
-    let bonds = &snapshot.bond_state[wire.first..wire.first + wire.len.saturating_sub(1)];
+    let bonds = &snapshot.bond_state[wire.bonds()];
     let any = |state| bonds.contains(&state);
     if any(BondState::Broken) {
         BondState::Broken

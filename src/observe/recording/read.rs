@@ -1,6 +1,7 @@
 //! Reading a recording back: for tests, and to check a finished run against its tables.
 
-use super::{CONTACT_PRESSURE, PLASTIC_STRAIN, STRESS, UTILISATION, names, stream};
+use super::names::{CONTACT_PRESSURE, PLASTIC_STRAIN, STRESS, UTILISATION};
+use super::{names, stream};
 use crate::base::error::{Error, Result};
 use rerun::external::re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
 use rerun::log::{Chunk, LogMsg};

@@ -8,9 +8,10 @@ use super::map::Map;
 use super::marks::Marks;
 use super::paint::Palette;
 use super::sections::Sections;
+use super::sink::RERUN_VERSION;
 use super::states::States;
-use super::stream::{Instant, Stream};
-use super::{RERUN_VERSION, curve, grips, layout, names, paint, particles};
+use super::stream::{Instant, Stream, in_mm};
+use super::{curve, grips, layout, names, paint, particles};
 use crate::base::error::Result;
 use crate::base::finding::Notice;
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
@@ -187,7 +188,7 @@ impl Run {
         if info.particles == info.wire_particles {
             return Ok(());
         }
-        let radii = info.radius[info.wire_particles..].iter().copied();
+        let radii = info.radius[info.wire_particles..].iter().map(|r| in_mm([*r])[0]);
         self.stream.fixed(names::SPHERES, &Points3D::update_fields().with_radii(radii))
     }
 

@@ -1,6 +1,7 @@
 //! A thin layer over Rerun's stream: everything goes out as columns, so that a run always gives the same chunks.
 
 use crate::base::error::{Error, Result};
+use crate::base::units::{mm, mpa};
 use crate::engine::view::Rupture;
 use rerun::external::arrow::array::{
     Array, ArrayRef, FixedSizeListArray, Float32Array, ListArray, StringArray, UInt16Array, UInt32Array,
@@ -124,6 +125,16 @@ pub(super) fn vectors<const N: usize>(
     let field = Arc::new(Field::new("item", DataType::Float32, false));
     let array = FixedSizeListArray::new(field, N as i32, Arc::new(Float32Array::from(flat)), None);
     SerializedComponentBatch::new(Arc::new(array), descriptor)
+}
+
+/// A place (m) in the unit of recordings (mm).
+pub(super) fn in_mm<const N: usize>(place: [f32; N]) -> [f32; N] {
+    place.map(|x| mm(x.into()) as f32)
+}
+
+/// A stress (Pa) in the unit of recordings (MPa).
+pub(super) fn in_mpa(stress: f32) -> f32 {
+    mpa(stress.into()) as f32
 }
 
 /// Lines of `corners` points each as Rerun stores them.

@@ -4,9 +4,9 @@
 //! a twentieth of the wire's radius. Its radius is the mean over the particles that it spans, so that a wire that
 //! necks is seen to neck. At a broken bond a capsule spans one bond, so that the coloured tip is short.
 
+use super::names::{PLASTIC_STRAIN, STRESS, UTILISATION};
 use super::paint::{Palette, at_broken_bond};
-use super::particles::{PLASTIC_STRAIN, STRESS, UTILISATION};
-use super::stream::{bond_field, colours, numbers, vectors};
+use super::stream::{bond_field, colours, in_mm, in_mpa, numbers, vectors};
 use crate::engine::view::{BondState, Snapshot, WireInfo};
 use glam::{Quat, Vec3};
 use rerun::{Capsules3D, SerializedComponentBatch};
@@ -27,12 +27,12 @@ pub(super) fn batches(
     let each: Vec<usize> = pieces.iter().map(Vec::len).collect();
     let all = || snapshots.iter().zip(&pieces).flat_map(|(s, pieces)| pieces.iter().map(move |piece| (s, piece)));
     let middle = |piece: &Range<usize>| (piece.start + piece.end) / 2;
-    let value = |field: &'static str, of: fn(&Snapshot) -> &[f32]| {
-        let values = all().map(|(s, piece)| of(s)[wire.first + middle(piece)]);
+    let value = |field: &'static str, of: fn(&Snapshot, usize) -> f32| {
+        let values = all().map(|(s, piece)| of(s, wire.first + middle(piece)));
         (numbers(bond_field(field), values), each.clone())
     };
     let axes: Vec<Vec3> = all().map(|(s, piece)| axis(s, wire, piece)).collect();
-    let starts = all().map(|(s, piece)| s.position[wire.first + piece.start]);
+    let starts = all().map(|(s, piece)| place(s, wire, piece.start));
     let turns = axes.iter().map(|a| Quat::from_rotation_arc(Vec3::Z, a.normalize_or(Vec3::Z)).to_array());
     let radii = all().map(|(s, piece)| radius(s, wire, piece));
     let paint = all().map(|(s, piece)| {
@@ -45,20 +45,26 @@ pub(super) fn batches(
         (numbers(Capsules3D::descriptor_lengths(), axes.iter().map(|a| a.length())), each.clone()),
         (numbers(Capsules3D::descriptor_radii(), radii), each.clone()),
         (colours(Capsules3D::descriptor_colors(), paint), each.clone()),
-        value(STRESS, |s| &s.bond_stress),
-        value(PLASTIC_STRAIN, |s| &s.plastic_strain),
-        value(UTILISATION, |s| &s.utilisation),
+        value(STRESS, |s, slot| in_mpa(s.bond_stress[slot])),
+        value(PLASTIC_STRAIN, |s, slot| s.plastic_strain[slot]),
+        value(UTILISATION, |s, slot| s.utilisation[slot]),
     ]
 }
 
+/// Where a wire's particle `k` is (mm).
+fn place(snapshot: &Snapshot, wire: &WireInfo, k: usize) -> [f32; 3] {
+    in_mm(snapshot.position[wire.first + k])
+}
+
 fn axis(snapshot: &Snapshot, wire: &WireInfo, piece: &Range<usize>) -> Vec3 {
-    let [a, b] = [piece.start, piece.end].map(|k| Vec3::from(snapshot.position[wire.first + k]));
+    let [a, b] = [piece.start, piece.end].map(|k| Vec3::from(place(snapshot, wire, k)));
     b - a
 }
 
 fn radius(snapshot: &Snapshot, wire: &WireInfo, piece: &Range<usize>) -> f32 {
     let radii = &snapshot.radius[wire.first + piece.start..=wire.first + piece.end];
-    radii.iter().sum::<f32>() / radii.len() as f32
+    let [mean] = in_mm([radii.iter().sum::<f32>() / radii.len() as f32]);
+    mean
 }
 
 /// Pieces from particle to particle, counted along the wire; none spans a broken bond.
@@ -86,7 +92,6 @@ fn pieces(snapshot: &Snapshot, wire: &WireInfo) -> Vec<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::view::Sample;
 
     #[test]
     fn pieces_cover_every_bond_that_holds_and_no_other() {
@@ -95,17 +100,7 @@ mod tests {
         for broken in [vec![], vec![0], vec![21], vec![3, 4], vec![8, 9, 10, 17]] {
             let mut bond_state = vec![BondState::Whole; len];
             broken.iter().for_each(|b: &usize| bond_state[*b] = BondState::Broken);
-            let snapshot = Snapshot {
-                sample: Sample::default(),
-                position: vec![[0.0; 3]; len],
-                radius: vec![0.5; len],
-                speed: vec![0.0; len],
-                bond_state,
-                bond_stress: vec![0.0; len],
-                plastic_strain: vec![0.0; len],
-                utilisation: vec![0.0; len],
-                contact_pressure: vec![0.0; len],
-            };
+            let snapshot = Snapshot { bond_state, ..Snapshot::default() };
             let covered: Vec<usize> = pieces(&snapshot, &wire).into_iter().flatten().collect();
             let expected: Vec<usize> = (0..len - 1).filter(|b| !broken.contains(b)).collect();
             assert_eq!(covered, expected, "{broken:?}");

@@ -2,9 +2,9 @@
 //! hardening law, and it breaks where its weakest bond's rupture strain is reached.
 
 use super::errors::Truth;
+use crate::base::units::{mm, mpa, percent};
 use crate::engine::rupture::RuptureCheck;
 use crate::observe::summary::Break;
-use crate::observe::units::{mm, mpa, percent};
 use crate::reference::plasticity::{TensionPoint, considere_strain, tension_point};
 use crate::run::assemble;
 use crate::scene::Scene;

@@ -138,8 +138,8 @@ fn wires(run: &Folder) -> InvariantOutcome {
         let wire = &info.wires[row];
         search.same(number("wire"), (row + 1) as f64, || place("wire"));
         search.same(run.wires.text(row, "layer"), info.layers[wire.layer].as_str(), || place("layer"));
-        // The trajectory has it in single precision.
-        search.same(number("diameter_mm") as f32, wire.diameter, || place("diameter_mm"));
+        // The table has it in single precision.
+        search.same(number("diameter_mm") as f32, (wire.diameter * 1e3) as f32, || place("diameter_mm"));
         let most = run.trajectory.samples.iter().filter_map(|s| s.wire_stress.get(row)).map(|s| s / 1e6);
         if let Some(most) = most.reduce(f64::max).filter(|_| !run.wires.text(row, "greatest_stress_mpa").is_empty()) {
             // Peaks may be seen between rows.

@@ -175,12 +175,12 @@ impl Folder {
         let info = &self.trajectory.info;
         let wire = &info.wires[w];
         let Some([low, high]) = info.gauge.filter(|[low, high]| high > low) else { return Vec::new() };
-        let z = |slot: usize| 0.5 * (info.rest_position[slot][2] + info.rest_position[slot + 1][2]);
+        let z = |slot: usize| 0.5 * f64::from(info.rest_position[slot][2] + info.rest_position[slot + 1][2]);
         let off = |slot: usize| (z(slot) - 0.5 * (low + high)).abs();
         let bonds = wire.first..(wire.first + wire.len).saturating_sub(1);
         // Positions are in single precision here: bonds on the edge, and those as near as the nearest, are taken in, so that
         // all of them must be broken.
-        let least = bonds.clone().map(off).fold(f32::INFINITY, f32::min);
+        let least = bonds.clone().map(off).fold(f64::INFINITY, f64::min);
         let within = (0.025 * (high - low)).max(least) + 1e-4 * (high - low);
         bonds.filter(|slot| off(*slot) <= within).collect()
     }
@@ -246,7 +246,7 @@ impl Snapshots {
         self.rows.add(f64::from(u8::from(row != Some(&now.sample))), || format!("snapshot at step {step}"));
         for (slot, state) in now.bond_state.iter().enumerate() {
             let place = || format!("{} at step {step}", bond(&told.info, slot));
-            let stress = f64::from(now.bond_stress[slot]);
+            let stress = f64::from(now.bond_stress[slot]) * 1e-6;
             let broke = broken.get(&slot).is_some_and(|at| *at <= step);
             if broke || *state == BondState::Broken {
                 self.silent.add(stress.abs(), || format!("{}: {stress} MPa", place()));
@@ -265,7 +265,7 @@ impl Snapshots {
     }
 }
 
-/// Log strain of a bond by the positions of its particles, and its rest length (mm).
+/// Log strain of a bond by the positions of its particles, and its rest length (m).
 fn stretch(now: &Snapshot, info: &RunInfo, slot: usize) -> [f64; 2] {
     let length = |x: &[[f32; 3]]| {
         let [a, b] = [x[slot], x[slot + 1]];

@@ -54,7 +54,7 @@ impl Limits {
                 for (k, ends) in bonds {
                     let length = glam::Vec3::from(ends[0]).as_dvec3().distance(glam::Vec3::from(ends[1]).as_dvec3());
                     let u = uniform(spec.seed, w as u64, k as u64);
-                    factor[wire.first + k] = weibull_factor(u, modulus, 100.0 / length);
+                    factor[wire.first + k] = weibull_factor(u, modulus, 0.1 / length);
                 }
             }
         }
@@ -73,7 +73,7 @@ impl Limits {
     }
 
     /// True stress that a whole bond can have (MPa): the hardening law's at its plastic strain `p`, the elastic law's at its
-    /// log strain and rest length (mm), positions being rounded.
+    /// log strain and rest length (m), positions being rounded.
     pub fn bond(&self, p: f64, [strain, rest]: [f64; 2]) -> Option<f64> {
         Some(match &self.law {
             BondLawSpec::Elastic => self.young * (strain.abs() + self.rounding / rest) * 1e-6,

@@ -77,7 +77,7 @@ fn grips(run: &Folder) -> InvariantOutcome {
             .iter()
             .zip(&now.wire_stress)
             .map(|(wire, stress)| {
-                let area = std::f64::consts::FRAC_PI_4 * (f64::from(wire.diameter) * 1e-3).powi(2);
+                let area = std::f64::consts::FRAC_PI_4 * wire.diameter.powi(2);
                 // tan β goes as R/(1 + ε), R as 1/√(1 + ε).
                 let tangent = slope(wire.layer) / (1.0 + now.strain).powf(1.5);
                 stress * area / 1f64.hypot(tangent)
@@ -109,7 +109,7 @@ fn work(run: &Folder) -> InvariantOutcome {
         return not("other holds and loads do work too");
     }
     let Some(gauge) = run.trajectory.info.gauge else { return not("there is no gauge") };
-    let free = free_length(run).unwrap_or(f64::from(gauge[1] - gauge[0]) * 1e-3);
+    let free = free_length(run).unwrap_or(gauge[1] - gauge[0]);
     let number = |row: usize, head: &str| run.curve.number(row, head);
     let piece = |a: usize, b: usize| {
         let mean = |head: &str| 0.5 * (number(a, head) + number(b, head));
@@ -154,7 +154,7 @@ fn negligible(run: &Folder) -> f64 {
                 .windows(2)
                 .map(|p| (0..3).map(|k| f64::from(p[1][k] - p[0][k]).powi(2)).sum::<f64>().sqrt())
                 .sum();
-            std::f64::consts::FRAC_PI_4 * f64::from(wire.diameter).powi(2) * length * 1e-9
+            std::f64::consts::FRAC_PI_4 * wire.diameter.powi(2) * length
         })
         .chain(run.spec.spheres.iter().map(|s| std::f64::consts::PI / 6.0 * s.diameter.powi(3)))
         .sum();

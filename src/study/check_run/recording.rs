@@ -89,7 +89,7 @@ fn last_state(run: &Folder, read: &RecordingContents, search: &mut Search) {
         for (k, stress) in found.iter().enumerate().take(wire.len) {
             let slot = shown(wire, k);
             let broken = last.bond_state[slot] == BondState::Broken;
-            let right = if broken { 0.0 } else { last.bond_stress[slot] };
+            let right = if broken { 0.0 } else { (f64::from(last.bond_stress[slot]) * 1e-6) as f32 };
             search.same(*stress, right, || format!("{path}, bond {} in the end [MPa]", slot - wire.first + 1));
         }
     }

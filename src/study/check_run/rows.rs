@@ -124,14 +124,14 @@ fn pull(run: &Folder) -> InvariantOutcome {
     let (Some(free), Some([low, high])) = (free_length(run), run.trajectory.info.gauge) else {
         return InvariantOutcome::NotApplicable("no grip moves at a constant speed".into());
     };
-    let gauge = f64::from(high - low) * 1e-3;
+    let gauge = high - low;
     // Grips hold whole particles: the free length ends at the first and last free bond.
-    let spacing = run.spec.spacing * run.trajectory.info.wires.iter().map(|w| w.diameter).fold(0.0, f32::max) as f64;
+    let spacing = run.spec.spacing * run.trajectory.info.wires.iter().map(|w| w.diameter).fold(0.0, f64::max);
     let mut search = Search::new();
     search.add((free - gauge).abs() * 1e3, || {
         format!("{:.4} mm by time and strain, {:.4} mm between the grips", free * 1e3, gauge * 1e3)
     });
-    search.end(2.0 * spacing, "mm", "")
+    search.end(2e3 * spacing, "mm", "")
 }
 
 fn force(run: &Folder) -> InvariantOutcome {

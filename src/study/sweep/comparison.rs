@@ -10,7 +10,7 @@ use super::definition::{Definition, References};
 use super::gather::Gathered;
 use super::quantity::Quantity;
 use crate::base::error::Result;
-use crate::observe::units::{mm, percent};
+use crate::base::units::{mm, percent};
 use crate::reference::published::{Experiment, ExponentialFit, Published, Simulation};
 use crate::reference::strand::{self, Layer};
 use crate::scene;
