@@ -3,6 +3,7 @@
 //! [`run`] writes a folder; [`simulate`] shows a run to observers and writes nothing.
 
 pub mod cautions;
+pub mod checkpoint;
 pub mod cost;
 mod drive;
 pub mod estimate;
@@ -27,13 +28,17 @@ use crate::base::finding::Kept;
 use crate::engine::Engine;
 use crate::observe::Observer;
 use crate::observe::files::write_whole;
+use crate::observe::partial;
 use crate::observe::progress::Progress;
 use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
 use crate::observe::timings::Timings;
+use crate::observe::trajectory::Trajectory;
 use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
+use checkpoint::{Checkpoint, Identity, Keeper, Outputs, Spent};
+use drive::Resumed;
 use folder::OutFolder;
 use std::path::{Path, PathBuf};
 use std::sync::PoisonError;
@@ -59,6 +64,28 @@ pub struct RunOptions {
     pub live: Option<String>,
     /// Show no progress bar.
     pub quiet: bool,
+}
+
+impl RunOptions {
+    /// What a checkpoint must know of them.
+    fn outputs(&self) -> Outputs {
+        let animation = self.animation.as_ref().map(|animation| (animation.file.clone(), animation.width));
+        Outputs { frames: self.frames, recording: self.recording, animation }
+    }
+
+    fn of_resumed(folder: &Path, outputs: &Outputs, threads: Option<usize>, quiet: bool) -> Self {
+        let Outputs { frames, recording, animation } = outputs.clone();
+        Self {
+            out: folder.into(),
+            overwrite: true,
+            threads,
+            frames,
+            animation: animation.map(|(file, width)| outputs::Animation { file, width }),
+            recording,
+            live: None,
+            quiet,
+        }
+    }
 }
 
 /// Runs a scene and writes its results; `stop` ends it cleanly after the step in progress.
@@ -91,9 +118,69 @@ pub fn run_watched(
     let bonds = assembly.bond_count();
     let engine = Engine::new(&scene.spec, assembly)?;
     folder.open()?;
-    write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
+    let resolved = write::to_toml(&scene.spec);
+    write_whole(&folder.file(folder::SCENE), &resolved)?;
     let written = outputs::open(options, &scene.spec, &folder)?;
-    drive_and_summarise(Job { scene, options, folder: &folder, clock, bonds }, engine, written, watchers, stop)
+    let every = scene.spec.output.checkpoint;
+    let keeper = Keeper::new(&options.out, every, Identity::new(resolved), options.outputs(), None);
+    let job = Job { scene, options, folder: &folder, clock, bonds, keeper };
+    drive_and_summarise(job, engine, written, watchers, stop, None)
+}
+
+/// Goes on with a run that was interrupted or killed, from its last checkpoint: when it has ended, its files are those that
+/// an uninterrupted run writes. `note` is told what is remarkable on the way, such as a damaged checkpoint.
+///
+/// # Errors
+/// [`Error::Input`] when there is no checkpoint in `folder`, when none is whole, or when what lies beside it is of another
+/// run; otherwise as for [`run`].
+pub fn resume(
+    folder: &Path,
+    threads: Option<usize>,
+    quiet: bool,
+    stop: &AtomicBool,
+    note: &mut dyn FnMut(&str),
+) -> Result<(RunSummary, RunOptions)> {
+    let out = OutFolder::of_run(folder)?;
+    let (checkpoint, damaged) = checkpoint::latest(folder)?;
+    damaged.iter().for_each(|what| note(&format!("{what}; going on from the other one")));
+    let scene = crate::scene::load(&out.file(folder::SCENE).to_string_lossy(), &[])?;
+    let identity = Identity::new(write::to_toml(&scene.spec));
+    checkpoint.check(&identity)?;
+    let options = RunOptions::of_resumed(folder, &checkpoint.outputs, threads, quiet);
+    outputs::check(&options)?;
+    note(&format!("going on from step {}", checkpoint.step));
+    let summary = in_pool(threads, || go_on(&scene, &options, &out, identity, checkpoint, stop))??;
+    Ok((summary, options))
+}
+
+fn go_on(
+    scene: &Scene,
+    options: &RunOptions,
+    folder: &OutFolder,
+    identity: Identity,
+    checkpoint: Checkpoint,
+    stop: &AtomicBool,
+) -> Result<RunSummary> {
+    let clock = Clock::after(&checkpoint.spent);
+    let assembly = assemble(scene)?;
+    let bonds = assembly.bond_count();
+    let engine = Engine::new(&scene.spec, assembly)?;
+    // The old trajectory is kept until the first checkpoint of the new one; it is there already when an earlier attempt to
+    // go on has ended before that.
+    let before = folder.file(folder::RESUMED_FROM);
+    if !before.exists() {
+        let trajectory = folder.file(folder::TRAJECTORY);
+        let growing = partial::name(&trajectory);
+        let source = if growing.exists() { growing } else { trajectory };
+        std::fs::rename(&source, &before).map_err(|e| Error::io("cannot rename", &source, e))?;
+    }
+    let trajectory = Trajectory::open(&before)?;
+    folder.clear_results()?;
+    let written = outputs::open(options, &scene.spec, folder)?;
+    let every = scene.spec.output.checkpoint;
+    let keeper = Keeper::new(&options.out, every, identity, options.outputs(), Some(&checkpoint));
+    let job = Job { scene, options, folder, clock, bonds, keeper };
+    drive_and_summarise(job, engine, written, Vec::new(), stop, Some(Resumed { checkpoint, trajectory }))
 }
 
 /// The wires, particles and bonds of a scene.
@@ -170,11 +257,17 @@ impl Drop for Ending<'_> {
 struct Clock {
     wall: Instant,
     cpu: Option<f64>,
+    /// Wall and processor time of the run before it was resumed (s).
+    before: [f64; 2],
 }
 
 impl Clock {
     fn start() -> Self {
-        Self { wall: Instant::now(), cpu: cost::cpu_time() }
+        Self::after(&Spent::default())
+    }
+
+    fn after(spent: &Spent) -> Self {
+        Self { wall: Instant::now(), cpu: cost::cpu_time(), before: [spent.wall_s, spent.cpu_s] }
     }
 
     fn cost(&self, outcome: &Outcome, frames: Option<Timings>) -> Cost {
@@ -182,8 +275,8 @@ impl Clock {
         Cost {
             steps: outcome.steps,
             simulated_s: outcome.time,
-            wall_s: self.wall.elapsed().as_secs_f64(),
-            cpu_s: cost::cpu_time().zip(self.cpu).map(|(now, begin)| now - begin),
+            wall_s: self.before[0] + self.wall.elapsed().as_secs_f64(),
+            cpu_s: cost::cpu_time().zip(self.cpu).map(|(now, begin)| self.before[1] + now - begin),
             ms_per_step: (outcome.steps > 0).then(|| stepping_ms / outcome.steps as f64),
             threads: rayon::current_num_threads(),
             frames,
@@ -199,14 +292,16 @@ struct Job<'a> {
     folder: &'a OutFolder,
     clock: Clock,
     bonds: usize,
+    keeper: Keeper,
 }
 
 fn drive_and_summarise(
-    job: Job,
+    mut job: Job,
     engine: Engine,
     mut written: outputs::Written,
     watchers: Vec<&mut dyn Observer>,
     stop: &AtomicBool,
+    resumed: Option<Resumed>,
 ) -> Result<RunSummary> {
     let spec = &job.scene.spec;
     let mut summariser = Summariser::new();
@@ -216,15 +311,24 @@ fn drive_and_summarise(
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(progress.as_mut().map(|o| o as &mut dyn Observer));
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
-    let (outcome, error) = drive::drive(engine, spec, &mut observers, stop)?;
+    let (outcome, error) = drive::drive(engine, spec, &mut observers, stop, Some(&mut job.keeper), resumed)?;
     let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
     let closing = closing(&job.clock, &outcome, error.as_ref(), frames);
     let summary = summariser.summary(spec, job.bonds, closing);
     let kept = write_summary(&job.folder.file(folder::SUMMARY), &summary);
+    // What came to its end, or cannot go on, has nothing to be resumed from.
+    if kept.is_ok() && ended(&outcome, error.as_ref()) {
+        job.keeper.clear()?;
+    }
     match error {
         Some(error) => Err(with_place(error, &job.options.out, summary.warnings.len() - 1)),
         None => kept.map(|()| summary),
     }
+}
+
+/// Whether a run came to its end: not interrupted, nor stopped by a full disk or the like.
+fn ended(outcome: &Outcome, error: Option<&Error>) -> bool {
+    error.map_or(outcome.reason != StopReason::Interrupted, |error| matches!(error, Error::Simulation(_)))
 }
 
 /// How a run ended, for its summary.

@@ -250,7 +250,7 @@ pub enum Finding {
 }
 
 /// The kinds of [`Finding`], for those who ask whether one was made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum FindingKind {
     /// [`Finding::DeepContact`].
     DeepContact,
@@ -465,7 +465,7 @@ mod json {
 }
 
 /// Makes every kind of finding once in a run.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Once {
     made: BTreeSet<FindingKind>,
 }

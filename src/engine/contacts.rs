@@ -3,6 +3,7 @@
 use super::bytes::Bytes;
 use super::neighbours::PairList;
 use super::pair::Laws;
+use super::saved::{Reader, Unfit, Writer};
 use super::spheres::{SecondSides, SphereContacts};
 use super::state::{Partial, State};
 use super::time_step::Stiffness;
@@ -39,6 +40,13 @@ pub trait Contacts: Send {
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
     /// Memory of the stage, among `particles` particles.
     fn bytes(&self, particles: usize) -> Bytes;
+    /// Puts in what the contacts remember, in their order.
+    fn save(&self, out: &mut Writer);
+    /// Takes up what [`Self::save`] has put in, of the particles as they are in `state`.
+    ///
+    /// # Errors
+    /// [`Unfit`] when it is of other bodies or laws.
+    fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit>;
 }
 
 /// By how much the gap of two bodies may close while no particle moves further than 1 (-): 2 for the way of both, the

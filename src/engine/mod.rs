@@ -16,6 +16,7 @@ pub mod neighbours;
 pub mod pace;
 pub mod pair;
 pub mod rupture;
+pub mod saved;
 pub mod spheres;
 pub mod state;
 pub mod straight;

@@ -15,6 +15,7 @@ use crate::scene::caution;
 use crate::scene::plan::ContactPlan;
 use crate::scene::spec::{BondLawSpec, GripKind};
 use crate::strand::assembly::Assembly;
+use serde::{Deserialize, Serialize};
 
 /// Overlap over the smaller radius beyond which a contact is said to be deep (-): Hertz's parabola a² = Rδ, from which
 /// every contact law here starts, is 5 % off the circle then.
@@ -32,7 +33,7 @@ const STANDS_OUT: f64 = 0.005;
 const FEWEST: usize = 8;
 
 /// What the engine has seen so far.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub struct Watch {
     notices: Vec<Notice>,
     made: Once,
@@ -45,6 +46,7 @@ pub struct Watch {
 
 /// Strain that localises (Considère 1885): past the maximum load of a bond, dσ/dp ≤ σ, it alone goes on and the others
 /// unload. How far, depends on its length.
+#[derive(Serialize, Deserialize)]
 struct Necking {
     /// Plastic strain at the maximum load of a bond (-).
     from: f64,

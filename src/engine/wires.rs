@@ -31,6 +31,7 @@ use super::bytes::{Bytes, NUMBER, VECTOR, behind};
 use super::contacts::{Contacts, closing};
 use super::neighbours::{PairList, apart};
 use super::pair::{History, Laws, foreseen_stiffness, leave};
+use super::saved::{Reader, Unfit, Writer};
 use super::spheres::SecondSides;
 use super::state::{CHUNK, Deepest, Partial, State};
 use super::time_step::Stiffness;
@@ -47,6 +48,7 @@ use curve::{Around, Place};
 use meeting::Meets;
 use pulp::Arch;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use spread::{FarSum, NearSum, Spread};
 
 /// Movement of particles moves points of a centreline by up to this (-): the weights of a cubic, or of a quartic near an
@@ -59,7 +61,7 @@ const SPREAD: f64 = 2.2;
 const RESOLVED: f64 = 0.25;
 
 /// What meets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Kind {
     /// A stretch of wire against a wire.
     Stretch,
@@ -70,7 +72,7 @@ enum Kind {
 }
 
 /// How a stretch meets a wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Mode {
     /// Side by side: cells along the stretch.
     Line,
@@ -97,7 +99,8 @@ enum Touch {
 
 /// Particle `i` against another body near `place` of it. What a contact that is apart needs comes first, so that it takes
 /// one line of the cache: most candidates are apart.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(bound = "")]
 #[repr(C)]
 struct Contact<N: NormalLaw, T: TangentialLaw> {
     /// Nothing can touch until [`State::travel`] has reached this (m).
@@ -269,6 +272,18 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         self.chains.one_wire(i, j) && near() && !self.chains.one_piece(i, j, state)
     }
 
+    /// Where each chunk finds its contacts, and room for what they do.
+    fn index(&mut self, state: &State) {
+        let chunks = state.len().div_ceil(CHUNK);
+        let contacts = &self.contacts;
+        self.starts.clear();
+        self.starts.extend((0..=chunks).map(|chunk| contacts.partition_point(|c| (c.i as usize) < chunk * CHUNK)));
+        self.spread.resize(state.len());
+        self.work.resize_with(chunks, Work::default);
+        self.partial.clear();
+        self.partial.resize(chunks, Partial::default());
+    }
+
     fn meets<'a>(&'a self, state: &'a State) -> Meets<'a, N, T> {
         Meets { laws: &self.laws, line: &self.line, state, chains: &self.chains, closing: self.closing }
     }
@@ -344,17 +359,10 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         for c in self.old.iter().filter(|c| !c.taken && c.history.touching()) {
             lost.add(&Partial { released: c.energy, friction: leave(&self.laws, &c.history), ..Default::default() });
         }
-        let chunks = state.len().div_ceil(CHUNK);
-        let contacts = &self.contacts;
-        self.starts.clear();
-        self.starts.extend((0..=chunks).map(|chunk| contacts.partition_point(|c| (c.i as usize) < chunk * CHUNK)));
         // What is near may have changed: a bond broke, or a contact belongs to another bond now.
         self.quiet_until.clear();
-        self.quiet_until.resize(contacts.len(), 0.0);
-        self.spread.resize(state.len());
-        self.work.resize_with(chunks, Work::default);
-        self.partial.clear();
-        self.partial.resize(chunks, Partial::default());
+        self.quiet_until.resize(self.contacts.len(), 0.0);
+        self.index(state);
         lost
     }
 
@@ -438,6 +446,25 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             let next = c.place.j + u32::from(c.place.joined);
             out.contact([c.i, c.place.j, next], [near.sum(), b0 + b1, b2 + b3], k, c.arm, viscosity);
         }
+    }
+
+    fn save(&self, out: &mut Writer) {
+        out.put(&self.contacts);
+        out.put(&self.quiet_until);
+        out.put(&self.deepest);
+    }
+
+    fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit> {
+        self.contacts = from.take()?;
+        let beyond = |p: u32| p as usize >= state.len();
+        if self.contacts.iter().any(|c| beyond(c.i) || beyond(c.place.j)) || !self.contacts.is_sorted_by_key(|c| c.i) {
+            return Err(Unfit("its contacts are those of other particles".into()));
+        }
+        self.quiet_until.resize(self.contacts.len(), 0.0);
+        from.take_into(&mut self.quiet_until)?;
+        self.deepest = from.take()?;
+        self.index(state);
+        Ok(())
     }
 
     fn bytes(&self, particles: usize) -> Bytes {

@@ -1,5 +1,6 @@
 //! The output folder: checked before the simulation, cleared only when nothing else can fail.
 
+use super::checkpoint;
 use crate::base::error::{Error, Result};
 use crate::observe::{partial, tables};
 use std::fs;
@@ -13,6 +14,8 @@ pub const SUMMARY: &str = "summary.json";
 pub const RECORDING: &str = "recording.rrd";
 /// Snapshots for drawing again.
 pub const TRAJECTORY: &str = "trajectory.bin";
+/// Trajectory that a run is being resumed from.
+pub const RESUMED_FROM: &str = "trajectory.before-resume.bin";
 /// The page for people, which is made from all the others.
 pub const REPORT: &str = "report.html";
 /// Folder of numbered pictures.
@@ -79,8 +82,18 @@ impl OutFolder {
     /// [`Error::Io`].
     pub fn open(&self) -> Result<()> {
         fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
+        checkpoint::clear(&self.path)?;
+        remove_if_there(&self.path.join(SCENE))?;
+        self.clear_results()
+    }
+
+    /// Removes what a run has written besides its scene and its checkpoints, which writes it again when it is resumed.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub(super) fn clear_results(&self) -> Result<()> {
         let tables = tables::FILES.into_iter();
-        for name in tables.chain([SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT]) {
+        for name in tables.chain([SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT]) {
             let file = self.path.join(name);
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;
@@ -95,6 +108,21 @@ impl OutFolder {
     pub fn open_for_pictures(&self) -> Result<()> {
         clear_pictures(&self.path)?;
         fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))
+    }
+
+    /// The folder of a run that is to be resumed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is none; [`Error::Io`] when it cannot be written.
+    pub fn of_run(path: &Path) -> Result<Self> {
+        if !path.is_dir() {
+            return Err(Error::input(
+                format!("{} is not a folder", path.display()),
+                "give the folder of a run, such as out/ka4",
+            ));
+        }
+        probe(path)?;
+        Ok(Self { path: path.into() })
     }
 
     /// The path of a file in it.
