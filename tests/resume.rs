@@ -20,7 +20,7 @@ density = "8960 kg/m^3"
 [bond]
 law = "elasto-plastic"
 damping = 0.02
-hardening = { form = "linear", yield_stress = "100 MPa", modulus = "800 MPa" }
+hardening = { form = "voce", yield_stress = "100 MPa", saturation = "100 MPa", rate = 12, linear = "500 MPa" }
 rupture = { criterion = "plastic-strain", strain = "4 %", weibull_modulus = 8 }
 [contact]
 normal = "thornton"
