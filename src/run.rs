@@ -3,6 +3,7 @@
 //! [`run`] writes a folder; [`simulate`] shows a run to observers and writes nothing.
 
 pub mod cautions;
+pub mod checkpoint;
 pub mod cost;
 mod drive;
 pub mod estimate;
@@ -35,13 +36,17 @@ use crate::observe::Observer;
 use crate::observe::animation::Animation;
 use crate::observe::files::write_whole;
 use crate::observe::origin::Origin;
+use crate::observe::partial;
 use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
 use crate::observe::timings::Timings;
+use crate::observe::trajectory::Trajectory;
 use crate::scene::spec::PathSpec;
 use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
+use checkpoint::{Checkpoint, Identity, Keeper, Spent};
+use drive::Resumed;
 use folder::OutFolder;
 use std::path::Path;
 use std::sync::PoisonError;
@@ -82,9 +87,75 @@ pub fn run_watched(
     let bonds = assembly.bond_count();
     let engine = Engine::new(&scene.spec, &scene.plan, assembly)?;
     let _lock = folder.open()?;
-    write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
+    let resolved = write::to_toml(&scene.spec);
+    write_whole(&folder.file(folder::SCENE), &resolved)?;
     let written = outputs::open(options, &scene.spec, &folder)?;
-    drive_and_summarise(Job { scene, options, folder: &folder, clock, bonds }, engine, written, watchers, stop)
+    let every = scene.spec.output.checkpoint;
+    let keeper = Keeper::new(&options.out, every, Identity::new(resolved), options.outputs(), None);
+    let job = Job { scene, options, folder: &folder, clock, bonds, keeper };
+    drive_and_summarise(job, engine, written, watchers, stop, None)
+}
+
+/// A run that was interrupted or killed and can go on from its last checkpoint.
+pub struct Resumable {
+    /// Its scene.
+    pub scene: Scene,
+    /// What it writes, and where.
+    pub options: RunOptions,
+    folder: OutFolder,
+    identity: Identity,
+    checkpoint: Checkpoint,
+}
+
+impl Resumable {
+    /// Looks at the folder of a run, and changes nothing there. `note` is told what is remarkable, such as a damaged
+    /// checkpoint beside a whole one.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is no checkpoint, when none is whole, or when it is not one of the scene that lies beside
+    /// it; something missing on the machine (adapter).
+    pub fn open(folder: &Path, threads: Option<usize>, note: &mut dyn FnMut(&str)) -> Result<Self> {
+        let out = OutFolder::of_run(folder)?;
+        let (checkpoint, damaged) = checkpoint::latest(folder)?;
+        damaged.iter().for_each(|what| note(&format!("{what}; going on from the other one")));
+        let scene = crate::scene::load(&out.file(folder::SCENE).to_string_lossy(), &[])?;
+        let identity = Identity::new(write::to_toml(&scene.spec));
+        checkpoint.check(&identity)?;
+        let options = RunOptions::of_resumed(folder, &checkpoint.outputs, threads);
+        outputs::check(&options)?;
+        note(&format!("going on from step {}", checkpoint.step));
+        Ok(Self { scene, options, folder: out, identity, checkpoint })
+    }
+
+    /// Goes on, in the present thread pool and shown to `watchers` too: when the run has ended, its files are those that an
+    /// uninterrupted run writes.
+    ///
+    /// # Errors
+    /// As for [`run`]; [`Error::Input`] when the trajectory is not that of the checkpoint.
+    pub fn go_on(self, watchers: Vec<&mut dyn Observer>, stop: &AtomicBool) -> Result<RunSummary> {
+        let Self { scene, options, folder, identity, checkpoint } = self;
+        let clock = Clock::after(&checkpoint.spent);
+        let assembly = assemble(&scene)?;
+        let bonds = assembly.bond_count();
+        let engine = Engine::new(&scene.spec, &scene.plan, assembly)?;
+        let _lock = folder.take_over()?;
+        // The old trajectory is kept until the first checkpoint of the new one; it is there already when an earlier attempt
+        // to go on has ended before that.
+        let before = folder.file(folder::RESUMED_FROM);
+        if !before.exists() {
+            let trajectory = folder.file(folder::TRAJECTORY);
+            let growing = partial::name(&trajectory);
+            let source = if growing.exists() { growing } else { trajectory };
+            std::fs::rename(&source, &before).map_err(|e| Error::io("cannot rename", &source, e))?;
+        }
+        let trajectory = Trajectory::open(&before)?;
+        folder.clear_results()?;
+        let written = outputs::open(&options, &scene.spec, &folder)?;
+        let every = scene.spec.output.checkpoint;
+        let keeper = Keeper::new(&options.out, every, identity, options.outputs(), Some(&checkpoint));
+        let job = Job { scene: &scene, options: &options, folder: &folder, clock, bonds, keeper };
+        drive_and_summarise(job, engine, written, watchers, stop, Some(Resumed { checkpoint, trajectory }))
+    }
 }
 
 /// Refuses to write over what the run is made from.
@@ -172,11 +243,17 @@ impl Drop for Ending<'_> {
 struct Clock {
     wall: Instant,
     cpu: Option<f64>,
+    /// Wall and processor time of the run before it was resumed (s).
+    before: [f64; 2],
 }
 
 impl Clock {
     fn start() -> Self {
-        Self { wall: Instant::now(), cpu: cost::cpu_time() }
+        Self::after(&Spent::default())
+    }
+
+    fn after(spent: &Spent) -> Self {
+        Self { wall: Instant::now(), cpu: cost::cpu_time(), before: [spent.wall_s, spent.cpu_s] }
     }
 
     fn cost(&self, outcome: &Outcome, frames: Option<Timings>) -> Cost {
@@ -184,8 +261,8 @@ impl Clock {
         Cost {
             steps: outcome.steps,
             simulated_s: outcome.time,
-            wall_s: self.wall.elapsed().as_secs_f64(),
-            cpu_s: cost::cpu_time().zip(self.cpu).map(|(now, begin)| now - begin),
+            wall_s: self.before[0] + self.wall.elapsed().as_secs_f64(),
+            cpu_s: cost::cpu_time().zip(self.cpu).map(|(now, begin)| self.before[1] + now - begin),
             ms_per_step: (outcome.steps > 0).then(|| stepping_ms / outcome.steps as f64),
             threads: rayon::current_num_threads(),
             frames,
@@ -201,14 +278,16 @@ struct Job<'a> {
     folder: &'a OutFolder,
     clock: Clock,
     bonds: usize,
+    keeper: Keeper,
 }
 
 fn drive_and_summarise(
-    job: Job,
+    mut job: Job,
     engine: Engine,
     mut written: outputs::Written,
     watchers: Vec<&mut dyn Observer>,
     stop: &AtomicBool,
+    resumed: Option<Resumed>,
 ) -> Result<RunSummary> {
     let spec = &job.scene.spec;
     let mut summariser = Summariser::new();
@@ -216,15 +295,24 @@ fn drive_and_summarise(
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
-    let (outcome, error) = drive::drive(engine, spec, &mut observers, stop)?;
+    let (outcome, error) = drive::drive(engine, spec, &mut observers, stop, Some(&mut job.keeper), resumed)?;
     let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
     let closing = closing(&job.clock, &outcome, error.as_ref(), frames);
     let summary = summariser.summary(spec, job.bonds, closing);
     let kept = write_summary(&job, &summary);
+    // What came to its end, or cannot go on, has nothing to be resumed from.
+    if kept.is_ok() && ended(&outcome, error.as_ref()) {
+        job.keeper.clear()?;
+    }
     match error {
         Some(error) => Err(with_place(error, &job.options.out, summary.warnings.len() - 1)),
         None => kept.map(|()| summary),
     }
+}
+
+/// Whether a run came to its end: not interrupted, nor stopped by a full disk or the like.
+fn ended(outcome: &Outcome, error: Option<&Error>) -> bool {
+    error.map_or(outcome.reason != StopReason::Interrupted, |error| matches!(error, Error::Simulation(_)))
 }
 
 /// How a run ended, for its summary.

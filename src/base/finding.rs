@@ -249,7 +249,7 @@ pub enum Finding {
 }
 
 /// The kinds of [`Finding`], for those who ask whether one was made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum FindingKind {
     /// [`Finding::DeepContact`].
     DeepContact,

@@ -1,9 +1,10 @@
 //! Structure-of-arrays storage of 3-vectors, read and written as [`glam::DVec3`].
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// `n` vectors stored as three streams.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vectors {
     /// x components.
     pub x: Vec<f64>,

@@ -1,10 +1,11 @@
 //! Findings at their worst: what grows worse is told when it is first found, and kept as it was when it was worst.
 
 use super::finding::{FindingKind, Notice};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The findings of a run, each kind at its worst: the first of a kind is to be told at once, the worst at the end.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Worst {
     /// How bad it is, whether it was told, and what.
     made: BTreeMap<FindingKind, (f64, bool, Notice)>,

@@ -23,6 +23,7 @@ mod progress;
 mod record;
 mod render;
 mod report;
+mod resume;
 mod run;
 mod say;
 mod scene;
@@ -51,6 +52,8 @@ struct Cli {
 enum Command {
     /// Simulate a scene and write its results to a folder
     Run(run::Args),
+    /// Go on with a run that was interrupted or killed, from its last checkpoint
+    Resume(resume::Args),
     /// Say what a scene would run, what is left out and why, and what it would cost
     Plan(plan::Args),
     /// List, show, check or start scenes, and list their keys
@@ -120,6 +123,7 @@ pub fn main() -> ExitCode {
 fn dispatch(command: Command) -> Result<Ended> {
     match command {
         Command::Run(args) => run::run(args),
+        Command::Resume(args) => resume::resume(&args),
         Command::Plan(args) => plan::plan(&args).map(|()| Ended::Well),
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
         Command::Export(args) => export::export(&args).map(|()| Ended::Well),

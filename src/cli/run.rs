@@ -88,7 +88,8 @@ fn note_what_was_not_built(args: &Args) {
     }
 }
 
-fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
+/// Says how a run ended, and where its results are.
+pub(super) fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
     for warning in &summary.warnings {
         eprintln!("WARNING: {warning}");
     }
@@ -96,6 +97,9 @@ fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
         say!("{}", one_line(summary));
     } else {
         say!("{}\n{}", summary.scene, report(summary));
+    }
+    if run::checkpoint::latest(&options.out).is_ok() {
+        say!("Go on with: strandsnap resume {}", options.out.display());
     }
     if !quiet {
         say!("Results are in {}:", options.out.display());

@@ -2,6 +2,7 @@
 
 use super::loading_rate::{self, LoadingRate, Rule};
 use super::neighbours::Stretch;
+use super::saved::{Reader, Unfit, Writer};
 use super::state::State;
 use super::straight::{StraightGrip, runs};
 use crate::base::error::{Error, Result};
@@ -10,6 +11,7 @@ use crate::strand::assembly::Assembly;
 use crate::strand::held::Gripped;
 use glam::{DMat2, DVec2, DVec3};
 use pulp::Arch;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -40,7 +42,7 @@ struct Group {
 }
 
 /// Reactions on the two grips at the last step.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reaction {
     /// Force on the lower and upper grip, tension positive (N).
     pub force: [f64; 2],
@@ -107,6 +109,27 @@ impl Holds {
         holds.loading_rate = Rule::new(spec, inertia, holds.free_length).map(LoadingRate::new);
         holds.work = holds.kinetic(state);
         Ok(holds)
+    }
+
+    /// Puts in how far the drive has come, and what it took.
+    pub fn save(&self, out: &mut Writer) {
+        out.put(&(self.stretch, self.spin, self.reaction, self.work));
+        out.put(&self.loading_rate.as_ref().map(LoadingRate::now));
+    }
+
+    /// Takes up what [`Self::save`] has put in.
+    ///
+    /// # Errors
+    /// [`Unfit`] when it is of another drive.
+    pub fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit> {
+        let gauge = self.stretch.gauge;
+        (self.stretch, self.spin, self.reaction, self.work) = from.take()?;
+        let rate: Option<[f64; 4]> = from.take()?;
+        if gauge != self.stretch.gauge || rate.is_some() != self.loading_rate.is_some() {
+            return Err(Unfit("its grips are others".into()));
+        }
+        self.loading_rate.iter_mut().zip(rate).for_each(|(rate, now)| rate.resume(now));
+        Ok(())
     }
 
     fn add_grips(&mut self, grip: &GripSpec, assembly: &Assembly) -> Result<()> {

@@ -101,6 +101,16 @@ impl LoadingRate {
         Self { speed: rule.slow, change: 0.0, target: rule.slow, acceleration: 0.0, rule }
     }
 
+    /// Speed, its last change, the speed that it heads for (m/s), and how fast it does (m/s²).
+    pub(super) fn now(&self) -> [f64; 4] {
+        [self.speed, self.change, self.target, self.acceleration]
+    }
+
+    /// Goes on from what [`Self::now`] gave.
+    pub(super) fn resume(&mut self, now: [f64; 4]) {
+        [self.speed, self.change, self.target, self.acceleration] = now;
+    }
+
     /// Goes on by `time` (s).
     pub fn advance(&mut self, time: f64) {
         let (left, most) = (self.target - self.speed, self.acceleration * time);

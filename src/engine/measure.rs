@@ -3,8 +3,10 @@
 use super::bonds::Bonds;
 use super::estimates::wave_passage;
 use super::grips::{Holds, Reaction};
+use super::saved::{Reader, Unfit, Writer};
 use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -36,7 +38,7 @@ pub struct Measures {
 }
 
 /// What was measured at one step, times its length.
-#[derive(Default, Clone)]
+#[derive(Default, Clone, Serialize, Deserialize)]
 struct Step {
     /// (s)
     length: f64,
@@ -127,6 +129,26 @@ impl Measures {
         let range = self.of_wire[wire].clone();
         let count = range.len().max(1) as f64;
         range.filter(|i| whole[self.middle[*i]]).map(|i| self.mean(BONDS + i)).sum::<f64>() / count
+    }
+
+    /// Puts in what was measured so far.
+    pub fn save(&self, out: &mut Writer) {
+        out.put(&self.steps);
+        out.put(&self.sum);
+        out.put(&self.broken);
+    }
+
+    /// Takes up what [`Self::save`] has put in.
+    ///
+    /// # Errors
+    /// [`Unfit`] when it is of another body.
+    pub fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit> {
+        let values = self.sum.values.len();
+        (self.steps, self.sum) = (from.take()?, from.take()?);
+        if self.steps.iter().chain([&self.sum]).any(|step| step.values.len() != values) {
+            return Err(Unfit("its measures are those of other wires".into()));
+        }
+        from.take_into(&mut self.broken)
     }
 
     /// Marks a wire as broken; true when it was whole.

@@ -4,12 +4,14 @@
 //! pair stays covered while 2 max|u − u_affine| + Δε (reach + skin) < skin.
 
 use super::bytes::{behind, behind_all};
+use super::saved::{Reader, Unfit, Writer};
 use super::state::{CHUNK, State};
 use crate::base::vectors::Vectors;
 use crate::scene::spec::Shape;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// The search follows bonds up to this multiple of the longest stress-free length (-): one bond that necks without end
 /// must not make every particle a neighbour of every other.
@@ -26,7 +28,7 @@ pub struct PairList {
 }
 
 /// The affine stretch that grips impose: u_z = displacement × clamp((z − z₀)/(z₁ − z₀)).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Stretch {
     /// Gauge before loading (m); z₁ = z₀ when there are no grips.
     pub gauge: [f64; 2],
@@ -137,6 +139,32 @@ impl Neighbours {
         };
         let particles = (0..state.len()).into_par_iter().with_min_len(CHUNK);
         particles.map(square).reduce(|| 0.0, f64::max).sqrt()
+    }
+
+    /// Puts in the last search.
+    pub fn save(&self, out: &mut Writer) {
+        out.put(&(self.margin, self.longest, self.safe_until, self.rebuilds));
+        out.put(&self.stretch);
+        out.put(&self.reference);
+        out.put(&self.list.pairs);
+    }
+
+    /// Takes up what [`Self::save`] has put in.
+    ///
+    /// # Errors
+    /// [`Unfit`] when it is of other particles.
+    pub fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit> {
+        (self.margin, self.longest, self.safe_until, self.rebuilds) = from.take()?;
+        self.stretch = from.take()?;
+        self.reference = from.take()?;
+        self.list.pairs = from.take()?;
+        let count = self.wire_of.len();
+        let searched = self.rebuilds == 0 || self.reference.rows().iter().all(|row| row.len() == count);
+        let known = |p: u32| (p as usize) < count;
+        if !searched || !self.list.pairs.iter().all(|(i, j)| known(*i) && known(*j)) {
+            return Err(Unfit("its pairs are those of other particles".into()));
+        }
+        Ok(())
     }
 
     /// Finds all candidate pairs anew.

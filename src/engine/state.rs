@@ -3,11 +3,13 @@
 use crate::base::vectors::Vectors;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Number of items that one task works on. Fixed, so that partial sums do not depend on the number of threads.
 pub const CHUNK: usize = 256;
 
 /// What bonds do to their two particles, in blocks of [`CHUNK`] slots, field after field.
+#[derive(Serialize, Deserialize)]
 pub struct BondActions {
     /// Per block: the factor of the bond on the radius e^(−ε_p/2) (-); its pull on the first particle (N), of which the
     /// second feels the opposite; and where particles turn its moments on the first and on the second (N m). All of them
@@ -80,6 +82,7 @@ impl BondActions {
 }
 
 /// All particles.
+#[derive(Serialize, Deserialize)]
 pub struct State {
     /// Centres x_n (m).
     pub x: Vectors,
@@ -180,6 +183,18 @@ impl State {
     pub fn make_room_for_contacts(&mut self) {
         self.contact_force = Vectors::zeros(self.len());
         self.contact_torque = Vectors::zeros(self.len());
+    }
+
+    /// Whether every list is one of `n` particles.
+    pub(super) fn fits(&self, n: usize) -> bool {
+        let vectors = [&self.x, &self.v, &self.w, &self.force, &self.torque];
+        let numbers = [&self.parted, &self.radius, &self.thinned, &self.radius0, &self.mass, &self.inertia];
+        let inverses = [&self.inverse_mass, &self.inverse_inertia];
+        let of_contacts = [&self.contact_force, &self.contact_torque];
+        vectors.iter().flat_map(|v| v.rows()).all(|row| row.len() == n)
+            && numbers.iter().chain(&inverses).all(|list| list.len() == n)
+            && of_contacts.iter().flat_map(|v| v.rows()).all(|row| row.is_empty() || row.len() == n)
+            && [self.whole.len(), self.hold.len(), self.fixed.len()] == [n; 3]
     }
 
     /// Number of particles.
@@ -284,7 +299,7 @@ pub struct ChunkSums {
 }
 
 /// The deepest of some contacts.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Deepest {
     /// Overlap over the smaller of the two current radii (-).
     pub ratio: f64,

@@ -11,6 +11,7 @@ use super::state::{CHUNK, State};
 use crate::base::finding::{self, StiffnessMode};
 use crate::law::bond::BondStiffness;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// One bond or contact as the bound sees it.
 #[derive(Debug, Clone, Copy)]
@@ -61,7 +62,7 @@ impl Element {
 }
 
 /// What limits the time step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Bound {
     /// Bound on the stable step (s); infinite when nothing is stiff.
     pub step: f64,

@@ -224,7 +224,7 @@ pub struct Findings {
 }
 
 /// The deepest contact of a run, when it was deepest.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct DeepestContact {
     /// Overlap over the smaller of the two radii (-).
     pub ratio: f64,
@@ -245,7 +245,7 @@ pub struct DeepestContact {
 }
 
 /// A time step, and when it was chosen.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct StepAt {
     /// The time step (s).
     pub seconds: f64,

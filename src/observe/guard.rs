@@ -4,6 +4,7 @@ use crate::base::error::{Error, Result};
 use crate::base::finding::{Failure, Finding, Instant, Notice, Quantity, Stopped};
 use crate::base::units::percent;
 use crate::base::worst::Worst;
+use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::scene::spec::TimeSpec;
 use serde::{Deserialize, Serialize};
@@ -47,6 +48,7 @@ pub struct QuasiStatic {
     pub grip_force_mismatch_overall_percent: Option<f64>,
 }
 
+#[derive(Serialize, Deserialize)]
 struct Row {
     kinetic: f64,
     internal: f64,
@@ -101,6 +103,20 @@ impl Guard {
         self.passage = info.wave_passage;
         self.gripped = info.is_pulled();
         self.strain_end = info.strain_end.unwrap_or(f64::INFINITY);
+    }
+
+    /// Puts in what it has seen since [`Self::start`].
+    pub fn save(&self, out: &mut Writer) {
+        out.put(&(&self.rows, self.ruptured, self.work, self.residual, self.now, &self.notices, &self.worst));
+    }
+
+    /// Takes up what [`Self::save`] has put in, after [`Self::start`].
+    ///
+    /// # Errors
+    /// [`Unfit`] when it is something else.
+    pub fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit> {
+        (self.rows, self.ruptured, self.work, self.residual, self.now, self.notices, self.worst) = from.take()?;
+        Ok(())
     }
 
     /// Refuses a row that nobody should see.

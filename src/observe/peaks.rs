@@ -30,7 +30,7 @@ pub struct Peaks {
 }
 
 /// Follows the stresses of a run.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Monitor {
     peaks: Peaks,
     last: Peak,

@@ -2,7 +2,8 @@
 //!
 //! Format: the magic bytes, a version (u32, little endian), the run's [`Origin`], then an LZ4 frame of records. A record is its length
 //! (u32, little endian) and that many bytes of postcard. The first record is the [`RunInfo`], each further one a
-//! [`Record`]; a record of length 0 ends the run, so a file that was cut off is recognised.
+//! [`Record`]; a record of length 0 ends the run, so a file that was cut off is recognised. A block of the frame ends with
+//! every snapshot and is handed to the system then: what a run that is killed has told up to its last snapshot can be read.
 
 use super::origin::Origin;
 use super::peaks::Peaks;
@@ -102,7 +103,10 @@ impl Observer for TrajectoryWriter {
     }
 
     fn snapshot(&mut self, snapshot: &Arc<Snapshot>) -> Result<()> {
-        self.write(&Borrowed::Snapshot(snapshot))
+        self.write(&Borrowed::Snapshot(snapshot))?;
+        let Some(encoder) = &mut self.encoder else { return Ok(()) };
+        let flushed = encoder.flush().and_then(|()| encoder.get_mut().flush());
+        flushed.map_err(|e| Error::io("cannot write", &self.partial, e))
     }
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {

@@ -1,16 +1,19 @@
 //! The step loop: engine, schedule, stop rule and observers.
 
+use super::checkpoint::{Checkpoint, Keeper, Now};
 use super::schedule::Schedule;
 use super::stop::StopRule;
 use crate::base::error::{Error, Result};
 use crate::base::finding::{Finding, Notice, StopReason};
 use crate::engine::Engine;
+use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use crate::observe::guard::{Guard, QuasiStatic};
 use crate::observe::limits::Limits;
 use crate::observe::peaks::{Monitor, Peaks};
 use crate::observe::planned::PlannedEnd;
+use crate::observe::trajectory::{Record, Trajectory};
 use crate::scene::plan::Plan;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
@@ -69,19 +72,30 @@ pub fn simulate(
 /// As for [`simulate`], but for what [`Engine::new`] refuses.
 pub fn simulate_engine(engine: Engine, observers: &mut [&mut dyn Observer], stop: &AtomicBool) -> Result<Outcome> {
     let spec = engine.spec().clone();
-    let (outcome, error) = drive(engine, &spec, observers, stop)?;
+    let (outcome, error) = drive(engine, &spec, observers, stop, None, None)?;
     match error {
         Some(error) => Err(error),
         None => Ok(outcome),
     }
 }
 
-/// [`simulate`] from an engine that is set up; the error that ended the run comes beside its outcome.
+/// A run that goes on.
+pub(super) struct Resumed {
+    /// From here.
+    pub checkpoint: Checkpoint,
+    /// What it has told up to then.
+    pub trajectory: Trajectory,
+}
+
+/// [`simulate`] from an engine that is set up; the error that ended the run comes beside its outcome. `keeper` keeps its
+/// checkpoints. A run that was `resumed` first tells its observers again what it had told before.
 pub(super) fn drive(
     engine: Engine,
     spec: &Spec,
     observers: &mut [&mut dyn Observer],
     stop: &AtomicBool,
+    keeper: Option<&mut Keeper>,
+    resumed: Option<Resumed>,
 ) -> Result<(Outcome, Option<Error>)> {
     let info = Arc::new(engine.info());
     let end = PlannedEnd::new(&spec.stop, info.strain_end);
@@ -99,15 +113,18 @@ pub(super) fn drive(
         rule: StopRule::new(&spec.stop, info.wave_passage),
         guard,
         monitor: Monitor::default(),
-        audience: Audience { observers, started: 0, time: Duration::ZERO },
+        audience: Audience { observers, started: 0, time: Duration::ZERO, keeper },
         shown: None,
         told: None,
         breaks: spec.bond.rupture.is_some(),
         kept: None,
+        begin: Instant::now(),
+        broke: false,
     };
-    let begin = Instant::now();
-    let ended = driver.go(&info, stop);
-    let stepping = begin.elapsed().saturating_sub(driver.audience.time);
+    let before = resumed.as_ref().map(|resumed| resumed.checkpoint.spent).unwrap_or_default();
+    let ended = driver.go(&info, stop, resumed);
+    let stepping = before.stepping + driver.stepping();
+    let observing = before.observing + driver.audience.time;
     let finished = driver.audience.finish();
     let (reason, error) = match (ended, finished) {
         (Ok(reason), Ok(())) => (reason, None),
@@ -121,7 +138,7 @@ pub(super) fn drive(
         quasi_static: driver.guard.quasi_static(),
         limits: Limits::new(driver.engine.findings(), driver.guard.greatest_residual()),
         stepping,
-        observing: driver.audience.time,
+        observing,
     };
     Ok((outcome, error))
 }
@@ -143,13 +160,23 @@ struct Driver<'a, 'b> {
     /// The state at the last row and when that was, in case the next thing to happen is a rupture: which one is the
     /// last before it shows only afterwards.
     kept: Option<(f64, Arc<Snapshot>)>,
+    begin: Instant,
+    /// A bond broke in the step just done.
+    broke: bool,
 }
 
 impl Driver<'_, '_> {
     /// Runs to the end; a failure is told as a notice before it is returned.
-    fn go(&mut self, info: &Arc<RunInfo>, stop: &AtomicBool) -> Result<StopReason> {
+    fn go(&mut self, info: &Arc<RunInfo>, stop: &AtomicBool, resumed: Option<Resumed>) -> Result<StopReason> {
         self.guard.start(info);
         self.audience.start(info)?;
+        match resumed {
+            Some(resumed) => self.resume(info, resumed)?,
+            None => {
+                self.monitor_step();
+                self.show()?;
+            }
+        }
         let ended = self.run(stop);
         self.guard.finish(matches!(ended, Ok(reason) if reason != StopReason::Interrupted));
         self.notices()?;
@@ -165,10 +192,10 @@ impl Driver<'_, '_> {
     }
 
     fn run(&mut self, stop: &AtomicBool) -> Result<StopReason> {
-        self.monitor_step();
-        self.show()?;
         let reason = loop {
             if stop.load(Ordering::Relaxed) {
+                // Before anything is told that a run which goes on would not tell.
+                self.keep()?;
                 break StopReason::Interrupted;
             }
             let engine = &self.engine;
@@ -177,6 +204,10 @@ impl Driver<'_, '_> {
             }
             self.engine.step()?;
             self.look()?;
+            let (step, broke) = (self.engine.steps(), self.broke);
+            if self.audience.keeper.as_ref().is_some_and(|keeper| keeper.due(step, broke)) {
+                self.keep()?;
+            }
         };
         self.engine.check_crossings()?;
         if self.shown != Some(self.engine.steps()) {
@@ -184,6 +215,58 @@ impl Driver<'_, '_> {
         }
         self.judge()?;
         Ok(reason)
+    }
+
+    /// Wall time in the engine since the loop began.
+    fn stepping(&self) -> Duration {
+        self.begin.elapsed().saturating_sub(self.audience.time)
+    }
+
+    /// Keeps a checkpoint, if any are kept.
+    fn keep(&mut self) -> Result<()> {
+        if !self.audience.keeper.as_ref().is_some_and(|keeper| keeper.keeps()) {
+            return Ok(());
+        }
+        let mut driver = Writer::default();
+        driver.put(&(&self.schedule, &self.monitor, self.shown, self.told));
+        driver.put(&self.kept.as_ref().map(|(at, snapshot)| (*at, &**snapshot)));
+        self.rule.save(&mut driver);
+        self.guard.save(&mut driver);
+        let (driver, engine, step) = (driver.into_bytes(), self.engine.save(), self.engine.steps());
+        let (stepping, observing) = (self.stepping(), self.audience.time);
+        match &mut self.audience.keeper {
+            Some(keeper) => keeper.keep(Now { step, driver, engine, stepping, observing }),
+            None => Ok(()),
+        }
+    }
+
+    /// Tells again what was told up to a checkpoint, and takes up the state at it.
+    fn resume(&mut self, info: &Arc<RunInfo>, resumed: Resumed) -> Result<()> {
+        let Resumed { checkpoint, trajectory } = resumed;
+        if trajectory.info() != info {
+            return Err(not_its("the trajectory tells of other wires"));
+        }
+        let mut told = 0;
+        for record in trajectory.take(checkpoint.records as usize) {
+            self.audience.tell(&record?)?;
+            told += 1;
+        }
+        if told < checkpoint.records {
+            return Err(not_its(&format!("the trajectory has {told} records of {}", checkpoint.records)));
+        }
+        checkpoint.tail.iter().try_for_each(|record| self.audience.tell(record))?;
+        self.restore(&checkpoint).map_err(|unfit| not_its(&unfit.to_string()))
+    }
+
+    fn restore(&mut self, checkpoint: &Checkpoint) -> std::result::Result<(), Unfit> {
+        let mut from = Reader::new(&checkpoint.driver);
+        (self.schedule, self.monitor, self.shown, self.told) = from.take()?;
+        let kept: Option<(f64, Snapshot)> = from.take()?;
+        self.kept = kept.map(|(at, snapshot)| (at, Arc::new(snapshot)));
+        self.rule.restore(&mut from)?;
+        self.guard.restore(&mut from)?;
+        from.end()?;
+        self.engine.restore(&checkpoint.engine)
     }
 
     /// What decides on the end of the run and on its result, seen at every step whatever is written.
@@ -207,6 +290,7 @@ impl Driver<'_, '_> {
     fn look(&mut self) -> Result<()> {
         let now = self.end.fraction(self.engine.strain(), self.engine.time(), self.engine.steps());
         let ruptures = self.engine.take_ruptures();
+        self.broke = !ruptures.is_empty();
         if !ruptures.is_empty() {
             self.rule.rupture();
             self.monitor.rupture();
@@ -273,6 +357,8 @@ struct Audience<'a, 'b> {
     /// How many of them were started: only those may be finished.
     started: usize,
     time: Duration,
+    /// Keeps what they are told until it is on the disk.
+    keeper: Option<&'a mut Keeper>,
 }
 
 impl Audience<'_, '_> {
@@ -287,23 +373,46 @@ impl Audience<'_, '_> {
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
+        self.remember(|| Record::Sample(sample.clone()));
         self.each(|observer| observer.sample(sample))
     }
 
     fn snapshot(&mut self, snapshot: &Arc<Snapshot>) -> Result<()> {
+        if let Some(keeper) = &mut self.keeper {
+            keeper.snapshot();
+        }
         self.each(|observer| observer.snapshot(snapshot))
     }
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
+        self.remember(|| Record::Rupture(rupture.clone()));
         self.each(|observer| observer.rupture(rupture))
     }
 
     fn notice(&mut self, notice: &Notice) -> Result<()> {
+        self.remember(|| Record::Notice(notice.clone()));
         self.each(|observer| observer.notice(notice))
     }
 
     fn peaks(&mut self, peaks: &Peaks) -> Result<()> {
         self.each(|observer| observer.peaks(peaks))
+    }
+
+    /// A record of a run that is resumed.
+    fn tell(&mut self, record: &Record) -> Result<()> {
+        match record {
+            Record::Sample(sample) => self.sample(sample),
+            Record::Snapshot(snapshot) => self.snapshot(&Arc::new(snapshot.clone())),
+            Record::Rupture(rupture) => self.rupture(rupture),
+            Record::Notice(notice) => self.notice(notice),
+            Record::Peaks(peaks) => self.peaks(peaks),
+        }
+    }
+
+    fn remember(&mut self, record: impl FnOnce() -> Record) {
+        if let Some(keeper) = self.keeper.as_mut().filter(|keeper| keeper.keeps()) {
+            keeper.told(record());
+        }
     }
 
     fn each(&mut self, mut tell: impl FnMut(&mut dyn Observer) -> Result<()>) -> Result<()> {
@@ -321,4 +430,9 @@ impl Audience<'_, '_> {
         self.time += begin.elapsed();
         answers.into_iter().collect()
     }
+}
+
+/// A checkpoint that does not fit what lies beside it.
+fn not_its(what: &str) -> Error {
+    Error::input(format!("the run cannot be resumed from its checkpoint: {what}"), "run the scene again")
 }

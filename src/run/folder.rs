@@ -1,5 +1,6 @@
 //! The output folder: checked before the simulation, cleared only when nothing else can fail.
 
+use super::checkpoint;
 use super::lock::{self, LOCK, Lock};
 use crate::base::error::{Error, Result};
 use crate::base::regular;
@@ -16,6 +17,8 @@ pub const SUMMARY: &str = "summary.json";
 pub const RECORDING: &str = "recording.rrd";
 /// Snapshots for drawing again.
 pub const TRAJECTORY: &str = "trajectory.bin";
+/// Trajectory that a run is being resumed from.
+pub const RESUMED_FROM: &str = "trajectory.before-resume.bin";
 /// The page for people, which is made from all the others.
 pub const REPORT: &str = "report.html";
 /// Folder of numbered pictures.
@@ -124,13 +127,23 @@ impl OutFolder {
     /// [`Error::Io`]; [`Error::Input`] when another process has been faster.
     pub fn open(&self) -> Result<Lock> {
         let lock = self.take()?;
-        for name in files() {
+        checkpoint::clear(&self.path)?;
+        remove_if_there(&self.path.join(SCENE))?;
+        self.clear_results()?;
+        Ok(lock)
+    }
+
+    /// Removes what a run has written besides its scene and its checkpoints, which writes it again when it is resumed.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub(super) fn clear_results(&self) -> Result<()> {
+        for name in files().filter(|name| *name != SCENE) {
             let file = self.path.join(name);
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;
         }
-        clear_pictures(&self.path.join(FRAMES))?;
-        Ok(lock)
+        clear_pictures(&self.path.join(FRAMES))
     }
 
     /// The same for a folder of pictures only: nothing but numbered pictures is removed. It is marked as unfinished until
@@ -152,6 +165,29 @@ impl OutFolder {
         let lock = Lock::take(&self.path)?;
         self.check_content()?;
         Ok(lock)
+    }
+
+    /// Locks it for a run that goes on.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when another process writes into it.
+    pub fn take_over(&self) -> Result<Lock> {
+        Lock::take(&self.path)
+    }
+
+    /// The folder of a run that is to be resumed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is none; [`Error::Io`] when it cannot be written.
+    pub fn of_run(path: &Path) -> Result<Self> {
+        if !path.is_dir() {
+            return Err(Error::input(
+                format!("{} is not a folder", path.display()),
+                "give the folder of a run, such as out/ka4",
+            ));
+        }
+        probe(path)?;
+        Ok(Self { path: path.into() })
     }
 
     /// The path of a file in it.

@@ -1,5 +1,6 @@
 //! What a run is asked for.
 
+use super::checkpoint::Outputs;
 use crate::observe::animation::Animation;
 use std::path::{Path, PathBuf};
 
@@ -38,5 +39,19 @@ impl RunOptions {
             recording: false,
             live,
         }
+    }
+
+    /// What a checkpoint must know of them.
+    pub(super) fn outputs(&self) -> Outputs {
+        let animation = self.animation.as_ref().map(|animation| (animation.file.clone(), animation.width));
+        Outputs { frames: self.frames, recording: self.recording, animation }
+    }
+
+    /// Those of a run that goes on.
+    pub(super) fn of_resumed(out: &Path, outputs: &Outputs, threads: Option<usize>) -> Self {
+        let Outputs { frames, recording, animation } = outputs.clone();
+        let animation = animation.map(|(file, width)| Animation { file, width });
+        let (overwrite, wait, live) = (true, false, None);
+        Self { out: out.into(), overwrite, wait, threads, frames, animation, recording, live }
     }
 }

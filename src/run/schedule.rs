@@ -1,6 +1,7 @@
 //! When to take a row of the curve and when a snapshot.
 
 use crate::scene::spec::OutputSpec;
+use serde::{Deserialize, Serialize};
 
 /// How many times denser rows are after the first rupture.
 const ROW_DENSITY: f64 = 4.0;
@@ -19,7 +20,7 @@ const QUIET: f64 = 0.25;
 /// Time is the fraction of the planned run that is done (-)
 /// ([`crate::observe::planned::PlannedEnd::fraction`]). The first and the last state are not its business:
 /// they are always taken.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Schedule {
     rows: Ticks,
     snapshots: Ticks,
@@ -44,7 +45,7 @@ pub struct Due {
 }
 
 /// Evenly spaced fractions.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Ticks {
     /// How many there are per planned run (-).
     rate: f64,

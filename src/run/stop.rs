@@ -1,6 +1,7 @@
 //! When a run ends.
 
 use crate::base::finding::StopReason;
+use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::observe::peaks::DROP;
 use crate::scene::spec::StopSpec;
 use std::collections::VecDeque;
@@ -47,6 +48,30 @@ impl StopRule {
             dropped_at: None,
             passed: None,
         }
+    }
+
+    /// Puts in what it has seen so far.
+    pub fn save(&self, out: &mut Writer) {
+        out.put(&(
+            &self.steps,
+            self.sum,
+            self.time,
+            self.peak,
+            self.ruptured,
+            self.fallen,
+            self.dropped_at,
+            self.passed,
+        ));
+    }
+
+    /// Takes up what [`Self::save`] has put in.
+    ///
+    /// # Errors
+    /// [`Unfit`] when it is something else.
+    pub fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit> {
+        let Self { steps, sum, time, peak, ruptured, fallen, dropped_at, passed, .. } = self;
+        (*steps, *sum, *time, *peak, *ruptured, *fallen, *dropped_at, *passed) = from.take()?;
+        Ok(())
     }
 
     /// A bond broke.

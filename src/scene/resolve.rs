@@ -286,12 +286,29 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
         samples: at.count_or("samples", raw.samples, usual.samples as u64, 1)? as usize,
         snapshots: at.count_or("snapshots", raw.snapshots, snapshots as u64, 1)? as usize,
         rupture_density: density,
+        checkpoint: checkpoint(&at.key("checkpoint"), &raw.checkpoint)?,
         frame_size: [side(0, width)?, side(1, height)?],
         colour: raw.colour.unwrap_or(usual.colour),
         views: raw.views.clone().unwrap_or(usual.views),
         theme: raw.theme.unwrap_or(usual.theme),
         camera: camera(&at.key("camera"), &raw.camera)?,
     })
+}
+
+fn checkpoint(at: &At, raw: &Option<Scalar>) -> Result<CheckpointSpec> {
+    match raw {
+        None => Ok(CheckpointSpec::Auto),
+        Some(Scalar::Text(word)) if word == "none" => Ok(CheckpointSpec::None),
+        Some(Scalar::Text(word)) if word == "auto" => Ok(CheckpointSpec::Auto),
+        Some(Scalar::Number(steps)) if steps.fract() == 0.0 && (1.0..1e15).contains(steps) => {
+            Ok(CheckpointSpec::Steps(*steps as u64))
+        }
+        Some(Scalar::Number(steps)) => Err(at.error(
+            format!("`checkpoint` is {steps}, but a number without a unit is one of steps, 1 or more"),
+            "for example 10000, \"30 s\" or \"none\"",
+        )),
+        Some(text) => Ok(CheckpointSpec::WallTime(at.quantity(text, Dimension::Time, Range::Positive)?)),
+    }
 }
 
 fn camera(at: &At, raw: &RawCamera) -> Result<CameraSpec> {

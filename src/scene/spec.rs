@@ -404,6 +404,8 @@ pub struct OutputSpec {
     pub snapshots: usize,
     /// How many times denser than that snapshots are right after a rupture (-).
     pub rupture_density: f64,
+    /// How often a run keeps its state.
+    pub checkpoint: CheckpointSpec,
     /// Frame size in pixels.
     pub frame_size: [u32; 2],
     /// Quantity that colours wires in frames and recording.
@@ -422,6 +424,7 @@ impl Default for OutputSpec {
             samples: 2000,
             snapshots: 160,
             rupture_density: 40.0,
+            checkpoint: CheckpointSpec::Auto,
             frame_size: [1280, 720],
             colour: ColourBy::Stress,
             views: Vec::new(),
@@ -429,6 +432,20 @@ impl Default for OutputSpec {
             camera: CameraSpec::default(),
         }
     }
+}
+
+/// How often a run keeps its state, to be resumed from.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum CheckpointSpec {
+    /// As often as costs little.
+    #[default]
+    Auto,
+    /// After this much wall time (s).
+    WallTime(f64),
+    /// After so many steps.
+    Steps(u64),
+    /// Never.
+    None,
 }
 
 /// Viewpoint of the three-dimensional panels. The strand's axis z points right, y points up, the eye looks along +x.

@@ -320,6 +320,12 @@ fn output(out: &mut Lines, output: &OutputSpec) {
     out.entry("samples", output.samples.to_string());
     out.entry("snapshots", output.snapshots.to_string());
     out.entry("rupture_density", number(output.rupture_density));
+    match output.checkpoint {
+        CheckpointSpec::Auto => {}
+        CheckpointSpec::WallTime(seconds) => out.quantity("checkpoint", seconds, Dimension::Time),
+        CheckpointSpec::Steps(steps) => out.entry("checkpoint", steps.to_string()),
+        CheckpointSpec::None => out.entry("checkpoint", text("none")),
+    }
     let [width, height] = output.frame_size;
     out.entry("frame_size", format!("[{width}, {height}]"));
     out.entry("colour", text(output.colour.word()));

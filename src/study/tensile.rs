@@ -328,7 +328,7 @@ impl Observer for HistoryRecorder {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
         let mut layer_wires = vec![0; info.layers.len()];
         info.wires.iter().for_each(|wire| layer_wires[wire.layer] += 1);
-        let gauge_mm = info.gauge.map(|ends| ends.map(f64::from));
+        let gauge_mm = info.gauge.map(|ends| ends.map(mm));
         let lag = MEAN_LAG * info.wave_passage;
         *self = Self { layers: info.layers.clone(), layer_wires, gauge_mm, lag, ..Self::default() };
         Ok(())

@@ -17,6 +17,7 @@ pub mod trial;
 use crate::base::lanes::BLOCK;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::rupture::{Criterion, RuptureCheck};
+use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::shared_rows::SharedRows;
 use crate::engine::state::{BondActions, CHUNK, ChunkSums, State};
 use crate::engine::time_step::Stiffness;
@@ -49,6 +50,13 @@ pub trait Bonds: Send {
     fn utilisation(&self, slot: usize, state: &State) -> f64;
     /// Memory of the stage.
     fn bytes(&self) -> Bytes;
+    /// Puts in what the bonds remember.
+    fn save(&self, out: &mut Writer);
+    /// Takes up what [`Self::save`] has put in.
+    ///
+    /// # Errors
+    /// [`Unfit`] when it is of other bonds.
+    fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit>;
 }
 
 /// Bonds with law `L`; `TURN` says whether particles turn.
@@ -254,6 +262,16 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     fn utilisation(&self, slot: usize, state: &State) -> f64 {
         let Some(check) = &self.rupture else { return 0.0 };
         check.utilisation(slot, state, self.plastic_strain(slot), &self.force(slot), &self.section(slot))
+    }
+
+    fn save(&self, out: &mut Writer) {
+        out.put(&self.records);
+        out.put(&self.due);
+    }
+
+    fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit> {
+        from.take_into(&mut self.records)?;
+        from.take_into(&mut self.due)
     }
 
     fn bytes(&self) -> Bytes {

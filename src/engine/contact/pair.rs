@@ -5,6 +5,7 @@ use crate::base::triple::Triple;
 use crate::engine::state::ChunkSums;
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::{TangentialInput, TangentialLaw};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The laws of a run.
 #[derive(Debug, Clone, Copy)]
@@ -104,6 +105,24 @@ impl<N: NormalLaw, T: TangentialLaw> History<N, T> {
     /// A contact that never touched.
     pub fn new(reduced_radius: f64) -> Self {
         Self::of(reduced_radius, |_| 0.0)
+    }
+}
+
+impl<N: NormalLaw, T: TangentialLaw> Serialize for History<N, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut numbers = vec![0.0; Self::NUMBERS];
+        self.each_number(|k, number| numbers[k] = number);
+        (self.reduced_radius, numbers).serialize(serializer)
+    }
+}
+
+impl<'de, N: NormalLaw, T: TangentialLaw> Deserialize<'de> for History<N, T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (reduced_radius, numbers): (f64, Vec<f64>) = Deserialize::deserialize(deserializer)?;
+        if numbers.len() != Self::NUMBERS {
+            return Err(serde::de::Error::custom("the history of a contact belongs to other laws"));
+        }
+        Ok(Self::of(reduced_radius, |k| numbers[k]))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::spheres::second::SecondSides;
 use crate::engine::bytes::Bytes;
 use crate::engine::neighbours::PairList;
+use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{ChunkSums, State};
 use crate::engine::time_step::Stiffness;
 use crate::strand::assembly::Assembly;
@@ -28,6 +29,13 @@ pub trait Contacts: Send {
     fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
     /// Memory of the stage, among `particles` particles.
     fn bytes(&self, particles: usize) -> Bytes;
+    /// Puts in what the contacts remember, in their order.
+    fn save(&self, out: &mut Writer);
+    /// Takes up what [`Self::save`] has put in, of the particles as they are in `state`.
+    ///
+    /// # Errors
+    /// [`Unfit`] when it is of other bodies or laws.
+    fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit>;
 }
 
 /// By how much the gap of two bodies may close while no particle moves further than 1 (-): 2 for the way of both, the

@@ -21,6 +21,7 @@ use crate::scene::spec::{GripKind, Spec};
 use crate::strand::assembly::Assembly;
 use crossing::crossing;
 use necking::Necking;
+use serde::{Deserialize, Serialize};
 
 /// Overlap over the smaller radius beyond which a contact is said to be deep (-): Hertz's parabola a² = Rδ, from which
 /// every contact law here starts, is 5 % off the circle then.
@@ -42,7 +43,7 @@ pub enum Action {
 }
 
 /// What has been seen so far.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub struct Monitor {
     notices: Vec<Notice>,
     worst: Worst,

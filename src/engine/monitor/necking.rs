@@ -4,6 +4,7 @@
 use crate::engine::step_view::StepView;
 use crate::scene::caution;
 use crate::scene::spec::{BondLawSpec, Spec};
+use serde::{Deserialize, Serialize};
 
 /// Bonds between two looks at necking: those that flow at less than this share of the one that flows most have
 /// stopped (-).
@@ -14,6 +15,7 @@ const STANDS_OUT: f64 = 0.005;
 const FEWEST: usize = 8;
 
 /// Looks for a bond that necks.
+#[derive(Serialize, Deserialize)]
 pub struct Necking {
     /// Plastic strain at the maximum load of a bond (-).
     pub from: f64,

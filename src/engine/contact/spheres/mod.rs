@@ -18,6 +18,7 @@ use super::stage::{Contacts, closing};
 use crate::base::lanes::BLOCK;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::PairList;
+use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::shared_rows::SharedRows;
 use crate::engine::state::{BondActions, CHUNK, ChunkSums, Deepest, State};
 use crate::engine::time_step::Stiffness;
@@ -184,6 +185,19 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
         lost
     }
 
+    /// Where each chunk finds its blocks, and room for what they do.
+    fn index(&mut self, state: &State) {
+        let chunks = state.len().div_ceil(CHUNK);
+        let blocks = &self.now.blocks;
+        self.starts.clear();
+        self.starts.extend((0..=chunks).map(|c| blocks.partition_point(|b| (b.i as usize) < c * CHUNK) as u32));
+        self.actions.clear();
+        self.actions.resize((blocks.len() * kernel::rows::<T>() + 2) * BLOCK, 0.0);
+        self.partial.clear();
+        self.partial.resize(chunks, ChunkSums::default());
+        self.places.index(blocks, state.len());
+    }
+
     /// A pair that is new in the list. During a run it was beyond reach until now, or a bond has just broken.
     fn set_up(&mut self, block: usize, lane: usize, state: &State) {
         if state.step > 0 {
@@ -227,15 +241,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         self.lay_out();
         self.find_constants(state);
         let friction = self.take_over(state);
-        let chunks = state.len().div_ceil(CHUNK);
-        let blocks = &self.now.blocks;
-        self.starts.clear();
-        self.starts.extend((0..=chunks).map(|c| blocks.partition_point(|b| (b.i as usize) < c * CHUNK) as u32));
-        self.actions.clear();
-        self.actions.resize((blocks.len() * kernel::rows::<T>() + 2) * BLOCK, 0.0);
-        self.partial.clear();
-        self.partial.resize(chunks, ChunkSums::default());
-        self.places.index(blocks, state.len());
+        self.index(state);
         ChunkSums { friction, ..ChunkSums::default() }
     }
 
@@ -296,6 +302,32 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
             let nodes = [i as u32, j as u32, 0];
             out.contact(nodes, [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j]], viscosity);
         }
+    }
+
+    fn save(&self, out: &mut Writer) {
+        let acts: Vec<(bool, f64)> = self.now.blocks.iter().map(|block| (block.acts, block.quiet_until)).collect();
+        out.put(&self.keys);
+        out.put(&acts);
+        out.put(&self.now.records);
+        out.put(&self.deepest);
+    }
+
+    fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit> {
+        self.keys = from.take()?;
+        if self.keys.iter().any(|key| pair(*key)[1] as usize >= state.len()) || !self.keys.is_sorted() {
+            return Err(Unfit("its contacts are those of other particles".into()));
+        }
+        self.lay_out();
+        let mut acts = vec![(false, 0.0); self.now.blocks.len()];
+        from.take_into(&mut acts)?;
+        self.now.blocks.iter_mut().zip(acts).for_each(|(block, (acts, quiet_until))| {
+            (block.acts, block.quiet_until) = (acts, quiet_until);
+        });
+        from.take_into(&mut self.now.records)?;
+        self.deepest = from.take()?;
+        self.find_constants(state);
+        self.index(state);
+        Ok(())
     }
 
     fn bytes(&self, particles: usize) -> Bytes {

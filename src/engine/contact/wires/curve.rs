@@ -17,6 +17,7 @@ use crate::base::lanes::Real;
 use crate::base::vectors::Vectors;
 use crate::engine::state::State;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Longest walk of a foot from bond to bond in one search.
 const HOPS: usize = 8;
@@ -332,7 +333,7 @@ pub fn spread_arc(state: &State, slot: usize, moments: &[DVec3; 4], add: &mut im
 }
 
 /// A place on the other wire: `t` along the bond from particle `j`, or particle `j` alone.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Place {
     /// First particle of the bond.
     pub j: u32,

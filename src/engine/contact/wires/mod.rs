@@ -33,6 +33,7 @@ use super::spheres::second::SecondSides;
 use super::stage::{Contacts, closing};
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::{PairList, apart};
+use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{CHUNK, ChunkSums, Deepest, State};
 use crate::engine::time_step::Stiffness;
 use crate::law::contact::NormalLaw;
@@ -190,6 +191,18 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         self.chains.one_wire(i, j) && near() && !self.chains.one_piece(i, j, state)
     }
 
+    /// Where each chunk finds its contacts, and room for what they do.
+    fn index(&mut self, state: &State) {
+        let chunks = state.len().div_ceil(CHUNK);
+        let contacts = &self.contacts;
+        self.starts.clear();
+        self.starts.extend((0..=chunks).map(|chunk| contacts.partition_point(|c| (c.i as usize) < chunk * CHUNK)));
+        self.spread.resize(state.len());
+        self.work.resize_with(chunks, Work::default);
+        self.partial.clear();
+        self.partial.resize(chunks, ChunkSums::default());
+    }
+
     fn meets<'a>(&'a self, state: &'a State) -> Meets<'a, N, T> {
         Meets { laws: &self.laws, line: &self.line, state, chains: &self.chains, closing: self.closing }
     }
@@ -265,17 +278,10 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         for c in self.old.iter().filter(|c| !c.taken && c.history.touching()) {
             lost.add(&ChunkSums { released: c.energy, friction: leave(&self.laws, &c.history), ..Default::default() });
         }
-        let chunks = state.len().div_ceil(CHUNK);
-        let contacts = &self.contacts;
-        self.starts.clear();
-        self.starts.extend((0..=chunks).map(|chunk| contacts.partition_point(|c| (c.i as usize) < chunk * CHUNK)));
         // What is near may have changed: a bond broke, or a contact belongs to another bond now.
         self.quiet_until.clear();
-        self.quiet_until.resize(contacts.len(), 0.0);
-        self.spread.resize(state.len());
-        self.work.resize_with(chunks, Work::default);
-        self.partial.clear();
-        self.partial.resize(chunks, ChunkSums::default());
+        self.quiet_until.resize(self.contacts.len(), 0.0);
+        self.index(state);
         lost
     }
 
@@ -360,6 +366,25 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             let next = c.place.j + u32::from(c.place.joined);
             out.contact([c.i, c.place.j, next], [near.sum(), b0 + b1, b2 + b3], k, c.arm, viscosity);
         }
+    }
+
+    fn save(&self, out: &mut Writer) {
+        out.put(&self.contacts);
+        out.put(&self.quiet_until);
+        out.put(&self.deepest);
+    }
+
+    fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit> {
+        self.contacts = from.take()?;
+        let beyond = |p: u32| p as usize >= state.len();
+        if self.contacts.iter().any(|c| beyond(c.i) || beyond(c.place.j)) || !self.contacts.is_sorted_by_key(|c| c.i) {
+            return Err(Unfit("its contacts are those of other particles".into()));
+        }
+        self.quiet_until.resize(self.contacts.len(), 0.0);
+        from.take_into(&mut self.quiet_until)?;
+        self.deepest = from.take()?;
+        self.index(state);
+        Ok(())
     }
 
     fn bytes(&self, particles: usize) -> Bytes {

@@ -6,9 +6,10 @@ use crate::engine::contact::pair::History;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::line::CELLS;
 use crate::law::tangential::TangentialLaw;
+use serde::{Deserialize, Serialize};
 
 /// What meets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Kind {
     /// A stretch of wire against a wire.
     Stretch,
@@ -19,7 +20,7 @@ pub enum Kind {
 }
 
 /// How a stretch meets a wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// Side by side: cells along the stretch.
     Line,
@@ -46,7 +47,8 @@ pub enum Touch {
 
 /// Particle `i` against another body near `place` of it. What a contact that is apart needs comes first, so that it takes
 /// one line of the cache: most candidates are apart.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(bound = "")]
 #[repr(C)]
 pub struct Contact<N: NormalLaw, T: TangentialLaw> {
     /// Nothing can touch until [`State::travel`](crate::engine::state::State::travel) has reached this (m).
