@@ -13,7 +13,6 @@ use crate::run::folder;
 use crate::study::calibrate::{Calibration, Iteration, Target, calibrate, default_seeds};
 use crate::study::runner::{CaseRunner, CaseStore, cores};
 use crate::study::statistics::Statistics;
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
@@ -45,20 +44,6 @@ pub struct Args {
     /// Make the runs again that are kept
     #[arg(long)]
     fresh: bool,
-}
-
-/// `calibration.json`.
-#[derive(Serialize)]
-struct Document<'a> {
-    scene: &'a str,
-    command: String,
-    version: &'static str,
-    seeds: &'a [u64],
-    target: Target,
-    /// Setting by setting; the last one met the target.
-    trials: &'a [Iteration],
-    /// The options that reproduce the test.
-    set: [String; 3],
 }
 
 pub fn run(args: &Args) -> Result<Ended> {
@@ -96,7 +81,7 @@ pub fn run(args: &Args) -> Result<Ended> {
     say!("{}", row(None));
     let mut iterations: Vec<Iteration> = Vec::new();
     let best = calibrate(&calibration, &target, &mut |_, iteration| {
-        line.suspend(|| say!("{}", row(Some(iteration))));
+        line.0.suspend(|| say!("{}", row(Some(iteration))));
         iterations.push(iteration.clone());
     })?;
     drop(line);
@@ -121,9 +106,17 @@ fn write(
     best: &Iteration,
     out: &Path,
 ) -> Result<PathBuf> {
-    let set = best.setting.overrides();
-    let version = env!("CARGO_PKG_VERSION");
-    let document = Document { scene, command: cases::command(), version, seeds, target, trials: iterations, set };
+    let document = serde_json::json!({
+        "scene": scene,
+        "command": cases::command(),
+        "version": env!("CARGO_PKG_VERSION"),
+        "seeds": seeds,
+        "target": target,
+        // Setting by setting; the last one met the target.
+        "trials": iterations,
+        // The options that reproduce the test.
+        "set": best.setting.overrides(),
+    });
     let text = serde_json::to_string_pretty(&document).expect("a calibration holds nothing that JSON lacks");
     let file = out.join(folder::CALIBRATION);
     write_whole(&file, &(text + "\n"))?;

@@ -97,7 +97,7 @@ pub fn lock(folder: &Path, part: bool) -> Result<Lock> {
 const PARTS: u64 = 1000;
 
 /// How far a command is that runs many cases, on standard error.
-pub struct ProgressLine(ProgressBar);
+pub struct ProgressLine(pub ProgressBar);
 
 impl ProgressLine {
     /// The line of a command; nothing is shown yet.
@@ -111,17 +111,7 @@ impl ProgressLine {
     pub fn show(&self, progress: &Progress) {
         let left = progress.left.map_or(String::new(), |left| format!(", about {} left", time(left)));
         self.0.set_position((progress.share * PARTS as f64) as u64);
-        self.say(format!("{} of {} cases{left}: {}", progress.finished, progress.of, progress.name));
-    }
-
-    /// Shows what is being done.
-    pub fn say(&self, message: String) {
-        self.0.set_message(message);
-    }
-
-    /// Takes the line away while `print` prints.
-    pub fn suspend(&self, print: impl FnOnce()) {
-        self.0.suspend(print);
+        self.0.set_message(format!("{} of {} cases{left}: {}", progress.finished, progress.of, progress.name));
     }
 }
 

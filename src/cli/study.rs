@@ -84,7 +84,7 @@ pub fn study(args: &Args) -> Result<Ended> {
     }
     let gathered = Gathered::read(&definition, &store);
     let costs = sweep::costs(&definition, &gathered, &|point| {
-        line.say(format!("estimating {}", definition.point_name(point)));
+        line.0.set_message(format!("estimating {}", definition.point_name(point)));
     })?;
     let outputs = all_outputs(sweep::run(&definition, &costs, &store, &runner)?);
     drop(line);
@@ -94,8 +94,8 @@ pub fn study(args: &Args) -> Result<Ended> {
 }
 
 fn list() -> Result<Ended> {
-    let wide = definition::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    for (name, text) in definition::list() {
+    let wide = definition::STUDIES.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    for (name, text) in definition::STUDIES {
         let study = Definition::parse(text, &format!("{name}.toml"), Path::new("."), &Changes::default())?;
         say!("{name:wide$}  {} ({})", study.about, counted(study.cases().len(), "case"));
     }

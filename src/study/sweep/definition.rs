@@ -27,8 +27,8 @@ macro_rules! studies {
     };
 }
 
-/// Name and text of the studies that come with the program.
-const STUDIES: &[(&str, &str)] = studies![
+/// Name and TOML text of the studies that come with the program.
+pub const STUDIES: &[(&str, &str)] = studies![
     "pitch",
     "diameter",
     "seeds",
@@ -38,11 +38,6 @@ const STUDIES: &[(&str, &str)] = studies![
     "pitch-flat-hardening",
     "diameter-flat-hardening",
 ];
-
-/// The studies that come with the program: name, and TOML text.
-pub fn list() -> &'static [(&'static str, &'static str)] {
-    STUDIES
-}
 
 /// What the user may change of a study.
 #[derive(Debug, Clone, Default, PartialEq)]
