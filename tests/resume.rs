@@ -1,7 +1,5 @@
 //! A run that is killed goes on from its last checkpoint, and writes what an uninterrupted one writes.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -177,7 +175,7 @@ fn what_was_changed_or_is_not_there_is_refused() {
 fn goes_on_alike(text: &str, before: usize, after: usize) {
     let folder = tempfile::tempdir().unwrap();
     let loaded = strandsnap::scene::load(self::text(&scene(folder.path(), text)), &[]).unwrap();
-    let engine = || Engine::new(&loaded.spec, run::assemble(&loaded).unwrap()).unwrap();
+    let engine = || Engine::new(&loaded.spec, &loaded.plan, run::assemble(&loaded).unwrap()).unwrap();
     let mut first = engine();
     (0..before).for_each(|_| first.step().unwrap());
     let mut second = engine();
