@@ -25,6 +25,7 @@
 //! - [`run`]: one run from scene to results
 //! - [`page`]: the HTML page of a run
 //! - [`study`]: many runs
+//! - `explore`: an interactive picture of a run (feature `explore`)
 //! - [`cli`]: the command line
 //!
 //! # A wire that snaps
@@ -59,6 +60,8 @@
 pub mod base;
 pub mod cli;
 pub mod engine;
+#[cfg(feature = "explore")]
+pub mod explore;
 pub mod law;
 pub mod manual;
 pub mod observe;

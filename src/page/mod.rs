@@ -22,7 +22,9 @@ mod text;
 mod unrolled;
 mod wires;
 
-pub use source::Source;
+pub use abscissa::Abscissa;
+pub use answer::headline;
+pub use source::{Source, trajectory_in};
 
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;

@@ -42,6 +42,17 @@ impl ColourScale {
         Self { by, range, map }
     }
 
+    /// The same over a range of one's own, in the unit of the title; categories have none.
+    pub fn with_shown_range(mut self, range: [f64; 2]) -> Self {
+        self.range = range.map(|v| (v / self.shown_factor()) as f32);
+        self
+    }
+
+    /// From the range's own unit to that of the title (-).
+    fn shown_factor(&self) -> f64 {
+        if matches!(self.by, ColourBy::PlasticStrain | ColourBy::Utilisation) { 100.0 } else { 1.0 }
+    }
+
     /// What the scale shows.
     pub fn by(&self) -> ColourBy {
         self.by
@@ -62,9 +73,7 @@ impl ColourScale {
 
     /// Ends of the range, in the unit of the title; `None` for categories.
     pub fn shown_range(&self) -> Option<[f64; 2]> {
-        let percent = matches!(self.by, ColourBy::PlasticStrain | ColourBy::Utilisation);
-        let factor = if percent { 100.0 } else { 1.0 };
-        self.map.map(|_| self.range.map(|v| f64::from(v) * factor))
+        self.map.map(|_| self.range.map(|v| f64::from(v) * self.shown_factor()))
     }
 
     /// Whether values below and above the range occur, drawn in the colours of its ends: wires that spring back are
