@@ -103,7 +103,7 @@ function heard(message) {
   }
   if (message.error) trouble(message.error);
 }
-setInterval(() => say({ greet: 0 }), 20000);
+setInterval(() => say({ greet: null }), 20000);
 
 // ---- The camera, as src/render/camera.rs has it: x of the picture is the strand's axis at azimuth 0. -----------------
 const turned = ({ azimuth, elevation }) => {

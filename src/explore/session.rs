@@ -43,7 +43,7 @@ const QUALITY: u8 = 82;
 enum Ask {
     /// To draw a view; `size` is that of the whole picture (px).
     Look { number: u32, size: [u32; 2], view: View },
-    /// Nothing: picture `0` is shown now.
+    /// That the page shows a picture now: the next one may come.
     Shown(u32),
     /// The particle at a place of the view, in shares of width and height from the top left.
     Pick { number: u32, size: [u32; 2], at: [f64; 2], view: View },
@@ -54,7 +54,7 @@ enum Ask {
     /// The command that makes the view.
     Command { size: [u32; 2], view: View },
     /// A sign of life.
-    Greet(u32),
+    Greet(()),
 }
 
 /// Kinds of picture.
@@ -232,7 +232,7 @@ impl Session<'_> {
                 let size = format!("{}x{}", size[0], size[1]);
                 self.answer(words.map(|words| json!({ "command": format!("--view '{words}' --size {size}") })))
             }
-            Ask::Greet(_) => Ok(()),
+            Ask::Greet(()) => Ok(()),
         }
     }
 
