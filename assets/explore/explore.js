@@ -167,9 +167,11 @@ function fit() {
 const keepPlace = angles => () => Object.assign(view, angles);
 const views = {
   break: () => {
-    const z = ruptureOf(view.selected)?.rest_z ?? first?.rest_z ?? (run.body.low[2] + run.body.high[2]) / 2;
-    Object.assign(view, { azimuth: -20, elevation: facing(ruptureOf(view.selected) ?? first), follow: z, height: 4.2 * run.body.radius });
+    const rupture = ruptureOf(view.selected) ?? first;
+    const z = rupture?.rest_z ?? (run.body.low[2] + run.body.high[2]) / 2;
+    Object.assign(view, { azimuth: -20, elevation: facing(rupture), follow: z, height: 4.2 * run.body.radius });
     view.centre = [...run.body.axis, 0];
+    uncover(rupture);
   },
   home: () => { Object.assign(view, { azimuth: -28, elevation: 22 }); fit(); },
   front: keepPlace({ azimuth: 0, elevation: 0 }), back: keepPlace({ azimuth: 0, elevation: 180 }),
@@ -177,10 +179,16 @@ const views = {
 };
 // The turn about the axis that brings a break to the eye, a little from above.
 function facing(rupture) {
-  const at = rupture && now?.breaks.find(b => b.order === rupture.order)?.at;
+  const at = rupture?.place;
   if (!at) return 12;
   const [x, y] = [at[0] - run.body.axis[0], at[1] - run.body.axis[1]];
   return Math.hypot(x, y) < 1e-3 ? 12 : Math.atan2(y, -x) * 180 / Math.PI;
+}
+// Takes off the layers that lie over a break.
+function uncover(rupture) {
+  if (!rupture) return;
+  view.hidden_layers = run.layers.map((_, k) => k).filter(k => k > rupture.layer);
+  for (const box of document.querySelectorAll("#layers input")) box.checked = !view.hidden_layers.includes(+box.dataset.layer);
 }
 function go(name) {
   views[name]();
@@ -380,6 +388,7 @@ function toRupture(r) {
   Object.assign(view, { follow: r.rest_z, centre: [...run.body.axis, 0] });
   view.height = Math.min(view.height, 6 * run.body.radius);
   $("follow").checked = true;
+  uncover(r);
 }
 function markRows() {
   for (const row of document.querySelectorAll("tbody tr")) {

@@ -142,7 +142,7 @@ impl Record {
             "order": r.order, "wire": r.wire, "layer": r.layer, "bond": r.bond, "bond_in_wire": r.bond_in_wire,
             "x": abscissa.at(r), "when": abscissa.moment(abscissa.at(r)), "rest_z": mm(r.rest_z), "z": mm(r.position[2]),
             "stress": mpa(r.stress), "body_stress": mpa(r.body_stress), "cause": cause(r.cause), "state": state,
-            "first_of_wire": r.first_of_wire,
+            "first_of_wire": r.first_of_wire, "place": r.position.map(mm),
         })
     }
 
