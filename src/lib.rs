@@ -25,6 +25,7 @@
 //! - [`run`]: one run from scene to results
 //! - [`page`]: the HTML page of a run (feature `report`)
 //! - [`study`]: many runs (feature `study`)
+//! - `explore`: an interactive picture of a run (feature `explore`)
 //! - [`cli`]: the command line (feature `cli`)
 //!
 //! # A wire that snaps
@@ -62,6 +63,8 @@ pub mod base;
 pub mod cli;
 #[warn(missing_docs)]
 pub mod engine;
+#[cfg(feature = "explore")]
+pub mod explore;
 #[warn(missing_docs)]
 pub mod law;
 pub mod manual;

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Floors from the ground up. Those in one row do not see each other.
-const FLOORS: [&[&str]; 12] = [
+const FLOORS: [&[&str]; 13] = [
     &["base"],
     &["law", "reference"],
     &["scene"],
@@ -21,6 +21,7 @@ const FLOORS: [&[&str]; 12] = [
     &["run"],
     &["page"],
     &["study"],
+    &["explore"],
     &["cli"],
     &["manual"],
 ];

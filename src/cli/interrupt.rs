@@ -31,7 +31,11 @@ pub fn install_for_cases() -> Result<&'static AtomicBool> {
     install_saying("\nstopping; finished cases are kept, and the same command goes on with them.")
 }
 
-fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
+/// [`install`] with words of one's own.
+///
+/// # Errors
+/// As for [`install`].
+pub fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
     let handler = move || {
         let now = Instant::now();
         let first = *FIRST.get_or_init(|| now);

@@ -55,8 +55,8 @@ pub struct LookArgs {
 
 impl LookArgs {
     /// Puts the options in place of the scene's keys.
-    pub fn apply(self, output: &mut OutputSpec) {
-        put(&mut output.views, self.views);
+    pub fn apply(&self, output: &mut OutputSpec) {
+        put(&mut output.views, self.views.clone());
         put(&mut output.colour, self.colour);
         put(&mut output.theme, self.theme);
         put(&mut output.frame_size, self.size);

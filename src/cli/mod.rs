@@ -13,6 +13,7 @@ mod check_run;
 #[cfg(feature = "render")]
 mod counted;
 mod ended;
+mod explore;
 mod export;
 mod interrupt;
 mod keys;
@@ -61,6 +62,8 @@ enum Command {
     Scene(scene::Command),
     /// Open the recording of a run in an installed Rerun viewer, or serve it to a browser
     View(view::Args),
+    /// Look at a run from any side in a browser: turn it, cut it open, follow its strain, click what broke
+    Explore(explore::Args),
     /// Write one page (HTML) that tells what a run found: answer, curve, map, frames, tables
     Report(report::Args),
     /// Draw the frames of a finished run again, without simulating
@@ -137,6 +140,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Report(args) => report::report(&args).map(|()| Ended::Well),
         Command::Record(args) => record::record(args),
         Command::View(args) => view::view(args),
+        Command::Explore(args) => explore::explore(args),
         Command::Completions { shell } => {
             manual::completions(shell, &mut Cli::command());
             Ok(Ended::Well)

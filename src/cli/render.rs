@@ -20,6 +20,10 @@ pub struct Args {
     /// Go on where files of the run were changed or are another's; the result says so
     #[arg(long)]
     anyway: bool,
+    /// Draw one view, as `strandsnap explore` writes it, to view.png in that folder
+    #[arg(long, value_name = "KEYS", conflicts_with_all = ["strain_range", "events", "every", "animation", "views", "colour",
+        "theme", "azimuth", "elevation", "zoom", "focus_z"])]
+    view: Option<String>,
     #[command(flatten)]
     select: SelectArgs,
     #[command(flatten)]
@@ -45,6 +49,9 @@ pub fn render(args: Args) -> Result<Ended> {
     use crate::run::replay::Replay;
     use crate::run::{folder, identity, outputs};
 
+    if let Some(words) = &args.view {
+        return one_view(&args, words);
+    }
     let doubts = identity::check(&args.run, args.anyway)?;
     let run = Replay::open(&args.run, &args.select.into())?.doubting(&doubts);
     let mut output = look_of(&args.run);
@@ -78,6 +85,32 @@ pub fn render(args: Args) -> Result<Ended> {
         say!("frames: {timings}");
     }
     interrupt::ended(stop)
+}
+
+#[cfg(all(feature = "render", not(feature = "explore")))]
+fn one_view(_args: &Args, _words: &str) -> Result<Ended> {
+    Err(crate::run::outputs::built_without("single views", "explore", "draw frames without --view"))
+}
+
+#[cfg(feature = "explore")]
+fn one_view(args: &Args, words: &str) -> Result<Ended> {
+    use super::say::say;
+    use crate::base::error::Error;
+    use crate::explore::{View, picture};
+
+    let out = args.out.clone().unwrap_or_else(|| args.run.join("render"));
+    let file = out.join("view.png");
+    if file.exists() && !args.overwrite {
+        let instead = "give --overwrite to replace it, or another folder with --out";
+        return Err(Error::input(format!("{} exists", file.display()), instead));
+    }
+    let mut output = crate::scene::spec::OutputSpec::default();
+    args.look.apply(&mut output);
+    let bytes = picture(&args.run, &View::parse(words)?, output.frame_size)?;
+    std::fs::create_dir_all(&out).map_err(|e| Error::io("cannot create the folder", &out, e))?;
+    crate::render::png::write(&file, &bytes)?;
+    say!("the view is in {}", file.display());
+    Ok(Ended::Well)
 }
 
 /// How the run's own scene wants its frames to look. A trajectory alone, or a scene that this program cannot read any

@@ -43,7 +43,8 @@ fn warnings(source: &Source) -> Markup {
     }
 }
 
-fn headline(source: &Source) -> Markup {
+/// What broke first, where and when, in a sentence.
+pub fn headline(source: &Source) -> Markup {
     let wires = source.info.wires.len();
     match source.ruptures.first() {
         Some(first) => first_rupture(source, first),

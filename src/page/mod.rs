@@ -23,8 +23,10 @@ mod study;
 mod unrolled;
 mod wires;
 
+pub use abscissa::Abscissa;
+pub use answer::headline;
 pub use section::Section;
-pub use source::Source;
+pub use source::{Source, trajectory_in};
 
 use crate::base::error::{Error, Result};
 use crate::base::regular::check_target;

@@ -84,7 +84,11 @@ pub fn check(run: &Path) -> Result<()> {
     trajectory_in(run).map(|_| ())
 }
 
-fn trajectory_in(run: &Path) -> Result<PathBuf> {
+/// The trajectory in a run's folder; under its partial name when the run was killed or is still going.
+///
+/// # Errors
+/// [`Error::Input`] that says what is missing.
+pub fn trajectory_in(run: &Path) -> Result<PathBuf> {
     let give = "give the folder of a run, such as out/ka4";
     if !run.is_dir() {
         let what = if run.exists() { "is not a folder" } else { "does not exist" };

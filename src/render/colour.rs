@@ -41,6 +41,11 @@ impl ColourScale {
         Self { by, range: range.unwrap_or([0.0, 1.0]), map: range.map(|_| map) }
     }
 
+    /// The same over a range of one's own, in the unit of the title; categories have none.
+    pub fn with_shown_range(self, range: [f64; 2]) -> Self {
+        Self { range: range.map(|value| value / shown(self.by, 1.0)), ..self }
+    }
+
     /// What the scale shows.
     pub fn by(&self) -> ColourBy {
         self.by

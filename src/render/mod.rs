@@ -12,9 +12,9 @@
 
 mod adapter;
 pub mod animation;
-mod body;
-mod camera;
-mod canvas;
+pub(crate) mod body;
+pub(crate) mod camera;
+pub(crate) mod canvas;
 pub mod colour;
 mod cross_section;
 mod curve;
@@ -28,20 +28,20 @@ mod labels;
 mod layout;
 mod marks;
 mod midsection;
-mod occlusion;
+pub(crate) mod occlusion;
 mod overview;
-mod painter;
+pub(crate) mod painter;
 mod panel;
 mod panels;
 pub mod png;
 mod sides;
-mod solid;
+pub(crate) mod solid;
 pub mod stage;
-mod style;
+pub(crate) mod style;
 mod target;
 mod unrolled;
 mod viewpoint;
-mod wires;
+pub(crate) mod wires;
 mod writer;
 
 pub use adapter::check;

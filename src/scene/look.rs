@@ -2,7 +2,7 @@
 //! the scene and on the command line.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// Side of a frame, least and greatest (pixels): what a picture's labels need, and what graphics adapters draw.
@@ -14,7 +14,7 @@ pub const ZOOM: RangeInclusive<f64> = 0.01..=1000.0;
 macro_rules! words {
     ($(#[$meta:meta])* $name:ident { $($variant:ident = $word:literal, $about:literal;)+ }) => {
         $(#[$meta])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
         pub enum $name {
             $(#[doc = $about] #[serde(rename = $word)] $variant,)+
         }

@@ -1,4 +1,8 @@
-//! A real browser without a window, spoken to through the DevTools protocol over two pipes. It cannot reach any network.
+//! A real browser without a window, spoken to through the DevTools protocol over two pipes. It cannot reach any network
+//! but this machine's own loopback.
+
+// Each test program uses its own part of this.
+#![allow(dead_code)]
 
 use base64::Engine;
 use serde_json::{Value, json};
@@ -29,6 +33,7 @@ pub struct Browser {
     answers: Receiver<Value>,
     next: u64,
     session: Option<String>,
+    complaints: Vec<Value>,
     _profile: tempfile::TempDir,
 }
 
@@ -41,7 +46,11 @@ impl Browser {
             .arg(program)
             .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"])
             .args(["--remote-debugging-pipe", "--disable-background-networking", "--disable-component-update"])
-            .args(["--proxy-server=127.0.0.1:9", "--host-resolver-rules=MAP * ~NOTFOUND", "--window-size=1280,900"])
+            .args([
+                "--proxy-server=127.0.0.1:9",
+                "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+                "--window-size=1280,900",
+            ])
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .arg("about:blank")
             .stdin(Stdio::piped())
@@ -59,7 +68,8 @@ impl Browser {
                 }
             }
         });
-        let mut browser = Self { child, input, answers, next: 0, session: None, _profile: profile };
+        let mut browser =
+            Self { child, input, answers, next: 0, session: None, complaints: Vec::new(), _profile: profile };
         let target = browser.call("Target.createTarget", json!({ "url": "about:blank" }));
         let attached =
             browser.call("Target.attachToTarget", json!({ "targetId": target["targetId"], "flatten": true }));
@@ -81,6 +91,15 @@ impl Browser {
                 assert!(answer["error"].is_null(), "{method}: {answer}");
                 return answer["result"].take();
             }
+            let error = match answer["method"].as_str() {
+                Some("Runtime.exceptionThrown") => true,
+                Some("Runtime.consoleAPICalled") => answer["params"]["type"] == "error",
+                Some("Log.entryAdded") => answer["params"]["entry"]["level"] == "error",
+                _ => false,
+            };
+            if error {
+                self.complaints.push(answer["params"].take());
+            }
         }
     }
 
@@ -94,7 +113,23 @@ impl Browser {
         self.wait_for("document.documentElement?.dataset.ready", "yes");
     }
 
-    fn size(&mut self, width: u32, height: u64) {
+    /// The same for an address on this machine, listening to what the page complains about.
+    pub fn visit(&mut self, address: &str, scheme: &str) {
+        self.call("Runtime.enable", json!({}));
+        self.call("Log.enable", json!({}));
+        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
+        self.call("Emulation.setEmulatedMedia", json!({ "features": features }));
+        self.size(1440, 900);
+        self.call("Page.navigate", json!({ "url": address }));
+        self.wait_for("document.documentElement?.dataset.ready", "yes");
+    }
+
+    /// Errors in the page's console so far, since it was visited.
+    pub fn complaints(&self) -> Vec<Value> {
+        self.complaints.clone()
+    }
+
+    pub fn size(&mut self, width: u32, height: u64) {
         let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.call("Emulation.setDeviceMetricsOverride", size);
     }
@@ -135,10 +170,32 @@ impl Browser {
         self.call("Input.dispatchMouseEvent", json!({ "type": "mouseMoved", "x": x, "y": y }));
     }
 
+    /// Drags with the mouse from one place in an element to another, given as shares of its width and height.
+    pub fn drag(&mut self, selector: &str, from: [f64; 2], to: [f64; 2]) {
+        let element = format!("document.querySelector('{selector}')");
+        let corner = self.value(&format!("(r => [r.x, r.y, r.width, r.height])({element}.getBoundingClientRect())"));
+        let corner = |k: usize| corner[k].as_f64().expect("a number");
+        let at = |share: f64| {
+            let [right, down] = [0, 1].map(|k| from[k] + share * (to[k] - from[k]));
+            (corner(0) + right * corner(2), corner(1) + down * corner(3))
+        };
+        let mut event = |kind: &str, share: f64, buttons: u32| {
+            let (x, y) = at(share);
+            let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1 });
+            self.call("Input.dispatchMouseEvent", event);
+        };
+        event("mousePressed", 0.0, 1);
+        for step in 1..=10 {
+            event("mouseMoved", f64::from(step) / 10.0, 1);
+        }
+        event("mouseReleased", 1.0, 0);
+    }
+
     /// Keeps a picture of the whole page.
     pub fn screenshot(&mut self, file: &Path) {
         let height = self.value("document.documentElement.scrollHeight").as_u64().expect("a height");
-        self.size(1280, height);
+        let width = self.value("document.documentElement.clientWidth").as_u64().expect("a width");
+        self.size(width as u32, height);
         let asked = json!({ "format": "png", "captureBeyondViewport": true });
         let picture = self.call("Page.captureScreenshot", asked);
         let data = picture["data"].as_str().expect("a picture");

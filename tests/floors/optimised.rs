@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 /// Dependencies that may be slow.
-const COLD: [(&str, &[&str]); 7] = [
+const COLD: [(&str, &[&str]); 8] = [
     (
         "reads or writes a few kB per run",
         &["miette", "schemars", "serde_json", "strsim", "thiserror", "toml", "toml_edit"],
@@ -14,6 +14,7 @@ const COLD: [(&str, &[&str]); 7] = [
     ("talks to people", &["clap", "clap_complete", "clap_mangen", "indicatif", "textwrap"]),
     ("makes a page or a plot in a second at most", &["base64", "colorous", "maud", "plotters"]),
     ("is called a few times per study", &["statrs"]),
+    ("is called a few times per message of a browser", &["getrandom", "httparse", "tungstenite"]),
     ("what is bulk in it lies in libraries of its own, which are listed", &["rerun", "wgpu"]),
 ];
 

@@ -1,0 +1,694 @@
+import { Map2D, element, extent, frame, line } from "./charts.js";
+
+// The token has become a cookie; it need not stay in the address.
+if (location.search) history.replaceState(null, "", location.pathname);
+
+const $ = id => document.getElementById(id);
+const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
+const fixed = (v, digits) => (v === null || v === undefined ? "–" : v.toFixed(digits));
+
+const run = await fetch("/run.json").then(answer => answer.json());
+const last = run.states.length - 1;
+const first = run.ruptures[0];
+const stage = $("stage"), overlay = $("overlay"), canvas = $("picture");
+
+// ---- What is looked at. -------------------------------------------------------------------------------------------
+const view = {
+  state: 0, azimuth: 0, elevation: 0, centre: [...run.body.axis, 0], height: 4 * run.body.radius, colour: "stress",
+  hidden_layers: [], hidden_wires: [], explode: 0, theme: "dark",
+};
+let shown = null;        // the view of the picture on the screen
+let now = null;          // what the server told of its state
+let colours = null;      // of every particle, three bytes each
+let chosen = null;       // what the server told of the selected wire
+let particle = null;     // the particle that was clicked
+let playing = false;
+
+// ---- The socket: one view is asked for at a time, always the newest. -----------------------------------------------
+let socket, number = 0, dirty = true, retry = 500;
+const asked = new Map();
+const say = message => { if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message)); };
+
+function connect() {
+  socket = new WebSocket(`ws://${location.host}/socket`);
+  socket.binaryType = "arraybuffer";
+  socket.onopen = () => { retry = 500; trouble(""); asked.clear(); changed(); };
+  socket.onmessage = ({ data }) => (typeof data === "string" ? heard(JSON.parse(data)) : received(data));
+  socket.onclose = () => {
+    trouble("The connection is lost: strandsnap has ended, or the network is gone. Trying again …");
+    setTimeout(connect, retry = Math.min(2 * retry, 10000));
+  };
+}
+
+function trouble(text) {
+  $("trouble").hidden = !text;
+  $("trouble").textContent = text;
+}
+
+function sizeOf() {
+  const { width, height } = stage.getBoundingClientRect();
+  const sharp = Math.min(devicePixelRatio || 1, Math.sqrt(4e6 / Math.max(1, width * height)));
+  return [width, height].map(side => clamp(Math.round(side * sharp), 16, 8192));
+}
+
+// A new picture is due; it is asked for before the next repaint.
+const changed = () => { dirty = true; };
+
+function tick(time) {
+  if (playing) advance(time);
+  if (dirty && socket?.readyState === WebSocket.OPEN) {
+    dirty = false;
+    number += 1;
+    const copy = structuredClone(view);
+    asked.set(number, { view: copy, time: performance.now() });
+    if (asked.size > 300) asked.delete(asked.keys().next().value);
+    say({ look: { number, size: sizeOf(), view: copy } });
+  }
+  requestAnimationFrame(tick);
+}
+
+async function received(data) {
+  const [kind, of, width, height, micros] = new Uint32Array(data, 0, 5);
+  const bytes = new Uint8Array(data, 20);
+  if (kind === 3) { colours = bytes; drawMap(); return; }
+  if (kind === 2) { keep(new Blob([bytes], { type: "image/png" })); return; }
+  const picture = await createImageBitmap(new Blob([bytes], { type: kind ? "image/png" : "image/jpeg" }));
+  if (kind === 0) say({ shown: of });
+  const ask = asked.get(of);
+  if (!ask || (shown && of < shown.number)) return;
+  const whole = kind === 1;
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+  canvas.getContext("2d").drawImage(picture, 0, 0);
+  shown = { number: of, view: ask.view, whole };
+  for (const key of asked.keys()) if (key < of) asked.delete(key);
+  $("waiting").hidden = true;
+  const took = performance.now() - ask.time;
+  if (!whole) {
+    stage.dataset.latency = took.toFixed(0);
+    $("speed").textContent = `${width} × ${height}, drawn in ${(micros / 1000).toFixed(0)} ms, seen after ${took.toFixed(0)} ms`;
+  }
+  stage.dataset.shown = of;
+  stage.dataset.whole = whole ? "yes" : "no";
+  drawOverlay();
+}
+
+function heard(message) {
+  if (message.state) { now = message.state; drawNow(); drawMap(); drawOverlay(); }
+  if (message.wire !== undefined) { chosen = message.wire; drawChosen(); }
+  if (message.picked !== undefined) picked(message.number, message.picked);
+  if (message.command) {
+    $("command-text").hidden = false;
+    $("command-text").textContent = `${run.command} ${message.command}`;
+    navigator.clipboard?.writeText($("command-text").textContent).catch(() => {});
+  }
+  if (message.error) trouble(message.error);
+}
+setInterval(() => say({ greet: null }), 20000);
+
+// ---- The camera, as src/render/camera.rs has it: x of the picture is the strand's axis at azimuth 0. -----------------
+const turned = ({ azimuth, elevation }) => {
+  const [a, e] = [azimuth, elevation].map(deg => deg * Math.PI / 180);
+  const [ca, sa, ce, se] = [Math.cos(a), Math.sin(a), Math.cos(e), Math.sin(e)];
+  return ([x, y, z]) => {
+    const right = ca * z - sa * x, near = -sa * z - ca * x;
+    return [right, ce * y - se * near, se * y + ce * near];
+  };
+};
+// World direction of a direction in the picture: the rotation's transpose.
+const untwisted = (of, v) => {
+  const rows = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(turned(of));
+  return rows.map(row => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
+};
+const ridden = () => (view.follow !== undefined && now?.ridden) || 0;
+const spread = ([x, y, z]) => {
+  const [ax, ay] = run.body.axis, apart = 1 + view.explode;
+  return [ax + (x - ax) * apart, ay + (y - ay) * apart, z];
+};
+function projector(of) {
+  const rotate = turned(of), { width, height } = stage.getBoundingClientRect(), scale = height / of.height;
+  const centre = [of.centre[0], of.centre[1], of.centre[2] + (of.follow !== undefined ? now?.ridden ?? 0 : 0)];
+  return p => {
+    const [x, y, z] = rotate(p.map((v, k) => v - centre[k]));
+    return [width / 2 + x * scale, height / 2 - y * scale, z];
+  };
+}
+function move([dx, dy]) {
+  const { height } = stage.getBoundingClientRect(), scale = view.height / height;
+  const by = untwisted(view, [-dx * scale, dy * scale, 0]);
+  view.centre = view.centre.map((c, k) => c + by[k]);
+}
+function zoom(factor, [x, y] = [0.5, 0.5]) {
+  const { width, height } = stage.getBoundingClientRect();
+  const before = view.height;
+  view.height = clamp(before * factor, 0.02 * run.body.radius, 20 * Math.max(run.body.high[2] - run.body.low[2], run.body.radius));
+  const scale = (before - view.height) / height;
+  const by = untwisted(view, [(x - 0.5) * width * scale, (0.5 - y) * height * scale, 0]);
+  view.centre = view.centre.map((c, k) => c + by[k]);
+}
+function orbit(dx, dy) {
+  view.azimuth = ((view.azimuth + dx + 540) % 360) - 180;
+  view.elevation = ((view.elevation + dy + 540) % 360) - 180;
+}
+
+function fit() {
+  delete view.follow;
+  const reach = now?.reach ?? [0, 1, 2].map(k => [run.body.low[k], run.body.high[k]]);
+  view.centre = reach.map(([low, high]) => (low + high) / 2);
+  const rotate = turned(view), { width, height } = stage.getBoundingClientRect();
+  const apart = 1 + view.explode;
+  let [w, h] = [0, 0];
+  for (let k = 0; k < 8; k++) {
+    const corner = reach.map(([low, high], axis) => (axis < 2 ? apart : 1) * ((k >> axis) & 1 ? high - low : low - high) / 2);
+    const [x, y] = rotate(corner);
+    [w, h] = [Math.max(w, Math.abs(x)), Math.max(h, Math.abs(y))];
+  }
+  view.height = 2.15 * Math.max(h, w * height / width);
+}
+const keepPlace = angles => () => Object.assign(view, angles);
+const views = {
+  break: () => {
+    const rupture = ruptureOf(view.selected) ?? first;
+    const z = rupture?.rest_z ?? (run.body.low[2] + run.body.high[2]) / 2;
+    Object.assign(view, { azimuth: -20, elevation: facing(rupture), follow: z, height: 4.2 * run.body.radius });
+    view.centre = [...run.body.axis, 0];
+    uncover(rupture);
+  },
+  home: () => { Object.assign(view, { azimuth: -28, elevation: 22 }); fit(); },
+  front: keepPlace({ azimuth: 0, elevation: 0 }), back: keepPlace({ azimuth: 0, elevation: 180 }),
+  top: keepPlace({ azimuth: 0, elevation: 90 }), along: keepPlace({ azimuth: -90, elevation: 0 }),
+};
+// The turn about the axis that brings a break to the eye, a little from above.
+function facing(rupture) {
+  const at = rupture?.place;
+  if (!at) return 12;
+  const [x, y] = [at[0] - run.body.axis[0], at[1] - run.body.axis[1]];
+  return Math.hypot(x, y) < 1e-3 ? 12 : Math.atan2(y, -x) * 180 / Math.PI;
+}
+// Takes off the layers that lie over a break.
+function uncover(rupture) {
+  if (!rupture) return;
+  view.hidden_layers = run.layers.map((_, k) => k).filter(k => k > rupture.layer);
+  for (const box of document.querySelectorAll("#layers input")) box.checked = !view.hidden_layers.includes(+box.dataset.layer);
+}
+function go(name) {
+  views[name]();
+  $("follow").checked = view.follow !== undefined;
+  changed();
+}
+document.querySelectorAll("[data-view]").forEach(button => { button.onclick = () => go(button.dataset.view); });
+$("follow").onchange = ({ target }) => {
+  if (target.checked) {
+    // The section in the middle of the picture now; before loading it lay where strain had not yet moved it.
+    const { z } = rest(view.centre[2]);
+    Object.assign(view, { follow: z, centre: [view.centre[0], view.centre[1], 0] });
+  } else {
+    view.centre[2] += ridden();
+    delete view.follow;
+  }
+  changed();
+};
+function rest(z) {
+  const [low, high] = now?.reach[2] ?? [0, 1];
+  const share = clamp((z - low) / Math.max(high - low, 1e-9), 0, 1);
+  return { z: run.body.low[2] + share * (run.body.high[2] - run.body.low[2]) };
+}
+
+// ---- Mouse, touch and keys. -----------------------------------------------------------------------------------------
+const fingers = new Map();
+let pressed = null;
+const inside = event => {
+  const box = stage.getBoundingClientRect();
+  return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+};
+stage.oncontextmenu = event => event.preventDefault();
+stage.onpointerdown = event => {
+  stage.focus({ preventScroll: true });
+  stage.setPointerCapture(event.pointerId);
+  fingers.set(event.pointerId, [event.clientX, event.clientY]);
+  if (fingers.size === 1) pressed = { at: [event.clientX, event.clientY], moved: false, pan: event.button > 0 || event.shiftKey };
+  stage.classList.add("turning");
+  $("tip").hidden = true;
+};
+stage.onpointermove = event => {
+  const before = fingers.get(event.pointerId);
+  if (!before) return hover(event);
+  const at = [event.clientX, event.clientY];
+  if (pressed && Math.hypot(at[0] - pressed.at[0], at[1] - pressed.at[1]) > 3) pressed.moved = true;
+  const [dx, dy] = [at[0] - before[0], at[1] - before[1]];
+  if (fingers.size === 2) {
+    const other = [...fingers].find(([id]) => id !== event.pointerId)[1];
+    const gap = p => Math.hypot(p[0] - other[0], p[1] - other[1]);
+    zoom(gap(before) / Math.max(gap(at), 1));
+    move([dx / 2, dy / 2]);
+  } else if (pressed?.pan || event.shiftKey) {
+    move([dx, dy]);
+  } else {
+    orbit(dx * 0.35, dy * 0.35);
+  }
+  fingers.set(event.pointerId, at);
+  changed();
+};
+stage.onpointerup = stage.onpointercancel = event => {
+  fingers.delete(event.pointerId);
+  if (!fingers.size) stage.classList.remove("turning");
+  if (event.type === "pointerup" && pressed && !pressed.moved && event.button === 0) ask(event, "click");
+  if (!fingers.size) pressed = null;
+};
+stage.ondblclick = event => ask(event, "centre");
+stage.onwheel = event => {
+  event.preventDefault();
+  zoom(Math.exp(clamp(event.deltaY, -300, 300) * (event.deltaMode ? 0.04 : 0.0015)), inside(event));
+  changed();
+};
+stage.onpointerleave = () => { $("tip").hidden = true; };
+
+const picks = new Map();
+let pick = 0, resting;
+function ask(event, why) {
+  picks.set(++pick, { why, at: inside(event) });
+  say({ pick: { number: pick, size: sizeOf(), at: inside(event), view } });
+}
+function hover(event) {
+  clearTimeout(resting);
+  $("tip").hidden = true;
+  if (event.pointerType === "mouse") resting = setTimeout(() => ask(event, "hover"), 120);
+}
+function picked(which, found) {
+  const { why, at } = picks.get(which) ?? {};
+  picks.delete(which);
+  if (why === "hover") return showTip(at, found);
+  if (why === "centre" && found) {
+    const [x, y] = spread(found.position);
+    Object.assign(view, { follow: found.rest_z, centre: [x, y, 0] });
+    $("follow").checked = true;
+    changed();
+  }
+  if (why === "click") {
+    particle = found;
+    select(found?.wire ?? null);
+  }
+}
+const wireName = k => `Wire ${run.wires[k].number}, ${run.layers[run.wires[k].layer]} layer`;
+function showTip([x, y], found) {
+  const tip = $("tip");
+  tip.hidden = !found;
+  if (!found) return;
+  const lines = [found.wire === null ? `Free sphere ${found.particle}` : wireName(found.wire)];
+  if (found.stress !== null) lines.push(`true axial stress ${fixed(found.stress, 0)} MPa`, `plastic strain ${fixed(found.plastic_strain, 1)} %`);
+  lines.push(`z ${fixed(found.position[2], 2)} mm, before loading ${fixed(found.rest_z, 2)} mm`);
+  tip.textContent = lines.join("\n");
+  const { width, height } = stage.getBoundingClientRect();
+  tip.style.left = `${Math.min(x * width + 14, width - 240)}px`;
+  tip.style.top = `${Math.min(y * height + 14, height - 80)}px`;
+}
+
+stage.onkeydown = event => {
+  const step = event.shiftKey ? null : 5;
+  const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+  const named = { Home: "home", b: "break", B: "break", 1: "front", 2: "back", 3: "top", 4: "along" }[event.key];
+  if (arrows && step) orbit(...arrows.map(v => v * step));
+  else if (arrows) move(arrows.map(v => v * -40));
+  else if (event.key === "+" || event.key === "=") zoom(0.85);
+  else if (event.key === "-") zoom(1 / 0.85);
+  else if (named) go(named);
+  else if (event.key === "[") toBreak(-1);
+  else if (event.key === "]") toBreak(1);
+  else if (event.key === ",") toState(Math.ceil(view.state) - 1);
+  else if (event.key === ".") toState(Math.floor(view.state) + 1);
+  else if (event.key === " ") play(!playing);
+  else return;
+  event.preventDefault();
+  changed();
+};
+
+// ---- Time. ----------------------------------------------------------------------------------------------------------
+const slider = $("slider");
+slider.max = last;
+function toState(state) {
+  view.state = clamp(state, 0, last);
+  slider.value = view.state;
+  slider.setAttribute("aria-valuetext", moment(run.states[Math.round(view.state)]));
+  if (view.selected !== undefined) say({ wire: { wire: view.selected, state: view.state } });
+  changed();
+}
+const moment = s => (run.pulled ? `${fixed(s.x, 2)} % strain` : `${fixed(s.x, 4)} ms`);
+slider.oninput = () => { play(false); toState(+slider.value); };
+const breakStates = [...new Set(run.ruptures.map(r => r.state))].sort((a, b) => a - b);
+function toBreak(direction) {
+  play(false);
+  const next = direction > 0 ? breakStates.find(s => s > view.state + 1e-6) : breakStates.findLast(s => s < view.state - 1e-6);
+  if (next !== undefined) toState(next);
+}
+$("before").onclick = () => toBreak(-1);
+$("after").onclick = () => toBreak(1);
+let frameTime = null;
+function play(on) {
+  playing = on;
+  frameTime = null;
+  if (on && view.state >= last) toState(0);
+  $("play").textContent = on ? "⏸" : "▶";
+  $("play").setAttribute("aria-label", on ? "Pause" : "Play");
+  $("now").setAttribute("aria-live", on ? "off" : "polite");
+}
+$("play").onclick = () => play(!playing);
+// The whole run takes twenty seconds at rate 1, whatever its length.
+function advance(time) {
+  const seconds = frameTime === null ? 0 : Math.min(0.2, (time - frameTime) / 1000);
+  frameTime = time;
+  const next = view.state + seconds * last / 20 * +$("rate").value;
+  toState(next);
+  if (next >= last) play(false);
+}
+function drawTicks() {
+  const svg = $("ticks");
+  svg.replaceChildren();
+  const { width } = svg.getBoundingClientRect();
+  svg.setAttribute("viewBox", `0 0 ${Math.max(width, 1)} 10`);
+  for (const r of run.ruptures) {
+    const x = 8 + r.state / Math.max(last, 1) * (width - 16);
+    element(svg, "line", { x1: x, x2: x, y1: 0, y2: r.first_of_wire ? 9 : 5, class: "mark" });
+  }
+}
+
+// ---- What is selected: a wire, in every picture and table. --------------------------------------------------------------
+const ruptureOf = wire => run.ruptures.find(r => r.wire === wire);
+function select(wire) {
+  if (wire === null) { delete view.selected; chosen = null; } else {
+    view.selected = wire;
+    say({ wire: { wire, state: view.state } });
+  }
+  drawChosen(); drawCurve(); drawMap(); markRows(); drawOverlay();
+  changed();
+}
+function toRupture(r) {
+  play(false);
+  particle = null;
+  toState(r.state);
+  select(r.wire);
+  Object.assign(view, { follow: r.rest_z, centre: [...run.body.axis, 0] });
+  view.height = Math.min(view.height, 6 * run.body.radius);
+  $("follow").checked = true;
+  uncover(r);
+}
+function markRows() {
+  for (const row of document.querySelectorAll("tbody tr")) {
+    row.classList.toggle("selected", +row.dataset.wire === view.selected);
+    row.classList.toggle("future", +row.dataset.state > view.state + 1e-6);
+  }
+}
+
+// ---- Drawing: overlay, charts, tables. -------------------------------------------------------------------------------
+function drawOverlay() {
+  if (!shown || !now) return;
+  overlay.replaceChildren();
+  const { width, height } = stage.getBoundingClientRect();
+  overlay.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  const project = projector(shown.view);
+  const taken = [];
+  for (const { order, at } of now.breaks) {
+    const r = run.ruptures[order - 1];
+    if (view.hidden_layers.includes(r.layer) || view.hidden_wires.includes(r.wire) || (view.cut !== undefined && at[2] > view.cut)) continue;
+    const [x, y] = project(spread(at));
+    if (x < 0 || y < 0 || x > width || y > height) continue;
+    element(overlay, "circle", { class: "mark", cx: x, cy: y, r: r.wire === view.selected ? 9 : 5 });
+    if (r.first_of_wire && taken.every(p => Math.hypot(p[0] - x, p[1] - y) > 20)) {
+      taken.push([x, y]);
+      element(overlay, "circle", { class: "badge", cx: x, cy: y - 16, r: 8 });
+      element(overlay, "text", { class: "number", x, y: y - 16 }, run.wires[r.wire].order === order ? firsts.indexOf(r.wire) + 1 : order);
+    }
+  }
+  drawTriad(height);
+  drawScale(width, height);
+}
+const firsts = run.ruptures.filter(r => r.first_of_wire).map(r => r.wire);
+function drawTriad(height) {
+  const rotate = turned(shown.view), [x, y] = [40, height - 40];
+  [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]].forEach(([name, axis]) => {
+    const [dx, dy] = rotate(axis).map(v => v * 26);
+    element(overlay, "line", { class: "axis", x1: x, y1: y, x2: x + dx, y2: y - dy });
+    element(overlay, "text", { class: "caption", x: x + 1.25 * dx - 3, y: y - 1.25 * dy + 4 }, name);
+  });
+}
+function drawScale(width, height) {
+  const scale = height / shown.view.height, raw = 110 / scale, power = 10 ** Math.floor(Math.log10(raw));
+  const length = [5, 2, 1].map(v => v * power).find(v => v <= raw) ?? power;
+  const [right, y] = [width - 14, height - 14], left = right - length * scale;
+  element(overlay, "path", { class: "axis", d: `M${left} ${y - 4}V${y}H${right}V${y - 4}` });
+  const text = element(overlay, "text", { class: "caption", x: (left + right) / 2, y: y - 6 }, `${+length.toPrecision(3)} mm`);
+  text.setAttribute("text-anchor", "middle");
+}
+
+function drawNow() {
+  const layers = now.layers.map((l, k) => `${run.layers[k]} ${l.whole} of ${l.of}`).join(", ");
+  const stress = run.pulled ? `, nominal stress ${fixed(now.stress, 1)} MPa` : "";
+  $("now").textContent = `${now.when}${stress}, ${fixed(now.time_ms, 3)} ms. Whole wires: ${layers || "none"}. Broken bonds: ${now.bonds_broken}.`;
+  $("cut").min = now.reach[2][0];
+  $("cut").max = now.reach[2][1];
+  if (view.cut === undefined) $("cut").value = now.reach[2][1];
+  drawCurve();
+  markRows();
+}
+
+let curve;
+function drawCurve() {
+  const svg = $("curve");
+  if (!run.pulled) return;
+  const history = view.selected === undefined ? [] : run.wires[view.selected].history;
+  const [low, high] = extent([...run.curve.y, ...history, 0]);
+  curve = frame(svg, { x: extent(run.curve.x), y: [low, 1.05 * high], xTitle: run.abscissa, yTitle: "nominal stress (MPa)" });
+  line(svg, curve, run.curve.x, run.curve.y, "line");
+  if (history.length) line(svg, curve, run.curve.x, history, "wire");
+  const at = now ? now.x : run.states[0].x;
+  element(svg, "line", { class: "now", x1: curve.px(at), x2: curve.px(at), y1: curve.top, y2: curve.bottom });
+  for (const r of run.ruptures) {
+    const kind = ["break", r.state > view.state + 1e-6 && "future", r.wire === view.selected && "selected"].filter(Boolean).join(" ");
+    const dot = element(svg, "circle", { class: kind, cx: curve.px(r.x), cy: curve.py(r.body_stress), r: r.first_of_wire ? 4 : 2.5 });
+    dot.onclick = event => { event.stopPropagation(); toRupture(r); };
+    element(dot, "title", {}, `break ${r.order}: wire ${run.wires[r.wire].number}, ${r.when}`);
+  }
+  const selected = view.selected === undefined ? "" : `; blue: ${wireName(view.selected).toLowerCase()} at mid-gauge`;
+  svg.setAttribute("aria-label", `Nominal stress over strain, ${run.ruptures.length} breaks${selected}`);
+}
+$("curve").onclick = event => {
+  if (!curve) return;
+  play(false);
+  const x = curve.value(event.clientX);
+  const off = run.states.map(s => Math.abs(s.x - x));
+  toState(off.indexOf(Math.min(...off)));
+};
+
+const map = new Map2D($("map"), run.wires);
+function drawMap() {
+  if (!colours || !now || !run.wires.length) return;
+  const broken = new Map();
+  for (const { order } of now.breaks) {
+    const r = run.ruptures[order - 1];
+    broken.set(r.wire, [...(broken.get(r.wire) ?? []), r.bond_in_wire]);
+  }
+  map.draw(colours, broken, view.selected);
+}
+$("map").onclick = event => {
+  const box = $("map").getBoundingClientRect();
+  const found = map.at((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
+  if (!found) return;
+  particle = null;
+  select(found.wire);
+  const share = found.particle / Math.max(1, run.wires[found.wire].len - 1);
+  Object.assign(view, { follow: run.body.low[2] + share * (run.body.high[2] - run.body.low[2]), centre: [...run.body.axis, 0] });
+  view.height = Math.min(view.height, 6 * run.body.radius);
+  $("follow").checked = true;
+};
+
+function drawChosen() {
+  const wire = view.selected, svg = $("along");
+  svg.hidden = wire === undefined || !chosen;
+  $("chosen-title").textContent = wire === undefined ? "No wire selected" : wireName(wire);
+  if (wire === undefined) {
+    $("chosen-text").textContent = "Click a wire in the picture, in the map or in a table.";
+  } else {
+    const r = ruptureOf(wire);
+    $("chosen-text").textContent = r
+      ? `Broke as number ${firsts.indexOf(wire) + 1} of the wires, at ${r.when}, z = ${fixed(r.rest_z, 1)} mm before loading (${fixed(r.z, 1)} mm then), true stress ${fixed(r.stress, 0)} MPa, body ${fixed(r.body_stress, 1)} MPa, ${r.cause}.`
+      : "Did not break.";
+  }
+  if (!svg.hidden) drawAlong(svg);
+  drawParticle();
+}
+function drawAlong(svg) {
+  const at = frame(svg, {
+    x: extent(chosen.z), y: [Math.min(0, extent(chosen.stress)[0]), 1.05 * Math.max(1, extent(chosen.stress)[1])],
+    xTitle: "z before loading (mm)", yTitle: "true axial stress (MPa), blue: plastic strain (share of its greatest)",
+  });
+  line(svg, at, chosen.z, chosen.stress, "line");
+  const most = Math.max(1e-9, extent(chosen.plastic_strain)[1]), top = 0.95 * Math.max(1, extent(chosen.stress)[1]);
+  line(svg, at, chosen.z, chosen.plastic_strain.map(v => (v === null ? null : v / most * top)), "wire");
+  element(svg, "text", { x: at.px(chosen.z.at(-1)), y: at.top + 8, "text-anchor": "end" }, `plastic strain up to ${fixed(most, 1)} %`);
+  for (const r of run.ruptures.filter(r => r.wire === chosen.wire && r.state <= view.state + 1e-6)) {
+    element(svg, "circle", { class: "break", cx: at.px(r.rest_z), cy: at.bottom, r: 4 });
+  }
+  svg.setAttribute("aria-label", `${wireName(chosen.wire)}: stress ${fixed(extent(chosen.stress)[0], 0)} to ${fixed(extent(chosen.stress)[1], 0)} MPa along its length, plastic strain up to ${fixed(most, 1)} %`);
+}
+function drawParticle() {
+  const list = $("particle");
+  list.replaceChildren();
+  if (!particle) return;
+  const add = (name, value) => {
+    const [dt, dd] = ["dt", "dd"].map(kind => document.createElement(kind));
+    [dt.textContent, dd.textContent] = [name, value];
+    list.append(dt, dd);
+  };
+  const p = particle;
+  add("particle", p.wire === null ? `free sphere ${p.particle}` : `${p.number_in_wire} of ${p.of} in wire ${run.wires[p.wire].number}`);
+  add("position", `${p.position.map(v => fixed(v, 3)).join(", ")} mm (z ${fixed(p.rest_z, 3)} mm before loading)`);
+  add("radius", `${fixed(p.radius, 4)} mm`);
+  add("speed", `${fixed(p.speed, 3)} m/s`);
+  add("contact pressure", `${fixed(p.contact_pressure, 1)} MPa`);
+  if (p.wire === null) return;
+  if (!p.held_by) return add("bonds", "none holds it");
+  add("true axial stress", `${fixed(p.stress, 1)} MPa`);
+  add("plastic strain", `${fixed(p.plastic_strain, 2)} %`);
+  add("utilisation", `${fixed(p.utilisation, 1)} % of rupture`);
+}
+
+function table(into, heads, rows) {
+  const head = into.createTHead().insertRow();
+  for (const [text, kind] of heads) {
+    const cell = document.createElement("th");
+    Object.assign(cell, { textContent: text, className: kind ?? "", scope: "col" });
+    head.append(cell);
+  }
+  const body = into.createTBody();
+  for (const { cells, wire, state, go: act, name } of rows) {
+    const row = body.insertRow();
+    Object.assign(row.dataset, { wire, state: state ?? -1 });
+    row.onclick = act;
+    cells.forEach((text, k) => {
+      const cell = row.insertCell();
+      cell.className = heads[k][1] ?? "";
+      if (k) { cell.append(text); return; }
+      const button = document.createElement("button");
+      Object.assign(button, { type: "button", textContent: text });
+      button.setAttribute("aria-label", name);
+      cell.append(button);
+    });
+  }
+}
+table($("breaks"), [["order"], ["wire", "n"], ["layer"], [run.pulled ? "strain %" : "ms", "n"], ["z mm", "n"], ["MPa", "n"]], run.ruptures.map(r => ({
+  cells: [r.order, run.wires[r.wire].number, run.layers[r.layer], fixed(r.x, 3), fixed(r.rest_z, 1), fixed(r.stress, 0)],
+  wire: r.wire, state: r.state, go: () => toRupture(r), name: `Break ${r.order}, wire ${run.wires[r.wire].number}`,
+})));
+table($("wires"), [["wire"], ["layer"], ["broke as", "n"], ["shown"]], run.wires.map((w, k) => {
+  const box = document.createElement("input");
+  Object.assign(box, { type: "checkbox", checked: true });
+  box.setAttribute("aria-label", `Show wire ${w.number}`);
+  box.onclick = event => event.stopPropagation();
+  box.onchange = () => {
+    view.hidden_wires = view.hidden_wires.filter(other => other !== k).concat(box.checked ? [] : [k]);
+    changed();
+  };
+  const place = firsts.indexOf(k);
+  return {
+    cells: [w.number, run.layers[w.layer], place < 0 ? "–" : place + 1, box], wire: k,
+    go: () => { particle = null; select(k); }, name: `Select wire ${w.number}`,
+  };
+}));
+
+// ---- Layers, apart and cut, colours, what is taken away. -----------------------------------------------------------------
+run.layers.forEach((name, k) => {
+  const label = document.createElement("label"), box = document.createElement("input");
+  Object.assign(box, { type: "checkbox", checked: true });
+  box.dataset.layer = k;
+  box.onchange = () => {
+    view.hidden_layers = view.hidden_layers.filter(other => other !== k).concat(box.checked ? [] : [k]);
+    changed();
+  };
+  label.append(box, ` ${name} (${run.wires.filter(w => w.layer === k).length})`);
+  $("layers").append(label);
+});
+$("explode").oninput = ({ target }) => { view.explode = +target.value; changed(); };
+$("cut").oninput = ({ target }) => {
+  if (+target.value >= +target.max) { delete view.cut; } else { view.cut = +target.value; }
+  $("cut-text").textContent = view.cut === undefined ? "whole" : `what lies above ${fixed(view.cut, 1)} mm is cut off`;
+  changed();
+};
+
+const colourOf = () => run.colours.find(c => c.word === view.colour);
+for (const { word, about } of run.colours) $("colour").add(new Option(about, word));
+function drawLegend() {
+  const colour = colourOf(), legend = $("legend");
+  legend.replaceChildren();
+  const add = (parent, name, text = "") => {
+    const made = document.createElement(name);
+    made.textContent = text;
+    parent.append(made);
+    return made;
+  };
+  $("range").hidden = !colour.range;
+  if (colour.range) {
+    add(legend, "div").className = "bar";
+    legend.lastChild.style.background = `linear-gradient(to right, ${colour.stops.join(",")})`;
+    add(legend, "div", colour.title).className = "muted";
+    [$("low").value, $("high").value] = (view.range ?? colour.range).map(v => +v.toPrecision(4));
+    return;
+  }
+  const chips = add(legend, "div");
+  chips.className = "chips";
+  const names = colour.word === "layer" ? run.layers : colour.categories.slice(0, 9).map((_, k) => `${k + 1}`);
+  names.forEach((name, k) => {
+    const chip = add(chips, "span");
+    add(chip, "span").className = "swatch";
+    chip.lastChild.style.background = colour.categories[k];
+    chip.append(name);
+  });
+}
+$("colour").onchange = ({ target }) => { view.colour = target.value; delete view.range; drawLegend(); changed(); };
+$("low").onchange = $("high").onchange = () => {
+  const [low, high] = [+$("low").value, +$("high").value];
+  if (low < high) { view.range = [low, high]; changed(); } else { drawLegend(); }
+};
+$("reset-range").onclick = () => { delete view.range; drawLegend(); changed(); };
+
+const fileSize = () => ($("size").value ? $("size").value.split("x").map(Number) : sizeOf());
+$("save").onclick = () => say({ picture: { size: fileSize(), view } });
+$("command").onclick = () => say({ command: { size: fileSize(), view } });
+function keep(blob) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = `${run.name}-${view.state.toFixed(2)}.png`;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+function theme(name) {
+  document.documentElement.dataset.theme = view.theme = name;
+  $("theme").textContent = name === "dark" ? "Light" : "Dark";
+  changed();
+}
+$("theme").onclick = () => theme(view.theme === "dark" ? "light" : "dark");
+
+// ---- Beginning: at the first break, close up. -------------------------------------------------------------------------
+$("foot").textContent = `${run.about} Drawn by ${run.adapter}.`;
+if (run.warnings.length) {
+  const list = document.createElement("details"), words = document.createElement("summary");
+  words.textContent = `${run.warnings.length} ${run.warnings.length === 1 ? "warning" : "warnings"} of the run`;
+  list.append(words, ...run.warnings.map(text => Object.assign(document.createElement("p"), { textContent: text })));
+  $("foot").before(list);
+}
+if (!run.layers.length) $("layers").hidden = true;
+if (!run.pulled) $("curve").closest("section").hidden = true;
+theme(matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
+drawLegend();
+toState(first ? first.state : last);
+if (run.body.gauge) go("break"); else go("home");
+drawTicks();
+drawChosen();
+let resized;
+new ResizeObserver(() => {
+  clearTimeout(resized);
+  resized = setTimeout(() => { drawTicks(); drawCurve(); drawChosen(); changed(); }, 60);
+}).observe(stage);
+connect();
+requestAnimationFrame(tick);
+document.documentElement.dataset.ready = "yes";
+// For tests and for those who script the page from its console.
+window.explore = { view, run, go, toState, select, changed, shown: () => shown };

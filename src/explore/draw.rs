@@ -1,0 +1,317 @@
+//! One view to one picture: everything that this floor knows of the renderer and of a snapshot's particles.
+
+use super::pick::{Cone, nearest};
+use super::record::Record;
+use super::view::View;
+use crate::base::error::{Error, Result};
+use crate::base::units::mm;
+use crate::engine::view::{RunInfo, Snapshot};
+use crate::render::body::{self, Body};
+use crate::render::camera::Camera;
+use crate::render::canvas::Rect;
+use crate::render::colour::ColourScale;
+use crate::render::occlusion::occlusion;
+use crate::render::painter::Painter;
+use crate::render::solid::Drawing;
+use crate::render::style::Rgb;
+use crate::render::wires::{self, Looks};
+use glam::{Vec2, Vec3};
+use image::RgbImage;
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Sides of a picture (px).
+pub const SIDES: std::ops::RangeInclusive<u32> = 16..=8192;
+/// Most pixels of a picture: with four samples each, half a gigabyte on the adapter.
+pub const MOST_PIXELS: u64 = 16 << 20;
+/// Memory for what was made ready to be drawn (bytes).
+const READY_MEMORY: usize = 256 << 20;
+/// Memory of a segment (bytes).
+const SEGMENT_BYTES: usize = size_of::<wires::Segment>();
+/// Share of their light that wires keep beside the selected one (-).
+const DIMMED: f32 = 0.35;
+
+/// A picture.
+pub struct Picture {
+    /// Its pixels.
+    pub image: RgbImage,
+    /// How long it took (s), without encoding.
+    pub took: Duration,
+}
+
+/// A particle under a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Picked {
+    /// The particle, from 0.
+    pub particle: usize,
+    /// Its wire, from 0; `None` for a free sphere.
+    pub wire: Option<usize>,
+}
+
+/// Draws views of one run, for any number of browsers one after the other.
+pub struct Artist {
+    painter: Painter,
+    body: Body,
+    ready: VecDeque<(Key, Arc<Ready>)>,
+    occlusion: Option<(View, Arc<Vec<[f32; 4]>>)>,
+}
+
+/// What decides the shapes of a view: all but the camera.
+#[derive(Clone, PartialEq)]
+struct Key {
+    view: View,
+    stride: usize,
+}
+
+impl Key {
+    fn of(view: &View, stride: usize) -> Self {
+        let still = View::default();
+        let view = View {
+            azimuth: still.azimuth,
+            elevation: still.elevation,
+            centre: still.centre,
+            height: still.height,
+            follow: None,
+            theme: still.theme,
+            ..view.clone()
+        };
+        Self { view, stride }
+    }
+
+    /// What decides how much of its surroundings each particle hides: of a state between two snapshots, the earlier one.
+    fn of_occlusion(&self) -> View {
+        let still = View::default();
+        let view = self.view.clone();
+        View { state: view.state.floor(), colour: still.colour, range: None, selected: None, ..view }
+    }
+}
+
+/// A state made ready to be drawn from any side.
+pub struct Ready {
+    snapshot: Arc<Snapshot>,
+    /// Centres as they are drawn (m).
+    position: Vec<[f32; 3]>,
+    removed: Vec<bool>,
+    segments: Vec<wires::Segment>,
+    /// Colour of each particle.
+    pub colours: Vec<Rgb>,
+}
+
+impl Artist {
+    /// Opens the graphics adapter.
+    ///
+    /// # Errors
+    /// [`Error::Missing`] when there is none, with the package to install.
+    pub fn new(record: &Record) -> Result<Self> {
+        let (painter, body) = (Painter::open([1, 1])?, Body::of(record.info()));
+        Ok(Self { painter, body, ready: VecDeque::new(), occlusion: None })
+    }
+
+    /// Name of the adapter.
+    pub fn adapter(&self) -> &str {
+        self.painter.adapter()
+    }
+
+    /// Draws a view that [`View::check`] has let through.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a size that cannot be drawn, [`Error::Missing`] when the adapter is lost.
+    pub fn draw(&mut self, record: &Record, view: &View, size: [u32; 2]) -> Result<Picture> {
+        let begin = Instant::now();
+        check_size(size)?;
+        self.painter.resize(size)?;
+        let style = view.theme.style();
+        let ready = self.ready(record, view, size);
+        let camera = self.camera(record.info(), &ready.snapshot, view, size);
+        let seen: Vec<wires::Segment> = ready.segments.iter().filter(|s| camera.sees(s.a, s.b)).copied().collect();
+        // Deeper parts darken over the strand's own depth, or over what is seen of it where the eye looks along it.
+        let along = (camera.rotation * Vec3::Z).z.abs();
+        let fade = self.body.radius * (1.0 + view.explode as f32) + along * size[0] as f32 / camera.scale;
+        let drawings = [Drawing { camera, instances: 0..seen.len() as u32, fade }];
+        let segments = self.painter.upload(&seen);
+        self.painter.draw([0.0, 0.0], &style, &segments, &drawings)?;
+        let mut image = RgbImage::new(size[0], size[1]);
+        let width = size[0] as usize * 3;
+        let bytes: &mut [u8] = &mut image;
+        self.painter.read(|y, row| {
+            let out = &mut bytes[y as usize * width..(y as usize + 1) * width];
+            for (to, from) in out.chunks_exact_mut(3).zip(row.chunks_exact(4)) {
+                to.copy_from_slice(&from[..3]);
+            }
+        })?;
+        Ok(Picture { image, took: begin.elapsed() })
+    }
+
+    /// What the view's state looks like, without a camera.
+    pub fn ready(&mut self, record: &Record, view: &View, size: [u32; 2]) -> Arc<Ready> {
+        let key = Key::of(view, stride(record.info(), view, size));
+        if let Some(at) = self.ready.iter().position(|(known, _)| *known == key) {
+            let found = self.ready.remove(at);
+            self.ready.extend(found);
+        } else {
+            let made = Arc::new(self.prepare(record, &key));
+            self.ready.push_back((key, made));
+            while self.ready.len() > 1 && self.memory() > READY_MEMORY {
+                self.ready.pop_front();
+            }
+        }
+        self.ready[self.ready.len() - 1].1.clone()
+    }
+
+    fn memory(&self) -> usize {
+        self.ready.iter().map(|(_, ready)| ready.segments.len() * SEGMENT_BYTES).sum()
+    }
+
+    fn prepare(&mut self, record: &Record, key: &Key) -> Ready {
+        let Key { view, stride } = key;
+        let info = record.info();
+        let occlusion = self.occlusion(record, key.of_occlusion());
+        let snapshot = record.snapshot(view.state);
+        let removed = removed(info, &snapshot, view);
+        let position = self.exploded(&snapshot, view);
+        let scale = ColourScale::new(info, view.colour);
+        let scale = view.range.map_or(scale, |range| ColourScale::new(info, view.colour).with_shown_range(range));
+        let colours = scale.particles(info, &snapshot);
+        let depth = self.body.shade();
+        let bright = view.explode > 0.0 || !view.hidden_layers.is_empty() || !view.hidden_wires.is_empty();
+        let shade = (0..info.wires.len()).map(|wire| {
+            let dimmed = view.selected.is_some_and(|selected| selected != wire);
+            (if bright { 1.0 } else { depth[wire] }) * if dimmed { DIMMED } else { 1.0 }
+        });
+        let looks = Looks {
+            occlusion: occlusion.to_vec(),
+            colour: colours.clone(),
+            shade: shade.collect(),
+            position: position.clone(),
+            removed: removed.clone(),
+        };
+        let mut segments = wires::segments(info, &snapshot, &looks, *stride);
+        // Free spheres are drawn by the renderer whether they are removed or not.
+        if removed[info.wire_particles..].contains(&true) {
+            let spheres = removed[info.wire_particles..].iter();
+            let kept = segments.split_off(segments.len() - spheres.len());
+            segments.extend(kept.into_iter().zip(spheres).filter(|(_, gone)| !**gone).map(|(sphere, _)| sphere));
+        }
+        Ready { snapshot, position, removed, segments, colours }
+    }
+
+    fn occlusion(&mut self, record: &Record, view: View) -> Arc<Vec<[f32; 4]>> {
+        if let Some((known, found)) = &self.occlusion
+            && *known == view
+        {
+            return found.clone();
+        }
+        let (info, snapshot) = (record.info(), record.snapshot(view.state));
+        let (position, removed) = (self.exploded(&snapshot, &view), removed(info, &snapshot, &view));
+        let made = Arc::new(occlusion(info, &position, &snapshot.radius, &removed));
+        self.occlusion = Some((view, made.clone()));
+        made
+    }
+
+    /// Centres of the particles (m), moved away from the axis as far as the view wants.
+    fn exploded(&self, snapshot: &Snapshot, view: &View) -> Vec<[f32; 3]> {
+        let mut position = snapshot.position.clone();
+        if view.explode > 0.0 {
+            let apart = 1.0 + view.explode as f32;
+            for p in &mut position {
+                p[0] = self.body.axis.x + (p[0] - self.body.axis.x) * apart;
+                p[1] = self.body.axis.y + (p[1] - self.body.axis.y) * apart;
+            }
+        }
+        position
+    }
+
+    fn camera(&self, info: &RunInfo, snapshot: &Snapshot, view: &View, size: [u32; 2]) -> Camera {
+        let [w, h] = size.map(|side| side as f32);
+        let ridden = ridden(info, snapshot, view);
+        let [x, y, z] = view.centre.map(|c| (c / mm(1.0)) as f32);
+        Camera {
+            rotation: Camera::orientation(view.azimuth.to_radians(), view.elevation.to_radians()),
+            centre: Vec3::new(x, y, z + ridden),
+            panel: Rect::new(0.0, 0.0, w, h),
+            scale: h * mm(1.0) as f32 / view.height as f32,
+            depth: self.body.depth_of_view(),
+        }
+    }
+
+    /// The particle that is seen at a place of the picture, given as shares of its width and height from the top left.
+    pub fn pick(&mut self, record: &Record, view: &View, size: [u32; 2], [right, down]: [f64; 2]) -> Option<Picked> {
+        let info = record.info();
+        let ready = self.ready(record, view, size);
+        let camera = self.camera(info, &ready.snapshot, view, size);
+        let pixel = Vec2::new(right as f32 * camera.panel.w, down as f32 * camera.panel.h);
+        let at = (pixel - 0.5 * Vec2::new(camera.panel.w, camera.panel.h)) / camera.scale * Vec2::new(1.0, -1.0);
+        let place = |i: usize| (camera.to_view(Vec3::from(ready.position[i])), ready.snapshot.radius[i]);
+        let shown = |i: usize| !ready.removed[i];
+        let mut cones = Vec::new();
+        for (number, wire) in info.wires.iter().enumerate() {
+            for i in wire.first..wire.first + wire.len {
+                let bonded = i + 1 < wire.first + wire.len && ready.snapshot.bond_state[i].holds() && shown(i + 1);
+                if shown(i) {
+                    let j = if bonded { i + 1 } else { i };
+                    cones.push(Cone { ends: [place(i), place(j)], what: [(i, Some(number)), (j, Some(number))] });
+                }
+            }
+        }
+        for i in (info.wire_particles..info.particles).filter(|i| shown(*i)) {
+            cones.push(Cone { ends: [place(i); 2], what: [(i, None); 2] });
+        }
+        nearest(&cones, at).map(|(particle, wire)| Picked { particle, wire })
+    }
+}
+
+/// Refuses a picture that would take too much memory.
+fn check_size(size: [u32; 2]) -> Result<()> {
+    let fits = size.iter().all(|side| SIDES.contains(side));
+    if fits && u64::from(size[0]) * u64::from(size[1]) <= MOST_PIXELS {
+        return Ok(());
+    }
+    Err(Error::input(
+        format!("a picture of {} × {} pixels cannot be drawn here", size[0], size[1]),
+        format!("choose sides from {} to {} pixels, {MOST_PIXELS} pixels at most", SIDES.start(), SIDES.end()),
+    ))
+}
+
+/// Where the material section that a view rides on is now (m); 0 where it rides on none.
+pub fn ridden(info: &RunInfo, snapshot: &Snapshot, view: &View) -> f32 {
+    view.follow.map_or(0.0, |z| body::current_z(info, snapshot, (z / mm(1.0)) as f32))
+}
+
+/// Which particles are left out of a view.
+fn removed(info: &RunInfo, snapshot: &Snapshot, view: &View) -> Vec<bool> {
+    let mut removed = vec![false; info.particles];
+    for (number, wire) in info.wires.iter().enumerate() {
+        removed[wire.first..wire.first + wire.len].fill(view.hides(number, wire.layer));
+    }
+    if let Some(cut) = view.cut {
+        let beyond = |p: &[f32; 3]| mm(f64::from(p[2])) > cut;
+        removed.iter_mut().zip(&snapshot.position).for_each(|(gone, p)| *gone |= beyond(p));
+    }
+    removed
+}
+
+/// Bonds that make up about eight pixels.
+fn stride(info: &RunInfo, view: &View, size: [u32; 2]) -> usize {
+    let spacing = 2.0 * mm(f64::from(info.radius.first().copied().unwrap_or(1e-3)));
+    (8.0 * view.height / (spacing * f64::from(size[1]))).clamp(1.0, 8.0) as usize
+}
+
+/// The state between two snapshots, at `share` of the way (-): what can move or grow is between them, bonds are those of
+/// the earlier one.
+pub fn between(a: &Snapshot, b: &Snapshot, share: f64) -> Snapshot {
+    let t = share as f32;
+    let mix = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a + (b - a) * t).collect();
+    let position = a.position.iter().zip(&b.position);
+    Snapshot {
+        sample: a.sample.clone(),
+        position: position.map(|(a, b)| Vec3::from(*a).lerp(Vec3::from(*b), t).to_array()).collect(),
+        radius: mix(&a.radius, &b.radius),
+        speed: mix(&a.speed, &b.speed),
+        bond_state: a.bond_state.clone(),
+        bond_stress: mix(&a.bond_stress, &b.bond_stress),
+        plastic_strain: mix(&a.plastic_strain, &b.plastic_strain),
+        utilisation: mix(&a.utilisation, &b.utilisation),
+        contact_pressure: mix(&a.contact_pressure, &b.contact_pressure),
+    }
+}

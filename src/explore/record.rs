@@ -1,0 +1,264 @@
+//! A run as the page is told of it: all its snapshots in memory, its numbers in the units of people.
+
+use super::draw;
+use super::view::View;
+use crate::base::error::{Error, Result};
+use crate::base::units::{mm, mpa, ms, percent};
+use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
+use crate::observe::tables::{cause, layer_name};
+use crate::observe::trajectory::{Record as Entry, Trajectory};
+use crate::observe::wording::wire_number;
+use crate::page::{self, Abscissa, Source};
+use crate::render::body::Body;
+use crate::render::colour::ColourScale;
+use crate::run::identity;
+use crate::scene::spec::ColourBy;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Memory for snapshots (bytes). A longer run is shown by every other of them, or fewer.
+const MEMORY: usize = 2 << 30;
+/// Memory of a snapshot for each particle (bytes).
+const PARTICLE_BYTES: usize = 45;
+/// Points of a curve that are sent to a page at most.
+const MOST_POINTS: usize = 3000;
+/// Colours of a scale that are sent to a page.
+const STOPS: usize = 32;
+
+/// A run that can be looked at.
+pub struct Record {
+    source: Source,
+    snapshots: Vec<Arc<Snapshot>>,
+    notes: Vec<String>,
+}
+
+impl Record {
+    /// Reads the run in a folder.
+    ///
+    /// # Errors
+    /// Those of [`Source::read`], and [`Error::Input`] when it holds no snapshot.
+    pub fn read(run: &Path) -> Result<Self> {
+        // What was changed, or belongs to another run, is not shown as this one.
+        identity::check(run, false)?;
+        let source = Source::read(run)?;
+        let most = (MEMORY / (PARTICLE_BYTES * source.info.particles.max(1))).max(2);
+        let every = source.snapshots.div_ceil(most).max(1);
+        let trajectory = Trajectory::open(&page::trajectory_in(run)?)?;
+        let last = source.snapshots.saturating_sub(1);
+        // Where the file is cut off, the source has said so.
+        let all = trajectory.map_while(|entry| entry.ok()).filter_map(|entry| match entry {
+            Entry::Snapshot(snapshot) => Some(snapshot),
+            _ => None,
+        });
+        let kept = all.enumerate().filter(|(number, _)| number.is_multiple_of(every) || *number == last);
+        let snapshots: Vec<_> = kept.map(|(_, snapshot)| Arc::new(snapshot)).collect();
+        if snapshots.is_empty() {
+            return Err(Error::input(
+                format!("{} holds no snapshot", run.display()),
+                "the run was stopped before its first one; run it again",
+            ));
+        }
+        let mut notes = source.notes.clone();
+        if every > 1 {
+            let (shown, of) = (snapshots.len(), source.snapshots);
+            notes.push(format!("{shown} of {of} snapshots are shown: all of them do not fit into memory."));
+        }
+        Ok(Self { source, snapshots, notes })
+    }
+
+    /// What does not change during the run.
+    pub fn info(&self) -> &RunInfo {
+        &self.source.info
+    }
+
+    /// How many snapshots there are; at least one.
+    pub fn states(&self) -> usize {
+        self.snapshots.len()
+    }
+
+    /// What is wrong with the run's folder, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The snapshot of a state, or what lies between two.
+    pub fn snapshot(&self, state: f64) -> Arc<Snapshot> {
+        let before = (state as usize).min(self.states() - 1);
+        match self.snapshots.get(before + 1) {
+            Some(after) if state.fract() > 0.0 => {
+                Arc::new(draw::between(&self.snapshots[before], after, state.fract()))
+            }
+            _ => self.snapshots[before].clone(),
+        }
+    }
+
+    /// Name of the scene.
+    pub fn name(&self) -> &str {
+        &self.source.info.name
+    }
+
+    /// What broke first, where and when, as markup.
+    pub fn headline(&self) -> String {
+        page::headline(&self.source).into_string()
+    }
+
+    /// Everything that does not depend on what is looked at.
+    pub fn facts(&self) -> Value {
+        let info = self.info();
+        let abscissa = Abscissa::of(&self.source);
+        let body = Body::of(info);
+        let samples = thinned(&self.source.samples);
+        let wires = info.wires.iter().enumerate().map(|(number, wire)| {
+            let first = self.source.ruptures.iter().find(|r| r.wire == number);
+            json!({
+                "number": wire_number(number), "layer": wire.layer, "first": wire.first, "len": wire.len,
+                "diameter": mm(wire.diameter), "order": first.map(|r| r.order),
+                "history": samples.iter().map(|s| s.wire_stress.get(number).map(|v| short(mpa(*v)))).collect::<Vec<_>>(),
+            })
+        });
+        json!({
+            "name": info.name, "about": info.about, "pulled": info.is_pulled(), "abscissa": abscissa.title(),
+            "layers": (0..info.layers.len()).map(|l| layer_name(info, l)).collect::<Vec<_>>(),
+            "wires": wires.collect::<Vec<_>>(), "wire_particles": info.wire_particles, "particles": info.particles,
+            "curve": {
+                "x": samples.iter().map(|s| short(abscissa.value(s))).collect::<Vec<_>>(),
+                "y": samples.iter().map(|s| short(mpa(s.stress))).collect::<Vec<_>>(),
+            },
+            "states": self.snapshots.iter().map(|s| json!({
+                "x": abscissa.value(&s.sample), "stress": mpa(s.sample.stress), "time_ms": ms(s.sample.time),
+                "strain": percent(s.sample.strain), "wires_broken": s.sample.wires_broken,
+            })).collect::<Vec<_>>(),
+            "ruptures": self.source.ruptures.iter().map(|r| self.rupture(r, abscissa)).collect::<Vec<_>>(),
+            "colours": ColourBy::ALL.map(|by| scale(info, by)),
+            "body": {
+                "low": shown(body.low.to_array()), "high": shown(body.high.to_array()),
+                "axis": shown([body.axis.x, body.axis.y, 0.0])[..2], "radius": mm(f64::from(body.radius)),
+                "gauge": info.gauge.map(|ends| ends.map(mm)),
+            },
+            "warnings": self.notes.iter().chain(&self.source.summary.warnings).collect::<Vec<_>>(),
+        })
+    }
+
+    fn rupture(&self, r: &Rupture, abscissa: Abscissa) -> Value {
+        let state = self.snapshots.iter().position(|s| s.sample.step >= r.step).unwrap_or(self.states() - 1);
+        json!({
+            "order": r.order, "wire": r.wire, "layer": r.layer, "bond": r.bond, "bond_in_wire": r.bond_in_wire,
+            "x": abscissa.at(r), "when": abscissa.moment(abscissa.at(r)), "rest_z": mm(r.rest_z), "z": mm(r.position[2]),
+            "stress": mpa(r.stress), "body_stress": mpa(r.body_stress), "cause": cause(r.cause), "state": state,
+            "first_of_wire": r.first_of_wire, "place": r.position.map(mm),
+        })
+    }
+
+    /// What changes with the state: its numbers, the places of what is broken, and how far the body reaches.
+    pub fn state(&self, view: &View) -> Value {
+        let snapshot = self.snapshot(view.state);
+        let info = self.info();
+        let sample = &snapshot.sample;
+        let abscissa = Abscissa::of(&self.source);
+        let broken = self.source.ruptures.iter().filter(|r| snapshot.bond_state[r.bond] == BondState::Broken);
+        let breaks = broken.map(|r| {
+            let [a, b] = [r.bond, r.bond + 1].map(|i| snapshot.position[i]);
+            let at = shown([0, 1, 2].map(|k| 0.5 * (a[k] + b[k])));
+            json!({ "order": r.order, "at": at })
+        });
+        let whole = |layer: usize| {
+            let wires = info.wires.iter().enumerate().filter(|(_, w)| w.layer == layer);
+            let (mut whole, mut count) = (0, 0);
+            for (_, wire) in wires {
+                count += 1;
+                let bonds = wire.first..wire.first + wire.len.saturating_sub(1);
+                whole += usize::from(!snapshot.bond_state[bonds].contains(&BondState::Broken));
+            }
+            json!({ "whole": whole, "of": count })
+        };
+        let reach = |k: usize| {
+            let all = snapshot.position.iter().map(|p| p[k]);
+            [all.clone().fold(f32::MAX, f32::min), all.fold(f32::MIN, f32::max)].map(|end| mm(f64::from(end)))
+        };
+        json!({
+            "state": view.state, "ridden": mm(f64::from(draw::ridden(info, &snapshot, view))),
+            "x": abscissa.value(sample), "when": abscissa.moment(abscissa.value(sample)),
+            "stress": mpa(sample.stress), "time_ms": ms(sample.time), "wires_broken": sample.wires_broken,
+            "bonds_broken": sample.bonds_broken, "layers": (0..info.layers.len()).map(whole).collect::<Vec<_>>(),
+            "breaks": breaks.collect::<Vec<_>>(), "reach": [reach(0), reach(1), reach(2)],
+        })
+    }
+
+    /// A wire along its length at a state.
+    pub fn wire(&self, wire: usize, state: f64) -> Option<Value> {
+        let of = self.info().wires.get(wire)?;
+        let snapshot = self.snapshot(state);
+        let bonds = of.first..of.first + of.len.saturating_sub(1);
+        let held = |values: &[f32], unit: fn(f64) -> f64| -> Vec<Option<f64>> {
+            bonds.clone().map(|b| snapshot.bond_state[b].holds().then(|| short(unit(f64::from(values[b]))))).collect()
+        };
+        let rest = &self.info().rest_position;
+        Some(json!({
+            "wire": wire, "state": state,
+            "z": bonds.clone().map(|b| short(mm(0.5 * f64::from(rest[b][2] + rest[b + 1][2])))).collect::<Vec<_>>(),
+            "stress": held(&snapshot.bond_stress, mpa), "plastic_strain": held(&snapshot.plastic_strain, percent),
+            "utilisation": held(&snapshot.utilisation, percent),
+        }))
+    }
+
+    /// A particle's numbers at a state.
+    pub fn particle(&self, picked: draw::Picked, state: f64) -> Value {
+        let info = self.info();
+        let snapshot = self.snapshot(state);
+        let i = picked.particle;
+        let wire = picked.wire.map(|w| &info.wires[w]);
+        // The bonds on its two sides that hold.
+        let bonds: Vec<usize> = wire.map_or(Vec::new(), |wire| {
+            let before = i.checked_sub(1).filter(|b| *b >= wire.first);
+            before.into_iter().chain(Some(i)).filter(|b| snapshot.bond_state[*b].holds()).collect()
+        });
+        let mean = |values: &[f32], unit: fn(f64) -> f64| {
+            let sum: f64 = bonds.iter().map(|b| f64::from(values[*b])).sum();
+            (!bonds.is_empty()).then(|| unit(sum / bonds.len() as f64))
+        };
+        json!({
+            "particle": i, "wire": picked.wire, "number_in_wire": wire.map(|w| i - w.first + 1), "of": wire.map(|w| w.len),
+            "layer": wire.map(|w| w.layer), "position": shown(snapshot.position[i]), "rest_z": mm(f64::from(info.rest_position[i][2])),
+            "radius": mm(f64::from(snapshot.radius[i])), "speed": snapshot.speed[i],
+            "contact_pressure": mpa(f64::from(snapshot.contact_pressure[i])),
+            "stress": mean(&snapshot.bond_stress, mpa), "plastic_strain": mean(&snapshot.plastic_strain, percent),
+            "utilisation": mean(&snapshot.utilisation, percent), "held_by": bonds.len(),
+        })
+    }
+}
+
+/// Rows of a curve, evenly thinned; the last one and the greatest stress are kept.
+fn thinned(samples: &[Sample]) -> Vec<&Sample> {
+    let every = samples.len().div_ceil(MOST_POINTS).max(1);
+    let peak = samples.iter().enumerate().max_by(|a, b| a.1.stress.total_cmp(&b.1.stress)).map(|(k, _)| k);
+    let kept = |k: usize| k.is_multiple_of(every) || k + 1 == samples.len() || Some(k) == peak;
+    samples.iter().enumerate().filter(|(k, _)| kept(*k)).map(|(_, s)| s).collect()
+}
+
+/// A place in mm.
+fn shown(place: [f32; 3]) -> [f64; 3] {
+    place.map(|x| mm(f64::from(x)))
+}
+
+/// Five digits: what a chart shows.
+fn short(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
+}
+
+/// A colour scale for a legend.
+fn scale(info: &RunInfo, by: ColourBy) -> Value {
+    let scale = ColourScale::new(info, by);
+    let hex = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
+    let stops = (0..STOPS).map(|k| hex(scale.at(k as f64 / (STOPS - 1) as f64)));
+    let categories = match by {
+        ColourBy::Layer => info.layers.len(),
+        ColourBy::Wire => info.wires.len(),
+        _ => 0,
+    };
+    json!({
+        "word": by.word(), "about": by.about(), "title": scale.title(), "range": scale.shown_range(),
+        "stops": stops.collect::<Vec<_>>(),
+        "categories": (0..categories).map(|k| hex(ColourScale::category(k))).collect::<Vec<_>>(),
+    })
+}

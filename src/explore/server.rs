@@ -1,0 +1,296 @@
+//! The address at which a run can be looked at: who may come in, how many, and when it ends.
+
+use super::draw::Artist;
+use super::http::{self, Refusal, Request};
+use super::record::Record;
+use super::session;
+use crate::base::error::{Error, Result};
+use std::io::{ErrorKind, Write};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+use tungstenite::handshake::derive_accept_key;
+
+const PAGE: &str = include_str!("../../assets/explore/explore.html");
+const STYLE: &str = include_str!("../../assets/explore/explore.css");
+const SCRIPT: &str = include_str!("../../assets/explore/explore.js");
+const CHARTS: &str = include_str!("../../assets/explore/charts.js");
+
+/// Connections at once, requests and sockets together.
+const MOST_CONNECTIONS: usize = 48;
+/// Browsers that look at once.
+const MOST_BROWSERS: usize = 16;
+/// How often to look for a new connection, and whether to end.
+const POLL: Duration = Duration::from_millis(10);
+/// How long the server stays when the last page has gone.
+const LINGER: Duration = Duration::from_secs(300);
+/// A client that takes nothing for so long is given up.
+const WRITE_TIME: Duration = Duration::from_secs(10);
+/// How long open connections may take to end with the server.
+const PARTING: Duration = Duration::from_secs(2);
+
+/// Where a run is shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Address to listen at.
+    pub bind: IpAddr,
+    /// Port; 0 is a free one.
+    pub port: u16,
+    /// Stay when the last page has been closed.
+    pub keep: bool,
+    /// Command that the page shows in front of a view: `strandsnap render out/ka4`.
+    pub command: String,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { bind: Ipv4Addr::LOCALHOST.into(), port: 0, keep: false, command: String::new() }
+    }
+}
+
+/// A run at an address.
+pub struct Server {
+    listener: TcpListener,
+    options: Options,
+    house: Arc<House>,
+}
+
+/// What all connections share.
+pub(super) struct House {
+    pub record: Record,
+    pub artist: Mutex<Artist>,
+    pub ended: AtomicBool,
+    bound: SocketAddr,
+    token: String,
+    facts: Vec<u8>,
+    connections: AtomicUsize,
+    browsers: AtomicUsize,
+    /// When the last page went away; none has been there before that.
+    left: Mutex<Option<Instant>>,
+}
+
+impl Server {
+    /// Reads the run in a folder, opens the graphics adapter and listens.
+    ///
+    /// # Errors
+    /// When the run cannot be read, there is no adapter, or the address is taken.
+    pub fn open(run: &Path, options: Options) -> Result<Self> {
+        let record = Record::read(run)?;
+        let artist = Artist::new(&record)?;
+        let lost = |e: std::io::Error| Error::Missing {
+            what: format!("cannot listen at {} port {}: {e}", options.bind, options.port),
+            help: Some("choose another address or port with --bind and --port; port 0 is a free one".into()),
+        };
+        let listener = TcpListener::bind((options.bind, options.port)).map_err(lost)?;
+        listener.set_nonblocking(true).map_err(lost)?;
+        let bound = listener.local_addr().map_err(lost)?;
+        let mut facts = record.facts();
+        facts["adapter"] = artist.adapter().into();
+        facts["command"] = options.command.as_str().into();
+        let house = House {
+            facts: facts.to_string().into_bytes(),
+            token: token()?,
+            record,
+            artist: Mutex::new(artist),
+            bound,
+            ended: AtomicBool::new(false),
+            connections: AtomicUsize::new(0),
+            browsers: AtomicUsize::new(0),
+            left: Mutex::new(None),
+        };
+        Ok(Self { listener, options, house: Arc::new(house) })
+    }
+
+    /// The address to open, with the token in it.
+    pub fn address(&self) -> String {
+        let at = self.house.bound;
+        let host = match at.ip() {
+            ip if ip.is_unspecified() && ip.is_ipv4() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), at.port()),
+            _ => at,
+        };
+        format!("http://{host}/?token={}", self.house.token)
+    }
+
+    /// Name of the graphics adapter that draws.
+    pub fn adapter(&self) -> String {
+        self.house.artist().adapter().to_owned()
+    }
+
+    /// What is wrong with the run's folder, in sentences.
+    pub fn notes(&self) -> &[String] {
+        self.house.record.notes()
+    }
+
+    /// Answers until `stop` is set, or until a while after the last page has been closed.
+    ///
+    /// # Errors
+    /// When the system takes the address away.
+    pub fn serve(&self, stop: &AtomicBool) -> Result<()> {
+        let outcome = loop {
+            if stop.load(Ordering::Relaxed) || (!self.options.keep && self.house.deserted()) {
+                break Ok(());
+            }
+            match self.listener.accept() {
+                Ok((stream, _)) => self.house.clone().receive(stream),
+                Err(e) if [ErrorKind::WouldBlock, ErrorKind::Interrupted].contains(&e.kind()) => {
+                    std::thread::sleep(POLL);
+                }
+                // A connection that broke while it waited, or no descriptor left for now.
+                Err(e) if e.kind() == ErrorKind::ConnectionAborted || e.raw_os_error().is_some() => {
+                    std::thread::sleep(POLL);
+                }
+                Err(e) => break Err(Error::Missing { what: format!("lost the address: {e}"), help: None }),
+            }
+        };
+        self.house.ended.store(true, Ordering::Relaxed);
+        let begin = Instant::now();
+        while self.house.connections.load(Ordering::Relaxed) > 0 && begin.elapsed() < PARTING {
+            std::thread::sleep(POLL);
+        }
+        outcome
+    }
+}
+
+/// Counts one more for as long as it lives.
+struct Counted(Arc<House>, fn(&House) -> &AtomicUsize);
+
+impl Counted {
+    fn enter(house: &Arc<House>, which: fn(&House) -> &AtomicUsize, most: usize) -> Option<Self> {
+        let counted = Self(house.clone(), which);
+        let before = which(house).fetch_add(1, Ordering::Relaxed);
+        (before < most).then_some(counted)
+    }
+}
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        (self.1)(&self.0).fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+impl House {
+    /// The one who draws, when it is free. A picture that failed in the middle leaves nothing half done.
+    pub fn artist(&self) -> std::sync::MutexGuard<'_, Artist> {
+        self.artist.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn deserted(&self) -> bool {
+        let left = self.left.lock().unwrap_or_else(PoisonError::into_inner);
+        self.browsers.load(Ordering::Relaxed) == 0 && left.is_some_and(|left| left.elapsed() > LINGER)
+    }
+
+    fn cookie(&self) -> String {
+        // Cookies are shared by all ports of a name.
+        format!("strandsnap-{}", self.bound.port())
+    }
+
+    fn receive(self: Arc<Self>, mut stream: TcpStream) {
+        let prepared = stream.set_nonblocking(false).and_then(|()| stream.set_write_timeout(Some(WRITE_TIME)));
+        if prepared.and_then(|()| stream.set_nodelay(true)).is_err() {
+            return;
+        }
+        let Some(counted) = Counted::enter(&self, |house| &house.connections, MOST_CONNECTIONS) else {
+            // Said without a thread of its own; the words fit into the socket's buffer.
+            let _ = refuse(&mut stream, Refusal::Busy);
+            return;
+        };
+        let spawned = std::thread::Builder::new().name("explore".into()).spawn(move || {
+            let _counted = counted;
+            self.answer(stream);
+        });
+        // Without a thread the connection is closed, which says enough.
+        drop(spawned);
+    }
+
+    fn answer(self: &Arc<Self>, mut stream: TcpStream) {
+        let answered = match http::read(&mut stream) {
+            Ok(request) => match self.check(&request) {
+                Ok(()) if request.path == "/socket" => return self.look(stream, request),
+                Ok(()) => self.page(&mut stream, &request),
+                Err(refusal) => refuse(&mut stream, refusal),
+            },
+            Err(Some(refusal)) => refuse(&mut stream, refusal),
+            Err(None) => Ok(()),
+        };
+        // Who has gone away needs no answer.
+        let _ = answered;
+    }
+
+    fn check(&self, request: &Request) -> std::result::Result<(), Refusal> {
+        request.check_site(self.bound.ip())?;
+        if !["/", "/explore.css", "/explore.js", "/charts.js", "/run.json", "/socket"].contains(&request.path.as_str())
+        {
+            return Err(Refusal::Name);
+        }
+        let given = request.token.as_ref().is_some_and(|given| http::same(given, &self.token));
+        let known = request.has_cookie(&self.cookie(), &self.token);
+        match request.path.as_str() {
+            "/" if given || known => Ok(()),
+            "/" => Err(Refusal::Token),
+            _ if !request.comes_from_the_page() => Err(Refusal::Site),
+            _ if !known => Err(Refusal::Token),
+            // Browsers always say whose page opens a socket.
+            "/socket" if request.origin.is_none() => Err(Refusal::Site),
+            "/socket" if request.socket_key.is_none() => Err(Refusal::Malformed),
+            _ => Ok(()),
+        }
+    }
+
+    fn page(&self, stream: &mut TcpStream, request: &Request) -> std::io::Result<()> {
+        let (kind, body): (_, &[u8]) = match request.path.as_str() {
+            "/explore.css" => ("text/css; charset=utf-8", STYLE.as_bytes()),
+            "/explore.js" => ("text/javascript; charset=utf-8", SCRIPT.as_bytes()),
+            "/charts.js" => ("text/javascript; charset=utf-8", CHARTS.as_bytes()),
+            "/run.json" => ("application/json", &self.facts),
+            _ => return self.first(stream, request),
+        };
+        http::respond(stream, "200 OK", kind, "", body)
+    }
+
+    /// The page itself, which leaves the token as a cookie that no script can read and no other site can send.
+    fn first(&self, stream: &mut TcpStream, request: &Request) -> std::io::Result<()> {
+        let headers = format!(
+            "Set-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\nX-Frame-Options: DENY\r\nContent-Security-Policy: \
+             default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self' ws://{}; \
+             base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n",
+            self.cookie(),
+            self.token,
+            request.host,
+        );
+        let name = maud::html! { (self.record.name()) }.into_string();
+        let body = PAGE.replace("{{name}}", &name).replace("{{headline}}", &self.record.headline());
+        http::respond(stream, "200 OK", "text/html; charset=utf-8", &headers, body.as_bytes())
+    }
+
+    /// Opens the socket of a page and serves it until it is closed.
+    fn look(self: &Arc<Self>, mut stream: TcpStream, request: Request) {
+        let Some(_browser) = Counted::enter(self, |house| &house.browsers, MOST_BROWSERS) else {
+            let _ = refuse(&mut stream, Refusal::Busy);
+            return;
+        };
+        let key = request.socket_key.unwrap_or_default();
+        let head = format!(
+            "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: {}\r\n\r\n",
+            derive_accept_key(key.as_bytes())
+        );
+        if stream.write_all(head.as_bytes()).is_ok() {
+            session::run(self, stream, request.rest);
+        }
+        *self.left.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
+    }
+}
+
+fn refuse(stream: &mut TcpStream, refusal: Refusal) -> std::io::Result<()> {
+    let (status, words) = refusal.status();
+    http::respond(stream, status, "text/plain; charset=utf-8", "", words.as_bytes())
+}
+
+/// 128 bits that nobody can guess, in hexadecimal digits.
+fn token() -> Result<String> {
+    let mut bytes = [0; 16];
+    getrandom::fill(&mut bytes)
+        .map_err(|e| Error::Missing { what: format!("the system gives no random numbers: {e}"), help: None })?;
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+}

@@ -1,0 +1,205 @@
+//! What a browser looks at: everything that decides a picture apart from its size.
+
+use super::record::Record;
+use crate::base::error::{Error, Result};
+use crate::scene::spec::{ColourBy, Theme};
+use serde::{Deserialize, Serialize};
+
+/// Furthest that wires are drawn apart (-).
+const MOST_EXPLODED: f64 = 4.0;
+
+/// A view of a run. Lengths are in mm and angles in degrees, as the page and the command line write them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct View {
+    /// Which snapshot, from 0; between two of them what can move is drawn between.
+    pub state: f64,
+    /// Turn of the eye about the vertical (°).
+    pub azimuth: f64,
+    /// Turn of the eye about the horizontal (°).
+    pub elevation: f64,
+    /// The point in the middle of the picture (mm).
+    pub centre: [f64; 3],
+    /// What the height of the picture spans (mm).
+    pub height: f64,
+    /// z before loading of the material section that the view rides on (mm); the z of `centre` is relative to it then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub follow: Option<f64>,
+    /// What colours the wires.
+    pub colour: ColourBy,
+    /// Ends of the colour scale in its own unit; those of the run where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<[f64; 2]>,
+    /// Layers that are left out, from 0.
+    pub hidden_layers: Vec<usize>,
+    /// Wires that are left out, from 0.
+    pub hidden_wires: Vec<usize>,
+    /// Wire that stands out, from 0: the others are dimmed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub selected: Option<usize>,
+    /// How far wires are drawn away from the axis, over their distance from it (-); 0 is as they lie.
+    pub explode: f64,
+    /// What lies above this z is cut off (mm).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut: Option<f64>,
+    /// Ground.
+    pub theme: Theme,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            state: 0.0,
+            azimuth: 0.0,
+            elevation: 0.0,
+            centre: [0.0; 3],
+            height: 10.0,
+            follow: None,
+            colour: ColourBy::Stress,
+            range: None,
+            hidden_layers: Vec::new(),
+            hidden_wires: Vec::new(),
+            selected: None,
+            explode: 0.0,
+            cut: None,
+            theme: Theme::Dark,
+        }
+    }
+}
+
+impl View {
+    /// Reads a view from the words that [`View::words`] writes: keys of a TOML table, separated by commas.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the key.
+    pub fn parse(words: &str) -> Result<Self> {
+        #[derive(Deserialize)]
+        struct Whole {
+            view: View,
+        }
+        let whole: Whole = toml::from_str(&format!("view = {{ {words} }}")).map_err(|error| {
+            Error::input(
+                format!("the view cannot be read: {}", error.message()),
+                "take it from `strandsnap explore`, which shows the command that makes a view; a view alone is \
+                 'state = 40, azimuth = 30, height = 8'",
+            )
+        })?;
+        Ok(whole.view)
+    }
+
+    /// The view as keys of a TOML table, separated by commas: no bit is lost.
+    ///
+    /// # Errors
+    /// None for a view that [`View::check`] lets through.
+    pub fn words(&self) -> Result<String> {
+        let value = toml::Value::try_from(self).map_err(|e| Error::input(format!("cannot write a view: {e}"), ""))?;
+        let toml::Value::Table(table) = value else { return Ok(String::new()) };
+        let entries = table.into_iter().map(|(key, value)| format!("{key} = {value}"));
+        Ok(entries.collect::<Vec<_>>().join(", "))
+    }
+
+    /// Checks that the run has what the view names and that its numbers can be drawn.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that says which key is wrong and what it may be.
+    pub fn check(&self, record: &Record) -> Result<()> {
+        let info = record.info();
+        let last = record.states() - 1;
+        let lengths = self.centre.iter().chain(&self.follow).chain(&self.cut);
+        let layers = info.layers.len();
+        let wires = info.wires.len();
+        let rules = [
+            (
+                self.state >= 0.0 && self.state <= last as f64,
+                "state",
+                format!("{}", self.state),
+                format!("a number from 0 to {last}"),
+            ),
+            (
+                self.azimuth.is_finite() && self.elevation.is_finite(),
+                "azimuth and elevation",
+                format!("{} and {}", self.azimuth, self.elevation),
+                "numbers".into(),
+            ),
+            (
+                lengths.clone().all(|v| v.abs() < 1e6),
+                "centre, follow and cut",
+                format!("{:?}", lengths.collect::<Vec<_>>()),
+                "lengths in mm below a kilometre".into(),
+            ),
+            (
+                self.height > 1e-4 && self.height < 1e6,
+                "height",
+                format!("{}", self.height),
+                "a length in mm above zero".into(),
+            ),
+            (
+                (0.0..=MOST_EXPLODED).contains(&self.explode),
+                "explode",
+                format!("{}", self.explode),
+                format!("a number from 0 to {MOST_EXPLODED}"),
+            ),
+            (
+                self.range.is_none_or(|[low, high]| low.is_finite() && high.is_finite() && low < high),
+                "range",
+                format!("{:?}", self.range),
+                "two numbers, the lower one first".into(),
+            ),
+            (
+                self.hidden_layers.len() <= layers && self.hidden_layers.iter().all(|l| *l < layers),
+                "hidden_layers",
+                format!("{:?}", self.hidden_layers),
+                format!("numbers below {layers}, each once"),
+            ),
+            (
+                self.hidden_wires.len() <= wires && self.hidden_wires.iter().chain(&self.selected).all(|w| *w < wires),
+                "hidden_wires and selected",
+                format!("{:?} and {:?}", self.hidden_wires, self.selected),
+                format!("numbers below {wires}, each once"),
+            ),
+        ];
+        match rules.into_iter().find(|(holds, ..)| !holds) {
+            None => Ok(()),
+            Some((_, key, value, right)) => {
+                Err(Error::input(format!("{key} of the view is {value}"), format!("it takes {right}")))
+            }
+        }
+    }
+
+    /// Whether a wire of a layer is left out.
+    pub fn hides(&self, wire: usize, layer: usize) -> bool {
+        self.hidden_layers.contains(&layer) || self.hidden_wires.contains(&wire)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_keep_every_bit() {
+        let view = View {
+            state: 57.123456789,
+            azimuth: -28.1,
+            centre: [0.1, -1e-7, 60.333],
+            follow: Some(39.29),
+            colour: ColourBy::PlasticStrain,
+            range: Some([0.0, 12.5]),
+            hidden_layers: vec![2],
+            selected: Some(13),
+            cut: Some(61.7),
+            theme: Theme::Light,
+            ..View::default()
+        };
+        let words = view.words().unwrap();
+        assert!(!words.contains('\n'), "{words}");
+        assert_eq!(View::parse(&words).unwrap(), view, "{words}");
+    }
+
+    #[test]
+    fn an_unknown_key_is_named() {
+        let error = View::parse("azimut = 3").unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("azimut"), "{error}");
+    }
+}
