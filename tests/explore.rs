@@ -469,6 +469,7 @@ fn a_person_finds_what_broke_first() {
     assert!((follow - first.rest_z * 1e3).abs() < 1e-9);
     let chosen = page.value("document.querySelector('#chosen-text').textContent");
     assert!(chosen.as_str().unwrap().contains(&format!("true stress {:.0} MPa", first.stress * 1e-6)), "{chosen}");
+    page.wait_for("String(document.querySelectorAll('#along path').length)", "3");
     assert!(page.value("document.querySelectorAll('#overlay .mark').length").as_u64() >= Some(1));
     keep(&mut page, "explore-break.png");
 

@@ -501,7 +501,8 @@ $("map").onclick = event => {
 
 function drawChosen() {
   const wire = view.selected, svg = $("along");
-  svg.hidden = wire === undefined || !chosen;
+  const known = wire !== undefined && chosen?.wire === wire;
+  svg.toggleAttribute("hidden", !known);
   $("chosen-title").textContent = wire === undefined ? "No wire selected" : wireName(wire);
   if (wire === undefined) {
     $("chosen-text").textContent = "Click a wire in the picture, in the map or in a table.";
@@ -511,7 +512,7 @@ function drawChosen() {
       ? `Broke as number ${firsts.indexOf(wire) + 1} of the wires, at ${r.when}, z = ${fixed(r.rest_z, 1)} mm before loading (${fixed(r.z, 1)} mm then), true stress ${fixed(r.stress, 0)} MPa, body ${fixed(r.body_stress, 1)} MPa, ${r.cause}.`
       : "Did not break.";
   }
-  if (!svg.hidden) drawAlong(svg);
+  if (known) drawAlong(svg);
   drawParticle();
 }
 function drawAlong(svg) {

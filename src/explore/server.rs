@@ -17,6 +17,9 @@ const PAGE: &str = include_str!("../../assets/explore/explore.html");
 const STYLE: &str = include_str!("../../assets/explore/explore.css");
 const SCRIPT: &str = include_str!("../../assets/explore/explore.js");
 const CHARTS: &str = include_str!("../../assets/explore/charts.js");
+const ICON: &str = include_str!("../../assets/explore/icon.svg");
+/// All that can be asked for.
+const NAMES: [&str; 7] = ["/", "/explore.css", "/explore.js", "/charts.js", "/icon.svg", "/run.json", "/socket"];
 
 /// Connections at once, requests and sockets together.
 const MOST_CONNECTIONS: usize = 48;
@@ -220,8 +223,7 @@ impl House {
 
     fn check(&self, request: &Request) -> std::result::Result<(), Refusal> {
         request.check_site(self.bound.ip())?;
-        if !["/", "/explore.css", "/explore.js", "/charts.js", "/run.json", "/socket"].contains(&request.path.as_str())
-        {
+        if !NAMES.contains(&request.path.as_str()) {
             return Err(Refusal::Name);
         }
         let given = request.token.as_ref().is_some_and(|given| http::same(given, &self.token));
@@ -243,6 +245,7 @@ impl House {
             "/explore.css" => ("text/css; charset=utf-8", STYLE.as_bytes()),
             "/explore.js" => ("text/javascript; charset=utf-8", SCRIPT.as_bytes()),
             "/charts.js" => ("text/javascript; charset=utf-8", CHARTS.as_bytes()),
+            "/icon.svg" => ("image/svg+xml", ICON.as_bytes()),
             "/run.json" => ("application/json", &self.facts),
             _ => return self.first(stream, request),
         };

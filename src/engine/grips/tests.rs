@@ -75,7 +75,7 @@ fn strain_is_displacement_over_the_free_length_of_the_particles() {
 #[test]
 fn a_cyclic_drive_follows_its_sine() {
     let (mut holds, mut state) = holds(
-        r#"grip = { length = "2 mm", amplitude = "0.1 mm", frequency = "1000 Hz" }
+        r#"grip = { length = "2 mm", displacement_amplitude = "0.1 mm", frequency = "1000 Hz" }
         stop = { time = "1 ms" }"#,
     );
     state.dt = 1e-6;
@@ -91,7 +91,7 @@ fn a_cyclic_drive_follows_its_sine() {
 #[test]
 fn a_load_rises_smoothly_to_its_value_and_leaves_free_components_alone() {
     let (mut holds, mut state) = holds(
-        r#"hold = [{ body = 1, part = "end", force = ["0 N", "0 N", "2 N"], ramp = "1 ms" }]
+        r#"hold = [{ body = 0, part = "end", force = ["0 N", "0 N", "2 N"], ramp = "1 ms" }]
         stop = { time = "1 ms" }"#,
     );
     let last = state.len() - 1;
