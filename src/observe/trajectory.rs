@@ -77,7 +77,11 @@ impl TrajectoryWriter {
 
     fn write(&mut self, record: &impl Serialize) -> Result<()> {
         let Some(encoder) = &mut self.encoder else { return Ok(()) };
-        append(encoder, record).map_err(|e| Error::io("cannot write", &self.partial, e))
+        append(encoder, record).map_err(|e| {
+            // An encoder that could not write has lost its thread, and panics when it goes on.
+            self.encoder = None;
+            Error::io("cannot write", &self.partial, e)
+        })
     }
 }
 
