@@ -33,7 +33,6 @@ use crate::base::finding::Kept;
 use crate::base::units::ms;
 use crate::engine::Engine;
 use crate::observe::Observer;
-use crate::observe::animation::Animation;
 use crate::observe::files::write_whole;
 use crate::observe::origin::Origin;
 use crate::observe::partial;

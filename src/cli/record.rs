@@ -51,5 +51,5 @@ pub fn record(args: Args) -> Result<Ended> {
     let stop = super::interrupt::install()?;
     let file = record(&args.run, &options, stop)?;
     say!("recorded to {}", file.display());
-    interrupt::ended(stop)
+    super::interrupt::ended(stop)
 }

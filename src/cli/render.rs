@@ -84,7 +84,7 @@ pub fn render(args: Args) -> Result<Ended> {
     if !args.quiet {
         say!("frames: {timings}");
     }
-    interrupt::ended(stop)
+    super::interrupt::ended(stop)
 }
 
 #[cfg(all(feature = "render", not(feature = "explore")))]

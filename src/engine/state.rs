@@ -188,7 +188,7 @@ impl State {
     /// Whether every list is one of `n` particles.
     pub(super) fn fits(&self, n: usize) -> bool {
         let vectors = [&self.x, &self.v, &self.w, &self.force, &self.torque];
-        let numbers = [&self.parted, &self.radius, &self.thinned, &self.radius0, &self.mass, &self.inertia];
+        let numbers = [&self.length_at_break, &self.radius, &self.thinned, &self.radius0, &self.mass, &self.inertia];
         let inverses = [&self.inverse_mass, &self.inverse_inertia];
         let of_contacts = [&self.contact_force, &self.contact_torque];
         vectors.iter().flat_map(|v| v.rows()).all(|row| row.len() == n)

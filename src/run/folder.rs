@@ -187,7 +187,7 @@ impl OutFolder {
             ));
         }
         probe(path)?;
-        Ok(Self { path: path.into() })
+        Ok(Self { path: path.into(), overwrite: true })
     }
 
     /// The path of a file in it.

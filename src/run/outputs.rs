@@ -1,10 +1,8 @@
 //! What a run writes besides tables. The one place of this floor that knows which features were built.
 
 use super::folder::{self, OutFolder};
-pub use super::options::Animation;
 use super::options::RunOptions;
 use crate::base::error::{Error, Result};
-use crate::base::regular::check_target;
 use crate::observe::Observer;
 use crate::observe::origin::Origin;
 use crate::observe::timings::Timings;

@@ -44,7 +44,7 @@ use toml_edit::Document;
 pub struct Scene {
     /// The resolved scene.
     pub spec: Spec,
-    /// What it needs: made here, once, and handed on. Whoever changes `spec` makes it anew.
+    /// What it needs: made with the scene and handed on ([`Self::changed`] makes it anew).
     pub plan: Plan,
     /// Its text, for errors that later floors find.
     pub source: SceneSource,
@@ -52,6 +52,16 @@ pub struct Scene {
     pub idle: Vec<Idle>,
     /// Most memory that its run may take (bytes); `None`: what is free.
     pub memory: Option<u64>,
+}
+
+impl Scene {
+    /// The scene with a change of what it says, and with the plan of that.
+    #[must_use]
+    pub fn changed(mut self, change: impl FnOnce(&mut Spec)) -> Self {
+        change(&mut self.spec);
+        self.plan = Plan::new(&self.spec);
+        self
+    }
 }
 
 /// Loads a scene by built-in name or by path, with `--set` options.

@@ -3,6 +3,7 @@
 //! adaptive pull; fine half as fast, with half the time step.
 
 use super::Scene;
+use super::plan::Plan;
 use super::resolve_drive::slower_than_the_drive;
 use super::spec::{AdaptiveSpec, DriveSpec, Spec};
 use crate::base::error::Result;
@@ -122,6 +123,7 @@ impl Quality {
                 changed.push(format!("{}={value}{}", entry.key, entry.unit));
             }
         }
+        scene.plan = Plan::new(&scene.spec);
         let wrong =
             scene.spec.grip.as_ref().and_then(|grip| slower_than_the_drive(grip.adaptive.as_ref()?, grip.drive));
         match wrong {

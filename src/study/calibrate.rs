@@ -257,8 +257,7 @@ fn broyden(slopes: DMat2, dx: DVec2, dy: DVec2) -> DMat2 {
 impl Calibration<'_> {
     /// Runs a setting with these seeds, or finds its runs.
     fn try_setting(&self, setting: Setting, seeds: &[u64], target: &Target) -> Result<Iteration> {
-        let mut scene = self.scene.clone();
-        setting.apply(&mut scene.spec);
+        let scene = self.scene.clone().changed(|spec| setting.apply(spec));
         let jobs = self.runner.jobs.min(seeds.len());
         let runner = CaseRunner { jobs, ..*self.runner };
         let case = |seed: &u64| {

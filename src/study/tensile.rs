@@ -204,9 +204,7 @@ impl<'a> TensileCase<'a> {
 
 /// A scene with another seed of the scatter.
 pub fn with_seed(scene: &Scene, seed: u64) -> Scene {
-    let mut scene = scene.clone();
-    scene.spec.seed = seed;
-    scene
+    scene.clone().changed(|spec| spec.seed = seed)
 }
 
 /// The resolved scene as the text that identifies it, points of centreline files included.

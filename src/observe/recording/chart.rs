@@ -9,7 +9,6 @@ use crate::base::error::Result;
 use crate::base::ticks::{label, ticks};
 use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::observe::stress_strain::{Series, expected, mark, point, series};
-use crate::observe::wording::{layer_words, wire_number};
 use rerun::{Color, EntityPath, LineStrips2D, Points2D, Radius};
 
 /// Width and height of the drawing, in its own units.

@@ -9,7 +9,6 @@ use crate::base::ticks::{label, ticks};
 use crate::base::units::mm;
 use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::unrolled::Unrolled;
-use crate::observe::wording::{layer_words, wire_number};
 use rerun::{Color, LineStrips2D, Points2D, Radius};
 
 /// Height of the map over its width (-): wires are far thinner than they are long.

@@ -1,7 +1,7 @@
 //! Names of entities: by layer and wire, so that either can be hidden or selected.
 
 use crate::engine::view::{RunInfo, Rupture};
-use crate::observe::wording::{self, wire_number};
+use crate::observe::wording::{self, layer_words, wire_number};
 use rerun::EntityPath;
 use rerun::external::re_log_types::EntityPathPart;
 

@@ -3,7 +3,7 @@
 
 use crate::base::error::Result;
 use crate::scene::Scene;
-use crate::scene::plan::{ContactPlan, Plan};
+use crate::scene::plan::ContactPlan;
 use crate::scene::spec::{AdaptiveSpec, ContactSpec, DriveSpec, GripSpec, Shape, Spec, TangentialSpec};
 use crate::study::select;
 
@@ -173,8 +173,7 @@ fn tidy(value: f64) -> f64 {
 
 /// A level that `change` makes of a scene; `shown` is its value as people read it.
 fn level(scene: &Scene, shown: impl Into<String>, work: f64, change: impl FnOnce(&mut Spec)) -> Level {
-    let mut scene = scene.clone();
-    change(&mut scene.spec);
+    let scene = scene.clone().changed(change);
     Level { value: Value { number: None, shown: shown.into() }, scene, work, writes: false }
 }
 

@@ -39,8 +39,7 @@ impl Critical {
 pub fn search(case: &StabilityCase, critical: &Critical, quick: bool, control: &RunControl) -> Result<Ended> {
     let bound = least_bound(case, quick, control)?;
     let run = |step: f64| -> Result<f64> {
-        let mut scene = case.scene(quick)?;
-        scene.spec.time.step = Some(step);
+        let scene = case.scene(quick)?.changed(|spec| spec.time.step = Some(step));
         watch(&scene, control).map(|seen| energy(&seen))
     };
     let reference = run(0.5 * bound)?;
