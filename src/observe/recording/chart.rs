@@ -9,6 +9,7 @@ use crate::base::error::Result;
 use crate::base::ticks::{label, ticks};
 use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::observe::stress_strain::{Series, expected, mark, point, series};
+use crate::observe::wording::wire_number;
 use rerun::{Color, EntityPath, LineStrips2D, Points2D, Radius};
 
 /// Width and height of the drawing, in its own units.
