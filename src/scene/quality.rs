@@ -178,7 +178,7 @@ mod tests {
             assert_eq!(turned.from, own.from);
         }
         let (_, constant) = changed(Quality::Fine, "strand-1x7", &[]).unwrap();
-        assert_eq!(constant, ["time.safety=0.4", "grip.speed=2.5 m/s"]);
+        assert_eq!(constant, ["time.safety=0.4", "grip.speed=1.25 m/s"]);
     }
 
     #[test]
@@ -202,7 +202,7 @@ mod tests {
         let table = "grip.adaptive={ from = \"5 %\", fastest = \"21 m/s\" }";
         let (draft, _) = changed(Quality::Draft, "ka4", &[table]).unwrap();
         assert_eq!(draft.grip.unwrap().adaptive.unwrap().fastest, 21.0);
-        let slow = changed(Quality::Draft, "ka4", &["grip.adaptive.fastest=6 m/s"]).unwrap_err();
+        let slow = changed(Quality::Draft, "ka4", &["grip.adaptive.fastest=4 m/s"]).unwrap_err();
         assert!(slow.to_string().contains("the pull begins at `speed`"), "{slow}");
     }
 

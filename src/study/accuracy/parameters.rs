@@ -440,7 +440,7 @@ mod tests {
             variation.unwrap().levels.into_iter().map(|level| level.value.shown).collect()
         };
         assert_eq!(shown(safety(&load("ka4", &[]))), ["0.2", "0.4", "1"]);
-        assert_eq!(shown(speed(&load("ka4", &["grip.adaptive.fastest=6 m/s"]))), ["1.25 m/s", "2.5 m/s"]);
+        assert_eq!(shown(speed(&load("ka4", &["grip.adaptive.fastest=6 m/s"]))), ["0.625 m/s", "1.25 m/s", "5 m/s"]);
         let slow = &speed(&load("single-wire", &[])).unwrap().levels[0].scene;
         assert_eq!(pull_speed(&slow.spec), Some(1.25));
         assert!(speed(&load("cantilever", &[])).is_err());
