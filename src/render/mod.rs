@@ -10,7 +10,7 @@
 //! (`canvas`). A view of a frame is a file that implements `panel::Panel`, and a row of the table in `panels`. Everything
 //! is in SI; lengths become millimetres where they are written.
 
-mod adapter;
+pub mod adapter;
 pub mod animation;
 mod body;
 mod camera;
