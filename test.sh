@@ -18,9 +18,14 @@ say "Format"
 cargo fmt --check
 
 # The lean program is built first: the full one must be what is left in target/release.
+say "Every feature by itself, and none"
+for feature in "" report study cli record render; do
+    cargo clippy --release --locked --lib --no-default-features --features "$feature" -- -D warnings
+done
+
 say "Without recording and frames"
-cargo clippy --release --locked --no-default-features --all-targets -- -D warnings
-cargo build --release --locked --no-default-features
+cargo clippy --release --locked --no-default-features --features cli --all-targets -- -D warnings
+cargo build --release --locked --no-default-features --features cli
 
 say "Lints"
 cargo clippy --release --locked --all-targets -- -D warnings

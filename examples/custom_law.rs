@@ -126,7 +126,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let scene = scene::parse(YARN, "yarn.toml", Path::new("."), &[])?;
     let material = scene.spec.material;
     let law = Stiffening { linear: Elastic { moduli: Moduli::new(material.young, material.poisson) }, rise: 12.0 };
-    let engine = Engine::with_law(&scene.spec, run::assemble(&scene)?, law)?;
+    let engine = Engine::with_law(&scene.spec, &scene.plan, run::assemble(&scene)?, law)?;
     let mut summariser = Summariser::new();
     let observers: &mut [&mut dyn Observer] = &mut [&mut summariser];
     let outcome = run::simulate_engine(engine, observers, &AtomicBool::new(false))?;

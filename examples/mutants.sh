@@ -24,7 +24,7 @@ export PROPTEST_RNG_SEED=1
 files() {
     case $1 in
     law) echo 'src/law/**/*.rs' ;;
-    engine) echo 'src/engine/measure.rs' ;;
+    engine) echo 'src/engine/measure.rs src/engine/step_view.rs src/engine/info.rs' ;;
     tables) echo 'src/observe/tables.rs src/observe/summary.rs src/observe/stiffness.rs' ;;
     recording) echo 'src/observe/recording/curve.rs src/observe/recording/particles.rs src/observe/recording/states.rs' ;;
     *) echo "there is no part $1: law, engine, tables, recording" >&2; exit 2 ;;
@@ -46,7 +46,7 @@ for part in "${parts[@]}"; do
     options=(--profile release --jobs 1 --timeout 900 --build-timeout 1800 --output "out/mutants/$part" --colors never)
     for file in $(set -f; files "$part"); do options+=(--file "$file"); done
     # Recordings need the library that writes them; everything else is built lean.
-    [ "$part" = recording ] || options+=(--no-default-features)
+    [ "$part" = recording ] || options+=(--no-default-features --features cli)
     [ -z "${SHARD:-}" ] || options+=(--shard "$SHARD")
     if [ -n "${LIST:-}" ]; then
         cargo mutants --list "${options[@]}"

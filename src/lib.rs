@@ -23,9 +23,9 @@
 //! - [`observe`]: what is shown a run and writes it down
 //! - `render`: pictures (feature `render`)
 //! - [`run`]: one run from scene to results
-//! - [`page`]: the HTML page of a run
-//! - [`study`]: many runs
-//! - [`cli`]: the command line
+//! - [`page`]: the HTML page of a run (feature `report`)
+//! - [`study`]: many runs (feature `study`)
+//! - [`cli`]: the command line (feature `cli`)
 //!
 //! # A wire that snaps
 //!
@@ -56,17 +56,27 @@
 //! # Ok::<(), strandsnap::base::error::Error>(())
 //! ```
 
+#[warn(missing_docs)]
 pub mod base;
+#[cfg(feature = "cli")]
 pub mod cli;
+#[warn(missing_docs)]
 pub mod engine;
+#[warn(missing_docs)]
 pub mod law;
 pub mod manual;
 pub mod observe;
+#[cfg(feature = "report")]
 pub mod page;
+#[warn(missing_docs)]
 pub mod reference;
 #[cfg(feature = "render")]
 pub mod render;
+#[warn(missing_docs)]
 pub mod run;
+#[warn(missing_docs)]
 pub mod scene;
+#[warn(missing_docs)]
 pub mod strand;
+#[cfg(feature = "study")]
 pub mod study;

@@ -7,11 +7,15 @@ pub mod cost;
 mod drive;
 pub mod estimate;
 pub mod folder;
+pub mod identity;
+pub mod lock;
+mod options;
 pub mod outputs;
 #[cfg(feature = "record")]
 pub mod record;
 pub mod replay;
 mod schedule;
+pub mod size;
 mod stop;
 #[cfg(feature = "record")]
 pub mod view;
@@ -19,6 +23,7 @@ pub mod view;
 pub use crate::base::finding::StopReason;
 pub use crate::observe::summary::RunSummary;
 pub use drive::{Outcome, simulate, simulate_engine};
+pub use options::RunOptions;
 pub use schedule::{Due, Schedule};
 pub use stop::StopRule;
 
@@ -29,39 +34,19 @@ use crate::engine::Engine;
 use crate::observe::Observer;
 use crate::observe::animation::Animation;
 use crate::observe::files::write_whole;
-use crate::observe::progress::Progress;
+use crate::observe::origin::Origin;
 use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
 use crate::observe::timings::Timings;
+use crate::scene::spec::PathSpec;
 use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
 use folder::OutFolder;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-
-/// Where a run goes and what it writes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunOptions {
-    /// Folder of the results.
-    pub out: PathBuf,
-    /// Replace earlier results in that folder.
-    pub overwrite: bool,
-    /// Threads of the engine; `None`: as many as the machine has.
-    pub threads: Option<usize>,
-    /// Draw numbered pictures into `frames/`.
-    pub frames: bool,
-    /// Make an animation of them.
-    pub animation: Option<Animation>,
-    /// Write `recording.rrd`.
-    pub recording: bool,
-    /// Address of a Rerun viewer to stream to while running.
-    pub live: Option<String>,
-    /// Show no progress bar.
-    pub quiet: bool,
-}
 
 /// Runs a scene and writes its results; `stop` ends it cleanly after the step in progress.
 ///
@@ -87,22 +72,37 @@ pub fn run_watched(
     stop: &AtomicBool,
 ) -> Result<RunSummary> {
     let clock = Clock::start();
+    if options.wait {
+        lock::wait(&options.out, stop);
+    }
     let folder = OutFolder::check(&options.out, options.overwrite)?;
+    spare_inputs(scene, &folder)?;
     outputs::check(options)?;
     let assembly = assemble(scene)?;
     let bonds = assembly.bond_count();
-    let engine = Engine::new(&scene.spec, assembly)?;
-    folder.open()?;
+    let engine = Engine::new(&scene.spec, &scene.plan, assembly)?;
+    let _lock = folder.open()?;
     write_whole(&folder.file(folder::SCENE), &write::to_toml(&scene.spec))?;
     let written = outputs::open(options, &scene.spec, &folder)?;
     drive_and_summarise(Job { scene, options, folder: &folder, clock, bonds }, engine, written, watchers, stop)
 }
 
+/// Refuses to write over what the run is made from.
+fn spare_inputs(scene: &Scene, folder: &OutFolder) -> Result<()> {
+    folder.spare(Path::new(scene.source.file_name()))?;
+    scene.spec.wires.iter().try_for_each(|wire| match &wire.path {
+        PathSpec::File { file, .. } => folder.spare(file),
+        PathSpec::Straight { .. } => Ok(()),
+    })
+}
+
 /// The wires, particles and bonds of a scene.
 ///
 /// # Errors
-/// Geometry that cannot be, at the line of the scene that asks for it.
+/// A scene that does not fit into memory ([`size::check`]), and geometry that cannot be, at the line of the scene that asks
+/// for it.
 pub fn assemble(scene: &Scene) -> Result<Assembly> {
+    size::check(scene)?;
     discretise::build(&scene.spec).map_err(|e| scene.source.error(&e.key, e.message, e.help))
 }
 
@@ -118,7 +118,7 @@ pub fn summarise(scene: &Scene, watchers: Vec<&mut dyn Observer>, stop: &AtomicB
     let mut summariser = Summariser::new();
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser];
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
-    let outcome = simulate(&scene.spec, assembly, &mut observers, stop)?;
+    let outcome = simulate(&scene.spec, &scene.plan, assembly, &mut observers, stop)?;
     let closing = closing(&clock, &outcome, None, None);
     Ok(summariser.summary(&scene.spec, bonds, closing))
 }
@@ -213,16 +213,14 @@ fn drive_and_summarise(
     let spec = &job.scene.spec;
     let mut summariser = Summariser::new();
     let mut tables = Tables::new(&job.options.out);
-    let mut progress = (!job.options.quiet).then(|| Progress::new(&spec.stop));
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
-    observers.extend(progress.as_mut().map(|o| o as &mut dyn Observer));
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
     let (outcome, error) = drive::drive(engine, spec, &mut observers, stop)?;
     let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
     let closing = closing(&job.clock, &outcome, error.as_ref(), frames);
     let summary = summariser.summary(spec, job.bonds, closing);
-    let kept = write_summary(&job.folder.file(folder::SUMMARY), &summary);
+    let kept = write_summary(&job, &summary);
     match error {
         Some(error) => Err(with_place(error, &job.options.out, summary.warnings.len() - 1)),
         None => kept.map(|()| summary),
@@ -240,10 +238,11 @@ fn closing(clock: &Clock, outcome: &Outcome, error: Option<&Error>, frames: Opti
     }
 }
 
-fn write_summary(path: &Path, summary: &RunSummary) -> Result<()> {
-    let text =
-        serde_json::to_string_pretty(summary).map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
-    write_whole(path, &(text + "\n"))
+fn write_summary(job: &Job, summary: &RunSummary) -> Result<()> {
+    let path = job.folder.file(folder::SUMMARY);
+    let text = serde_json::to_string_pretty(summary)
+        .map_err(|e| Error::io("cannot write", &path, std::io::Error::other(e)))?;
+    write_whole(&path, &identity::seal(&text, Origin::of(&job.scene.spec), &job.options.out)?)
 }
 
 /// Adds where the results so far are, and how many `earlier` findings in them may tell why.

@@ -1,5 +1,9 @@
 //! `strandsnap accuracy` as a user runs it: what it writes, how it goes on after an interruption, what it refuses.
 
+#[path = "common/rows.rs"]
+mod rows;
+
+use rows::{number, rows};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -35,16 +39,6 @@ fn printed(output: &Output) -> String {
     text(&output.stdout)
 }
 
-/// The rows of a table as (column → cell).
-fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    reader.deserialize().collect::<Result<_, _>>().unwrap()
-}
-
-fn number(row: &std::collections::HashMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("{column} is {:?} in {row:?}", row[column]))
-}
-
 #[test]
 fn a_wire_is_compared_with_its_closed_form_and_a_second_study_makes_no_run() {
     let folder = tempfile::tempdir().unwrap();
@@ -58,7 +52,7 @@ fn a_wire_is_compared_with_its_closed_form_and_a_second_study_makes_no_run() {
     assert_eq!(table.len(), 12);
     assert!(table.iter().all(|row| row["outcome"] == "ran"), "{table:?}");
     // The closed form is met, and the slower the pull the better.
-    let speeds: Vec<&_> = table.iter().filter(|row| row["knob"] == "speed").collect();
+    let speeds: Vec<&_> = table.iter().filter(|row| row["parameter"] == "speed").collect();
     let errors: Vec<f64> = speeds.iter().map(|row| number(row, "elongation_error_percent").abs()).collect();
     assert!(errors.windows(2).all(|pair| pair[0] < pair[1]) && errors[0] < 0.2, "{errors:?}");
     assert!(table.iter().all(|row| number(row, "strength_error_percent").abs() < 1.0));
@@ -69,7 +63,8 @@ fn a_wire_is_compared_with_its_closed_form_and_a_second_study_makes_no_run() {
         serde_json::from_str(&std::fs::read_to_string(study.join("accuracy.json")).unwrap()).unwrap();
     assert_eq!((&json["reference"]["kind"], json["rows"].as_array().unwrap().len()), (&"closed-form".into(), 12));
     // First order in the speed of the pull, as far as this short wire lets it show.
-    let order = json["reference"]["refinement"].as_array().unwrap().iter().find(|one| one["knob"] == "speed").unwrap();
+    let order =
+        json["reference"]["refinement"].as_array().unwrap().iter().find(|one| one["parameter"] == "speed").unwrap();
     assert!((order["order"][1].as_f64().unwrap() - 1.0).abs() < 0.4, "{order}");
     let svg = std::fs::read_to_string(study.join("accuracy.svg")).unwrap();
     for word in ["error of strength", "the scene as it stands", "best found (Pareto front)"] {
@@ -111,7 +106,7 @@ fn a_strand_is_compared_with_its_own_refinement_seed_by_seed_and_side_by_side() 
     assert_eq!(table.len(), 14);
     assert!(table.iter().all(|row| row.contains_key("layer_error_percent:core")));
     assert!(table.iter().all(|row| number(row, "order_tau") <= 1.0));
-    assert!(table.iter().filter(|row| row["knob"] == "tangential").all(|row| row["role"] == "change of model"));
+    assert!(table.iter().filter(|row| row["parameter"] == "tangential").all(|row| row["role"] == "change of model"));
 }
 
 #[test]
@@ -153,7 +148,7 @@ fn verification_cases_show_their_order_and_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["accuracy", "cantilever-shared", "--quick"];
     let first = printed(&strandsnap(folder.path(), &args));
-    assert!(first.contains("1 cases run, 0 kept") && first.contains("Timoshenko"), "{first}");
+    assert!(first.contains("1 case run, 0 kept") && first.contains("Timoshenko"), "{first}");
     let study = folder.path().join("out/accuracy/cantilever-shared");
     let table = rows(&study.join("accuracy.csv"));
     let orders: Vec<f64> = table.iter().filter_map(|row| row["order"].parse().ok()).collect();

@@ -49,7 +49,7 @@ fn a_mean_over_seeds_is_fitted_with_its_interval_and_runs_are_kept() {
     assert!((last["elongation"]["mean"].as_f64().unwrap() / 5.0 - 1.0).abs() <= 0.01, "{last}");
     assert!(last["elongation"]["interval_95"].as_f64().unwrap() > 0.0);
     let second = calibrate(&["--seeds", "1..4", "--threads", "1"]);
-    assert!(second.contains("runs were there already"), "{second}");
+    assert!(second.contains("Already there: "), "{second}");
     let again = read();
     let setting = |json: &serde_json::Value| json["trials"].as_array().unwrap().last().unwrap()["setting"].clone();
     assert_eq!(setting(&again), setting(&json));

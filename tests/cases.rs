@@ -6,7 +6,7 @@ use strandsnap::engine::Engine;
 use strandsnap::run::{assemble, cautions};
 use strandsnap::scene::{self, Scene, builtin};
 use strandsnap::strand;
-use strandsnap::study::sweep::{self, Changes, Definition};
+use strandsnap::study::sweep::{Changes, Definition};
 
 fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/cases").join(name).join("scene.toml")
@@ -178,7 +178,7 @@ fn bodies_that_press_from_the_start_are_told_with_what_helps() {
     // lie deeper in each other than they were given; with enough of them what is stored is that of the curves.
     let stored = |spacing: &str| {
         let scene = load_case("rope-by-centre-points", &[spacing]);
-        Engine::new(&scene.spec, assemble(&scene).unwrap()).unwrap().energy().elastic_contacts
+        Engine::new(&scene.spec, &scene.plan, assemble(&scene).unwrap()).unwrap().energy().elastic_contacts
     };
     let [coarse, fine, finer] = ["spacing=1.5", "spacing=0.5", "spacing=0.375"].map(stored);
     assert!(said.contains(&format!("contacts hold {coarse:.2e} J")) && !said.contains("lay_radius"), "{said}");
@@ -220,7 +220,7 @@ fn a_nearly_repeated_point_does_not_bend_a_wire() {
     let line = strand::caution::deviation(&scene.spec).unwrap();
     assert!(line.contains("1 point repeats the one before it"), "{line}");
     // The slope between two strains, so that what is filtered lags behind both.
-    let mut engine = Engine::new(&scene.spec, assemble(&scene).unwrap()).unwrap();
+    let mut engine = Engine::new(&scene.spec, &scene.plan, assemble(&scene).unwrap()).unwrap();
     let mut at = |strain: f64| {
         while engine.strain() < strain {
             engine.step().unwrap();
@@ -266,7 +266,7 @@ fn study(name: &str, set: &[&str], seeds: &[u64]) -> Result<Definition, Error> {
 
 #[test]
 fn a_study_that_changes_nothing_is_refused() {
-    let error = scene_error(sweep::check(&study("key-without-effect", &[], &[]).unwrap()), "no effect");
+    let error = scene_error(study("key-without-effect", &[], &[]), "no effect");
     assert!(error.what.starts_with("`strand.pitch` changes nothing"), "{}", error.what);
 }
 

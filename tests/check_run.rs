@@ -12,7 +12,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use strandsnap::run::{RunOptions, run};
 use strandsnap::scene::Scene;
-use strandsnap::study::check_run::{Finding, Outcome, check};
+use strandsnap::study::check_run::{InvariantCheck, InvariantOutcome, check};
 
 /// A straight core and three wires around it, pulled until they break, in a second.
 pub const STRAND: &str = r#"
@@ -62,22 +62,24 @@ pub fn run_into(scene: &Scene, out: &Path) {
     let options = RunOptions {
         out: out.into(),
         overwrite: false,
+        wait: false,
         threads: Some(1),
         frames: false,
         animation: None,
         recording: cfg!(feature = "record"),
         live: None,
-        quiet: true,
     };
     run(scene, &options, &AtomicBool::new(false)).unwrap_or_else(|error| panic!("{error:?}"));
-    strandsnap::page::write(out, None, None, false).unwrap_or_else(|error| panic!("{error:?}"));
+    strandsnap::page::write(out, None, None, false, false).unwrap_or_else(|error| panic!("{error:?}"));
 }
 
 /// What is wrong with a run, for people; empty when nothing is.
 pub fn wrong(out: &Path) -> Vec<String> {
     let findings = check(out).unwrap_or_else(|error| panic!("{error:?}"));
-    let told = |finding: &Finding| match &finding.outcome {
-        Outcome::Failed(seen) => Some(format!("{}: {} ({:e})", finding.invariant.name, seen.place, seen.worst)),
+    let told = |finding: &InvariantCheck| match &finding.outcome {
+        InvariantOutcome::Failed(seen) => {
+            Some(format!("{}: {} ({:e})", finding.invariant.name, seen.place, seen.worst))
+        }
         _ => None,
     };
     findings.iter().filter_map(told).collect()
@@ -86,6 +88,6 @@ pub fn wrong(out: &Path) -> Vec<String> {
 /// Names of the invariants that hold.
 pub fn passed(out: &Path) -> Vec<&'static str> {
     let findings = check(out).unwrap_or_else(|error| panic!("{error:?}"));
-    let holds = |finding: &&Finding| matches!(finding.outcome, Outcome::Passed(_));
+    let holds = |finding: &&InvariantCheck| matches!(finding.outcome, InvariantOutcome::Passed(_));
     findings.iter().filter(holds).map(|finding| finding.invariant.name).collect()
 }

@@ -1,5 +1,10 @@
-//! The order of the floors, the homes of the two heavy libraries, and the length of files, read from the sources.
+//! The order of the floors, the homes of the two heavy libraries, circles of imports, and the length of files, read from the sources.
 //! See `strandsnap::manual::architecture`: a file imports only from floors above its own in [`FLOORS`].
+
+#[path = "floors/circles.rs"]
+mod circles;
+#[path = "floors/optimised.rs"]
+mod optimised;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,9 @@
 //! What a run reports is what its body did: in every file, at any number of rows, however the run ended.
 
+#[path = "common/rows.rs"]
+mod rows;
+
+use rows::{column, column as column_of, rows};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -65,35 +69,14 @@ fn write(scene: &Scene, out: PathBuf) -> RunSummary {
     let options = RunOptions {
         out,
         overwrite: false,
+        wait: false,
         threads: Some(1),
         frames: false,
         animation: None,
         recording: false,
         live: None,
-        quiet: true,
     };
     run::run(scene, &options, &AtomicBool::new(false)).unwrap()
-}
-
-/// A table by column, every cell a number; those that are none are NaN.
-struct Table {
-    header: Vec<String>,
-    rows: Vec<Vec<f64>>,
-}
-
-impl Table {
-    fn read(path: &Path) -> Self {
-        let text = std::fs::read_to_string(path).unwrap();
-        let mut lines = text.lines();
-        let header = lines.next().unwrap().split(',').map(String::from).collect();
-        let rows = lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()).collect();
-        Self { header, rows }
-    }
-
-    fn column(&self, name: &str) -> Vec<f64> {
-        let k = self.header.iter().position(|h| h == name).unwrap_or_else(|| panic!("{name} in {:?}", self.header));
-        self.rows.iter().map(|row| row[k]).collect()
-    }
 }
 
 fn at(x: &[f64], y: &[f64], wanted: f64) -> f64 {
@@ -108,17 +91,17 @@ fn a_broken_bond_carries_nothing_in_any_output() {
     let out = folder.path().join("out");
     let summary = write(&load("stress-after-break.toml", &[]), out.clone());
     assert_eq!(summary.bonds_broken, 2, "both bonds reach their strain at once");
-    let curve = Table::read(&out.join("curve.csv"));
-    let (layer, broken) = (curve.column("stress_wire_mpa"), curve.column("bonds_broken"));
+    let curve = rows(&out.join("curve.csv"));
+    let (layer, broken) = (column(&curve, "stress_wire_mpa"), column(&curve, "bonds_broken"));
     assert!(broken.contains(&2.0) && broken.contains(&0.0));
     for (stress, broken) in layer.iter().zip(&broken) {
         assert!(if *broken > 0.0 { *stress == 0.0 } else { (-1e-6..=500.0).contains(stress) }, "{stress} MPa");
     }
-    let wires = Table::read(&out.join("wires.csv"));
-    let greatest = wires.column("greatest_stress_mpa")[0];
+    let wires = rows(&out.join("wires.csv"));
+    let greatest = column(&wires, "greatest_stress_mpa")[0];
     assert!((490.0..=500.0).contains(&greatest), "{greatest} MPa");
-    let ruptures = Table::read(&out.join("ruptures.csv"));
-    assert!(ruptures.column("stress_mpa")[0] <= 500.0 * 1.005, "true stress at a strain of 0.5 %");
+    let ruptures = rows(&out.join("ruptures.csv"));
+    assert!(column(&ruptures, "stress_mpa")[0] <= 500.0 * 1.005, "true stress at a strain of 0.5 %");
 }
 
 #[test]
@@ -146,10 +129,10 @@ fn modulus_and_yield_are_read_from_the_curve_as_written() {
     let scene = load("single-wire", &["stop.strain=0.15 %", "output.samples=300"]);
     let BondLawSpec::ElastoPlastic(law) = &scene.spec.bond.law else { panic!("the wire yields") };
     write(&scene, out.clone());
-    let curve = Table::read(&out.join("curve.csv"));
-    let strain = curve.column("strain_percent");
+    let curve = rows(&out.join("curve.csv"));
+    let strain = column(&curve, "strain_percent");
     for column in ["stress_mpa", "stress_wire_mpa"] {
-        let stress = curve.column(column);
+        let stress = column_of(&curve, column);
         for (percent, right) in [(0.02, 22.9), (0.04, 45.9), (0.06, 68.8), (0.1, 100.3)] {
             let closed = 1e-6 * tension_at(0.01 * percent, |p| law.stress(p), 115e9).engineering_stress;
             assert!((closed - right).abs() < 0.3, "{closed} MPa at {percent} %");

@@ -15,6 +15,7 @@ use std::sync::atomic::AtomicBool;
 use strandsnap::base::error::Error;
 use strandsnap::base::finding::StopReason;
 use strandsnap::observe::Observer;
+use strandsnap::observe::origin::Origin;
 use strandsnap::observe::summary::{Closing, Cost, Summariser};
 use strandsnap::observe::trajectory::TrajectoryWriter;
 use strandsnap::page::{self, Source};
@@ -30,14 +31,14 @@ const HOSTILE: &str = "</script><script>window.hacked=1</script><img src=x onerr
 fn folder_of(run: &Run, pictures: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    run.show(&mut TrajectoryWriter::new(&at("trajectory.bin")).unwrap()).unwrap();
+    run.show(&mut TrajectoryWriter::new(&at("trajectory.bin"), Origin::default()).unwrap()).unwrap();
     let scene = scene::load("ka4", &[]).unwrap();
     fs::write(at("scene.toml"), scene::write::to_toml(&scene.spec)).unwrap();
     let mut summariser = Summariser::new();
     run.show(&mut summariser).unwrap();
     let steps = run.samples().last().unwrap().step;
     let cost = Cost { steps, wall_s: 12.5, threads: 2, ..Cost::default() };
-    let closing = Closing { stopped: StopReason::Steps(7), cost, ..Closing::default() };
+    let closing = Closing { stopped: StopReason::Steps { limit: 7, reached: 7 }, cost, ..Closing::default() };
     let summary = summariser.summary(&scene.spec, 10_000, closing);
     fs::write(at("summary.json"), serde_json::to_string_pretty(&summary).unwrap()).unwrap();
     fs::create_dir(at("frames")).unwrap();
@@ -55,11 +56,11 @@ fn simulated(name: &str, overrides: &[&str]) -> TempDir {
     let options = RunOptions {
         out: folder.path().into(),
         overwrite: true,
+        wait: false,
         threads: Some(2),
         frames: false,
         recording: false,
         live: None,
-        quiet: true,
         animation: None,
     };
     run::run(&scene::load(name, &overrides).unwrap(), &options, &AtomicBool::new(false)).unwrap();
@@ -341,7 +342,7 @@ fn browser(test: &str) -> Option<Browser> {
 
 /// Writes a page and opens it; it must have drawn all its charts without a complaint.
 fn shown(browser: &mut Browser, folder: &TempDir, scheme: &str) -> PathBuf {
-    let written = page::write(folder.path(), None, None, true).unwrap();
+    let written = page::write(folder.path(), None, None, true, true).unwrap();
     browser.open(&written.path, scheme);
     let trouble = browser.value("document.getElementById('trouble').textContent");
     assert!(browser.value("document.documentElement.dataset.troubles ?? null").is_null(), "{trouble}");
@@ -452,7 +453,7 @@ fn a_browser_shows_runs_that_have_little_to_show() {
     let mut run = Run::new(1);
     run.events.truncate(1);
     let folder = tempfile::tempdir().unwrap();
-    let mut writer = TrajectoryWriter::new(&folder.path().join("trajectory.bin")).unwrap();
+    let mut writer = TrajectoryWriter::new(&folder.path().join("trajectory.bin"), Origin::default()).unwrap();
     run.show_unfinished(&mut writer).unwrap();
     writer.finish().unwrap();
     let scene = scene::load("ka4", &[]).unwrap();

@@ -4,8 +4,10 @@
 mod drive;
 
 use drive::*;
+use strandsnap::engine::Engine;
 use strandsnap::scene::builtin;
 use strandsnap::scene::plan::{ContactPlan, Plan};
+use strandsnap::strand::{build, size::Size};
 
 const WIRE: &str = r#"
 about = "One straight wire."
@@ -202,7 +204,30 @@ fn a_jaw_without_wires_says_so() {
         "{WIRE}[[wire]]\nlayer = \"outer\"\ndiameter = \"0.4 mm\"\nfrom = [\"1 mm\", \"0 mm\", \"4 mm\"]\nto = [\"1 mm\", \"0 mm\", \"6 mm\"]\n"
     );
     let spec = spec(&text, &["grip.kind=jaw", "grip.clamp_pressure=10 MPa"]);
-    let Err(error) = strandsnap::engine::Engine::new(&spec, assembly(&spec)) else { panic!("nothing is held") };
+    let Err(error) = strandsnap::engine::Engine::new(&spec, &Plan::new(&spec), assembly(&spec)) else {
+        panic!("nothing is held")
+    };
     let message = format!("{error:?}");
     assert!(message.contains("outer") && message.contains("grip"), "{message}");
+}
+
+#[test]
+fn shipped_scenes_are_as_large_as_foretold() {
+    for (name, set) in [
+        ("ka4", None),
+        ("strand-1x7", None),
+        ("single-wire", None),
+        ("two-spheres", None),
+        ("strand-1x7", Some("contact.shape=wire")),
+    ] {
+        let set: Vec<&str> = set.into_iter().collect();
+        let spec = spec(builtin::find(name).unwrap(), &set);
+        let (assembly, size) = (build(&spec).unwrap(), Size::of(&spec));
+        let (particles, bonds) = (assembly.len() as f64, assembly.bond_count() as f64);
+        assert_eq!(size.wires, assembly.wires.len() as f64);
+        assert!((size.particles / particles - 1.0).abs() < 0.01, "{name}: {size:?}, {particles}");
+        assert!((size.bonds - bonds).abs() <= 0.01 * bonds, "{name}: {size:?}, {bonds}");
+        let kept = Engine::new(&spec, assembly).unwrap().bytes().kept() as f64;
+        assert!((1.0..3.0).contains(&(size.memory / kept)) || particles < 10.0, "{name}: {size:?}, {kept}");
+    }
 }

@@ -10,8 +10,8 @@ mod conservation;
 mod drive;
 #[path = "property/ledger.rs"]
 mod ledger;
-#[path = "property/pace.rs"]
-mod pace;
+#[path = "property/loading_rate.rs"]
+mod loading_rate;
 #[path = "property/random.rs"]
 mod random;
 #[path = "property/time.rs"]

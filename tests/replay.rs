@@ -8,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 use strandsnap::base::error::{Error, Result};
 use strandsnap::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use strandsnap::observe::Observer;
+use strandsnap::observe::origin::Origin;
 use strandsnap::observe::trajectory::TrajectoryWriter;
 use strandsnap::run::replay::{Replay, Selection};
 use synthetic::Run;
@@ -44,7 +45,7 @@ impl Observer for Seen {
 }
 
 fn written(run: &Run, folder: &Path) {
-    run.show(&mut TrajectoryWriter::new(&folder.join("trajectory.bin")).unwrap()).unwrap();
+    run.show(&mut TrajectoryWriter::new(&folder.join("trajectory.bin"), Origin::default()).unwrap()).unwrap();
 }
 
 fn shown(folder: &Path, selection: Selection) -> Seen {

@@ -35,8 +35,8 @@ fn short_run(name: &str) -> u64 {
         "strand, partial slip" => engine(STRAND, &["contact.tangential=mindlin-deresiewicz", "grip.speed=40 m/s"]),
         "smooth strand" => engine(STRAND, &["contact.shape=wire", "grip.speed=40 m/s"]),
         shipped => {
-            let spec = scene::load(shipped, &[]).unwrap().spec;
-            Engine::new(&spec, assembly(&spec)).unwrap()
+            let scene = scene::load(shipped, &[]).unwrap();
+            Engine::new(&scene.spec, &scene.plan, assembly(&scene.spec)).unwrap()
         }
     };
     run_steps(&mut engine, 600);

@@ -53,7 +53,7 @@ fn pull(overrides: &[&str], observers: &mut [&mut dyn Observer], stop: bool) -> 
     let overrides: Vec<String> = overrides.iter().map(|o| o.to_string()).collect();
     let scene = scene::load("single-wire", &overrides)?;
     let assembly = run::assemble(&scene)?;
-    run::simulate(&scene.spec, assembly, observers, &AtomicBool::new(stop))
+    run::simulate(&scene.spec, &scene.plan, assembly, observers, &AtomicBool::new(stop))
 }
 
 const SHORT: [&str; 3] = ["stop.steps=300", "output.samples=30", "output.snapshots=3"];
@@ -62,7 +62,7 @@ const SHORT: [&str; 3] = ["stop.steps=300", "output.samples=30", "output.snapsho
 fn first_and_last_state_are_shown_and_the_rest_is_spread_evenly() {
     let mut diary = Diary::default();
     let outcome = pull(&SHORT, &mut [&mut diary], false).unwrap();
-    assert_eq!(outcome.reason, StopReason::Steps(300));
+    assert_eq!(outcome.reason, StopReason::Steps { limit: 300, reached: 300 });
     let steps =
         |word: &str| -> Vec<u64> { diary.lines.iter().filter(|(w, _)| *w == word).map(|(_, step)| *step).collect() };
     assert_eq!(steps("snapshot"), [0, 100, 200, 300]);
@@ -75,7 +75,7 @@ fn first_and_last_state_are_shown_and_the_rest_is_spread_evenly() {
 fn a_rupture_comes_before_its_row_and_brings_a_snapshot() {
     let mut diary = Diary::default();
     let outcome = pull(&["output.samples=200", "output.snapshots=10"], &mut [&mut diary], false).unwrap();
-    assert!(matches!(outcome.reason, StopReason::StressFraction(_)), "{:?}", outcome.reason);
+    assert!(matches!(outcome.reason, StopReason::StressFraction { .. }), "{:?}", outcome.reason);
     let broke = diary.lines.iter().position(|(word, _)| *word == "rupture").expect("the wire snaps");
     let step = diary.lines[broke].1;
     let shown = diary.lines[broke..].iter().find(|(word, _)| *word == "snapshot").unwrap();

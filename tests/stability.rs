@@ -1,14 +1,21 @@
 //! The quick form of the stability matrix: every case must end as it should.
 
 use std::sync::atomic::AtomicBool;
-use strandsnap::study::stability::outcome::Outcome;
-use strandsnap::study::stability::{run_all, select};
+use strandsnap::study::runner::{CaseRunner, all_outputs, cores};
+use strandsnap::study::stability::case::StabilityCase;
+use strandsnap::study::stability::outcome::{Outcome, Report};
+use strandsnap::study::stability::{self, select};
+
+fn run_all(cases: &[StabilityCase]) -> Vec<Report> {
+    let stop = AtomicBool::new(false);
+    let runner = CaseRunner { jobs: cores(), threads: Some(1), budget: None, stop: &stop, tell: &|_| {} };
+    all_outputs(stability::run_all(cases, true, &runner).unwrap()).unwrap()
+}
 
 #[test]
 fn no_case_fails() {
     let cases = select(&[]).expect("all cases");
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let reports = run_all(&cases, true, threads, &AtomicBool::new(false), &|_| {});
+    let reports = run_all(&cases);
     assert_eq!(reports.len(), cases.len());
     let failed: Vec<String> = reports
         .iter()
@@ -33,7 +40,7 @@ fn refusals_say_what_is_wrong() {
         ("softening-linear", ["linear", "zero or more"]),
     ] {
         let cases = select(&[case.to_string()]).unwrap();
-        let reports = run_all(&cases, true, 1, &AtomicBool::new(false), &|_| {});
+        let reports = run_all(&cases);
         let [report] = &reports[..] else { panic!("{case}") };
         assert_eq!(report.outcome, Outcome::Refused, "{case}: {}", report.message);
         for word in words {

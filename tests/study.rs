@@ -1,7 +1,10 @@
 //! `strandsnap study` as a user runs it: a tiny study end to end, resumed, run case by case, with cases that fail, and
 //! what it refuses.
 
-use std::collections::HashMap;
+#[path = "common/rows.rs"]
+mod rows;
+
+use rows::{Row, number, rows};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -12,7 +15,7 @@ base = "single-wire"
 set = ["wire.0.to=[\"0 mm\", \"0 mm\", \"30 mm\"]", "grip.length=5 mm", "bond.rupture.strain=20 %", "stop.stress_fraction=", "stop.strain_after_drop=2 %"]
 seeds = 2
 fits = ["elongation"]
-compare = ["paper", "strand-theory"]
+compare = ["zhao-2025", "strand-theory"]
 
 [[axis]]
 key = "grip.speed"
@@ -39,15 +42,6 @@ fn text(bytes: &[u8]) -> String {
 fn printed(output: &Output) -> String {
     assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
     text(&output.stdout)
-}
-
-fn rows(path: &Path) -> Vec<HashMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    reader.deserialize().collect::<Result<_, _>>().unwrap()
-}
-
-fn number(row: &HashMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("{column} is {:?} in {row:?}", row[column]))
 }
 
 #[test]
@@ -215,8 +209,7 @@ interactions = [["strain at rupture", "scatter"]]
         "{by_points}"
     );
     let seeds = |strain: &str| -> Vec<f64> {
-        let own =
-            |row: &&HashMap<String, String>| row["strain at rupture [%]"] == strain && row["scatter"] == "modulus 8";
+        let own = |row: &&Row| row["strain at rupture [%]"] == strain && row["scatter"] == "modulus 8";
         cases.iter().filter(own).map(|row| number(row, "elongation [%]")).collect()
     };
     let [pair, other] = ["10", "20"].map(seeds);
@@ -233,7 +226,8 @@ fn what_is_wrong_in_a_study_is_told_with_its_line_and_nothing_is_written() {
         ("seeds = 2", "seeds = 0", "there must be at least one"),
         ("seeds = 2", "seads = 2", "unknown key `seads` in a study"),
         ("fits = [\"elongation\"]", "fits = [\"elongaton\"]", "did you mean `elongation`?"),
-        ("compare = [\"paper\"", "compare = [\"papper\"", "`papper` is nothing to compare with"),
+        ("compare = [\"zhao-2025\"", "compare = [\"zhao-2026\"", "`zhao-2026` is nothing to compare with"),
+        ("compare = [\"zhao-2025\", ", "compare = [", "strand theory is calibrated on an experiment"),
         ("to = \"20 m/s\"", "to = \"20 mm/s\"", "give both in one unit"),
         ("points = 4", "points = 1", "a range has at least 2"),
         ("key = \"grip.speed\"", "", "the axis does not say what it varies"),

@@ -4,12 +4,13 @@ mod synthetic;
 
 use std::path::{Path, PathBuf};
 use strandsnap::base::error::Error;
+use strandsnap::observe::origin::Origin;
 use strandsnap::observe::trajectory::{Record, Trajectory, TrajectoryWriter};
 use synthetic::{Event, Run};
 
 fn written(run: &Run, folder: &Path) -> PathBuf {
     let file = folder.join("trajectory.bin");
-    run.show(&mut TrajectoryWriter::new(&file).unwrap()).unwrap();
+    run.show(&mut TrajectoryWriter::new(&file, Origin::default()).unwrap()).unwrap();
     file
 }
 
@@ -54,7 +55,7 @@ fn a_run_that_was_not_finished_gives_what_it_has_and_then_an_error() {
 fn the_end_is_missed_even_where_a_record_ends() {
     let (run, folder) = (Run::new(2), tempfile::tempdir().unwrap());
     let file = folder.path().join("trajectory.bin");
-    let mut writer = TrajectoryWriter::new(&file).unwrap();
+    let mut writer = TrajectoryWriter::new(&file, Origin::default()).unwrap();
     run.show_unfinished(&mut writer).unwrap();
     drop(writer);
     assert!(!file.exists());

@@ -1,9 +1,13 @@
 //! The shipped KA4 scene against the reference paper: the same strand, and a material that carries its test.
 
-use strandsnap::reference::paper::paper;
+use strandsnap::reference::published::{CALIBRATED_ON, Published, find};
 use strandsnap::reference::strand::{Layer, strength_factor};
 use strandsnap::scene::spec::{BondLawSpec, GripKind, Spec};
 use strandsnap::{scene, strand};
+
+fn paper() -> &'static Published {
+    find(CALIBRATED_ON).expect("it comes with the program")
+}
 
 fn ka4() -> Spec {
     scene::load("ka4", &[]).expect("the built-in scene loads").spec
@@ -34,7 +38,7 @@ fn the_scene_is_the_papers_specimen() {
 /// strength. The engine's own figure, from a run of minutes, stands in README.
 #[test]
 fn the_calibrated_material_carries_the_experiment() {
-    let (spec, experiment) = (ka4(), paper().experiment);
+    let (spec, experiment) = (ka4(), &paper().experiment);
     let BondLawSpec::ElastoPlastic(law) = &spec.bond.law else { panic!("ka4 is elastoplastic") };
     let log_strain = (experiment.fracture_elongation_percent / 100.0).ln_1p();
     assert_eq!(law.considere(1.2 * log_strain), None, "uniform straining must stay stable up to rupture");

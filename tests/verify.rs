@@ -4,11 +4,11 @@ use std::sync::atomic::AtomicBool;
 use strandsnap::run::in_pool;
 use strandsnap::scene::{self, builtin};
 use strandsnap::strand;
-use strandsnap::study::verify::finding::{Finding, Outcome};
+use strandsnap::study::verify::comparison::{Comparison, Verdict};
 use strandsnap::study::verify::{CASES, Effort, run_one, select};
 
 /// What is wrong with a finding, for people.
-fn miss(f: &Finding) -> String {
+fn miss(f: &Comparison) -> String {
     let order = f
         .order
         .map_or(String::new(), |o| format!(", order {:.3} instead of {} ± {}", o.observed, o.theory, o.tolerance));
@@ -22,9 +22,9 @@ fn miss(f: &Finding) -> String {
 
 fn check(name: &str) {
     let case = select(&[name.to_owned()]).unwrap_or_else(|error| panic!("{error}"))[0];
-    let report = in_pool(Some(1), || run_one(case, Effort::Quick, &AtomicBool::new(false))).unwrap();
+    let report = in_pool(Some(1), || run_one(case, Effort::Quick, &AtomicBool::new(false))).unwrap().unwrap();
     let findings = report.result.unwrap_or_else(|error| panic!("{name}: {error:?}"));
-    let misses: Vec<String> = findings.iter().filter(|f| f.outcome() == Outcome::Miss).map(miss).collect();
+    let misses: Vec<String> = findings.iter().filter(|f| f.verdict() == Verdict::Miss).map(miss).collect();
     assert!(misses.is_empty(), "{name} misses\n{}", misses.join("\n"));
 }
 

@@ -7,7 +7,7 @@ use crate::{Args, memory};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 use strandsnap::base::error::Result;
-use strandsnap::engine::bytes::StageBytes;
+use strandsnap::engine::memory::StageBytes;
 use strandsnap::engine::{Engine, Timings};
 use strandsnap::run::cost::cpu_time;
 use strandsnap::run::{assemble, in_pool};
@@ -94,13 +94,13 @@ pub struct Pull {
 
 /// Sums of candidates and closed contacts.
 #[derive(Default)]
-struct Seen {
+struct ParticleView {
     looks: f64,
     candidates: f64,
     contacts: f64,
 }
 
-impl Seen {
+impl ParticleView {
     fn look(&mut self, engine: &Engine) {
         let (_, candidates, contacts) = engine.contact_counts();
         self.looks += 1.0;
@@ -156,8 +156,8 @@ pub fn rows(args: &Args, factor: f64) -> Result<Vec<Row>> {
 
 /// An engine in full contact, and what its way there was like.
 fn pulled(args: &Args, scene: &Scene) -> Result<(Engine, Option<Pull>)> {
-    let mut engine = Engine::new(&scene.spec, assemble(scene)?)?;
-    let (clock, mut seen) = (Instant::now(), Seen::default());
+    let mut engine = Engine::new(&scene.spec, &scene.plan, assemble(scene)?)?;
+    let (clock, mut seen) = (Instant::now(), ParticleView::default());
     while engine.strain() < args.strain / 100.0 {
         engine.step()?;
         if engine.steps() % LOOK == 0 {
@@ -181,13 +181,13 @@ struct Timed {
     stages: Timings,
     searches: u64,
     steps: u64,
-    seen: Seen,
+    seen: ParticleView,
 }
 
 fn time(args: &Args, engine: &mut Engine) -> Result<Timed> {
     let first = engine.contact_counts().0;
     let mut best: Option<(f64, Option<f64>, Timings)> = None;
-    let mut seen = Seen::default();
+    let mut seen = ParticleView::default();
     for _ in 0..args.repeats {
         let (mut wall, mut cpu, before) = (Duration::ZERO, Some(0.0), *engine.timings());
         let mut left = args.steps;

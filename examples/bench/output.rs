@@ -12,7 +12,7 @@ pub fn print(args: &Args, rows: &[Row]) -> Result<()> {
     use strandsnap::scene;
 
     let own = scene::load(&args.scene, &args.set)?;
-    let steps = estimate(&own.spec, assemble(&own)?)?.steps;
+    let steps = estimate(&own.spec, &own.plan, assemble(&own)?)?.steps;
     let cost = cost(&load(args, 1.0)?)?;
     let snapshots = own.spec.output.snapshots as f64;
     // A run of the scene as it is, on the most threads that were measured, in full contact all the way.
@@ -56,7 +56,7 @@ fn cost(scene: &strandsnap::scene::Scene) -> Result<Cost> {
     use strandsnap::scene::spec::OutputSpec;
 
     const SHOWN: usize = 12;
-    let mut engine = Engine::new(&scene.spec, assemble(scene)?)?;
+    let mut engine = Engine::new(&scene.spec, &scene.plan, assemble(scene)?)?;
     let folder = tempfile::tempdir().map_err(|e| Error::io("cannot make", "a folder", e))?;
     let info = Arc::new(engine.info());
     let file = folder.path().join("bench.rrd");

@@ -66,7 +66,7 @@ fn pair(args: &Args, title: &str, name: &str, set: &[&str]) -> Result<()> {
 
 fn engine(name: &str, set: &[String]) -> Result<Engine> {
     let scene = scene::load(name, set)?;
-    Engine::new(&scene.spec, assemble(&scene)?)
+    Engine::new(&scene.spec, &scene.plan, assemble(&scene)?)
 }
 
 /// Best of the repeats.

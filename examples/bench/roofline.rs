@@ -6,7 +6,8 @@ use crate::machine::Machine;
 use crate::measure::Stages;
 use crate::work::Work;
 use serde::{Deserialize, Serialize};
-use strandsnap::engine::bytes::{Bytes, StageBytes};
+use strandsnap::engine::bytes::Bytes;
+use strandsnap::engine::memory::StageBytes;
 
 /// The least times of a stage per step (ms); none where its work depends on the state too much to be counted.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]

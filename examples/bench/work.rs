@@ -5,7 +5,7 @@ use crate::counted::{Counted, Operations, count};
 use strandsnap::base::triple::Triple;
 use strandsnap::engine::Engine;
 use strandsnap::engine::bonds::trial::Trial;
-use strandsnap::engine::pair::{History, Laws, Meeting, meet};
+use strandsnap::engine::contact::pair::{ContactKinematics, History, Laws, contact_response};
 use strandsnap::law::bond::elastic::Elastic;
 use strandsnap::law::bond::elasto_plastic::ElastoPlastic;
 use strandsnap::law::bond::{BondLaw, Moduli};
@@ -22,7 +22,7 @@ const fn operations(simple: u32) -> Operations {
     Operations { simple: simple as f64, divisions: 0.0, roots: 0.0 }
 }
 
-/// Geometry and motion of a touching pair, force and torque of its two sides, and adding them up (engine/spheres): the
+/// Geometry and motion of a touching pair, force and torque of its two sides, and adding them up (engine/contact/spheres): the
 /// distance and its inverse, overlap, lever arms, relative velocity, products, sums of energies.
 const GEOMETRY: Operations = operations(3 + 3 + 15 + 4 + 5 + 3 + 6 + 9 + 9 + 6 + 12 + 4);
 /// Kick, drift, greatest displacement and gathering one bond on either side, per three axes (engine/integrate).
@@ -101,7 +101,7 @@ fn rubbing<N: NormalLaw>(contact: &ContactSpec, g: f64, nu: f64, normal: N) -> O
 fn meeting<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>) -> Operations {
     let (zero, one) = (Counted(0.0), Counted(1.0));
     let mut history = History::<N, T, Counted>::of(Counted(1e-4), |_| zero);
-    let at = |overlap: f64| Meeting {
+    let at = |overlap: f64| ContactKinematics {
         normal: Triple { x: one, y: zero, z: zero },
         overlap: Counted(overlap),
         thinner: zero,
@@ -109,9 +109,9 @@ fn meeting<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>) -> Operations {
         viscosity: one,
         dt: 1e-7,
     };
-    meet(laws, &mut history, &at(1e-6));
+    contact_response(laws, &mut history, &at(1e-6));
     GEOMETRY.plus(count(|| {
-        meet(laws, &mut history, &at(1.001e-6));
+        contact_response(laws, &mut history, &at(1.001e-6));
     }))
 }
 

@@ -86,7 +86,7 @@ fn main() -> miette::Result<()> {
 }
 
 fn run(args: &Args, scene: &Scene) -> Result<Outcome> {
-    let mut engine = Engine::new(&scene.spec, at_rest(scene)?)?;
+    let mut engine = Engine::new(&scene.spec, &scene.plan, at_rest(scene)?)?;
     let before = engine.contact_counts().2;
     (0..args.warm_up).try_for_each(|_| engine.step())?;
     let (clock, cpu) = (Instant::now(), cpu_time());
@@ -110,7 +110,7 @@ fn run(args: &Args, scene: &Scene) -> Result<Outcome> {
 /// The assembly with velocities that take off what the engine adds: everything between the grips starts at rest.
 fn at_rest(scene: &Scene) -> Result<Assembly> {
     let mut assembly = assemble(scene)?;
-    let started = Engine::new(&scene.spec, assembly.clone())?;
+    let started = Engine::new(&scene.spec, &scene.plan, assembly.clone())?;
     let state = started.state();
     for p in (0..state.len()).filter(|p| state.hold[*p] == 0) {
         assembly.velocity.add(p, -state.v.get(p));
@@ -127,7 +127,7 @@ fn kinetic(state: &State) -> f64 {
 /// the next particle (0 without one), centre, radius and mass in SI; as many digits as the numbers have.
 fn write_particles(scene: &Scene, file: &Path) -> Result<()> {
     let assembly = assemble(scene)?;
-    let engine = Engine::new(&scene.spec, assembly.clone())?;
+    let engine = Engine::new(&scene.spec, &scene.plan, assembly.clone())?;
     let mut text = String::from("wire,layer,hold,rest_length,x,y,z,radius,mass\n");
     for p in 0..assembly.len() {
         let wire = assembly.wire_of[p] as usize;

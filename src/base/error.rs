@@ -1,4 +1,4 @@
-//! The error type of the library. Each variant is one kind of trouble a user can act on; the CLI maps them to
+//! The error type of the library. Each variant is one kind of failure that a user can act on; the CLI maps them to
 //! exit codes in one place (`cli/mod.rs`).
 
 use super::finding::Stopped;
@@ -43,6 +43,9 @@ pub enum Error {
     #[error("{0}")]
     #[diagnostic(help("{}", .0.remedy()))]
     Simulation(Box<Stopped>),
+    /// The user ended it (Ctrl-C) before it was done.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// A scene error with its place in the source.
@@ -77,12 +80,13 @@ impl Error {
     }
 
     /// Exit code of the program for this error: 2 for bad input, 3 for something missing on the machine,
-    /// 4 for a simulation that had to stop, 1 for the rest.
+    /// 4 for a simulation that had to stop, 130 (128 + SIGINT, as shells expect) for an interruption, 1 for the rest.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Scene(_) | Error::Input { .. } => 2,
             Error::Missing { .. } => 3,
             Error::Simulation(_) => 4,
+            Error::Interrupted => 130,
             Error::Io { .. } => 1,
         }
     }

@@ -5,7 +5,6 @@
 //! In JSON each has a `kind`, and its values with their units in the keys.
 
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// A wire or a free sphere, counted from 1 as in every table.
@@ -149,7 +148,7 @@ pub enum Finding {
         z_m: f64,
         /// Normal force (N).
         force_n: f64,
-        /// Force over the area πR*δ (Pa).
+        /// Force over the area of the contact (Pa): πR*δ of a circle, Σ √(2R*δ) ds of a patch along a smooth wire.
         pressure_pa: f64,
         /// What would help.
         relief: Relief,
@@ -360,10 +359,11 @@ pub enum Failure {
         /// That over the work done (-).
         over_work: f64,
     },
-    /// Two wires have passed through each other.
+    /// Two bodies have passed through each other: the axes of two wires have crossed, or the centre of a free sphere lies
+    /// inside another body.
     PassedThrough {
-        /// The two bonds.
-        bonds: [Member; 2],
+        /// The two bonds, or the free sphere, the smaller of two, and what it is in.
+        between: [Member; 2],
         /// Where (m).
         z_m: f64,
         /// What would help.
@@ -380,18 +380,43 @@ pub enum Failure {
 
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(tag = "kind", content = "value", rename_all = "kebab-case")]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum StopReason {
-    /// `stop.strain` was reached (-).
-    Strain(f64),
-    /// Nominal stress fell below `stop.stress_fraction` of its peak (-).
-    StressFraction(f64),
-    /// `stop.strain_after_drop` was passed (-).
-    AfterDrop(f64),
-    /// `stop.time` was reached (s).
-    Time(f64),
-    /// `stop.steps` was reached.
-    Steps(u64),
+    /// The strain of the body reached its limit.
+    Strain {
+        /// `stop.strain` (-).
+        limit: f64,
+        /// The strain (-).
+        reached: f64,
+    },
+    /// Nominal stress fell below a share of its peak, both as means over two passages of an elastic wave along the body.
+    StressFraction {
+        /// `stop.stress_fraction` (-).
+        limit: f64,
+        /// The share (-).
+        reached: f64,
+    },
+    /// The strain of the body went on beyond the drop, at which nominal stress, as the same mean, fell to 80 % of its peak.
+    AfterDrop {
+        /// `stop.strain_after_drop` (-).
+        limit: f64,
+        /// The strain since the drop (-).
+        reached: f64,
+    },
+    /// Simulated time reached its limit.
+    Time {
+        /// `stop.time` (s).
+        limit_s: f64,
+        /// The time (s).
+        reached_s: f64,
+    },
+    /// Steps reached their limit.
+    Steps {
+        /// `stop.steps`.
+        limit: u64,
+        /// Steps done.
+        reached: u64,
+    },
     /// Someone asked for it (Ctrl-C).
     Interrupted,
     /// The simulation failed; everything seen before it was kept.
@@ -464,19 +489,6 @@ mod json {
     }
 }
 
-/// Makes every kind of finding once in a run.
-#[derive(Debug, Clone, Default)]
-pub struct Once {
-    made: BTreeSet<FindingKind>,
-}
-
-impl Once {
-    /// Whether this is the first time that `kind` is asked for.
-    pub fn first(&mut self, kind: FindingKind) -> bool {
-        self.made.insert(kind)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -492,7 +504,8 @@ mod tests {
             safety: 0.8,
         };
         let particle = Member { number: Some(5), body: body.clone() };
-        let failure = Failure::PassedThrough { bonds: [particle.clone(), particle], z_m: 1e-3, relief: Relief::Clamp };
+        let failure =
+            Failure::PassedThrough { between: [particle.clone(), particle], z_m: 1e-3, relief: Relief::Clamp };
         let between = [body.clone(), Body::Sphere { sphere: 1 }];
         for (kind, finding) in [
             ("step-shrunk", Finding::StepShrunk { from_s: 1e-7, to_s: 1e-8, limit }),
@@ -520,16 +533,17 @@ mod tests {
 
     #[test]
     fn stop_reasons_come_back_from_json() {
-        for reason in [StopReason::Strain(0.3), StopReason::Steps(7), StopReason::Interrupted, StopReason::Unknown] {
+        let strain = StopReason::Strain { limit: 0.3, reached: 0.301 };
+        let steps = StopReason::Steps { limit: 7, reached: 7 };
+        for reason in [strain, steps, StopReason::Interrupted, StopReason::Unknown] {
             let json = serde_json::to_string(&reason).unwrap();
             assert_eq!(serde_json::from_str::<StopReason>(&json).unwrap(), reason, "{json}");
         }
     }
 
     #[test]
-    fn each_kind_is_made_once() {
-        let mut once = Once::default();
-        assert!(once.first(FindingKind::Necking) && once.first(FindingKind::Stiffness));
-        assert!(!once.first(FindingKind::Necking));
+    fn a_reason_to_stop_gives_the_limit_and_what_was_reached_with_units() {
+        let json = serde_json::to_value(StopReason::Time { limit_s: 1e-3, reached_s: 1.0001e-3 }).unwrap();
+        assert_eq!(json, serde_json::json!({ "kind": "time", "limit_s": 1e-3, "reached_s": 1.0001e-3 }));
     }
 }

@@ -4,6 +4,12 @@
 use super::finding::*;
 use std::fmt;
 
+/// "1 wire", "2 wires": a count of things whose plural is made with an s.
+pub fn counted<N: fmt::Display + PartialEq + From<u8>>(count: N, thing: &str) -> String {
+    let plural = if count == N::from(1) { "" } else { "s" };
+    format!("{count} {thing}{plural}")
+}
+
 impl fmt::Display for Body {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -213,36 +219,40 @@ impl fmt::Display for Quantity {
 impl fmt::Display for Stopped {
     /// When and why, without the remedy.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "stopped at step {}: {}", self.at.step, self.why())
+    }
+}
+
+impl Stopped {
+    /// Why.
+    pub fn why(&self) -> String {
         let at = &self.at;
-        write!(f, "stopped at step {}: ", at.step)?;
         match &self.failure {
-            Failure::NotFinite { quantity } => write!(f, "the {quantity} is not a finite number"),
+            Failure::NotFinite { quantity } => format!("the {quantity} is not a finite number"),
             Failure::Runaway { particle, moved_m: None, .. } => {
-                write!(f, "the position at {} is not a number", member("particle", particle))
+                format!("the position at {} is not a number", member("particle", particle))
             }
-            Failure::Runaway { particle, moved_m: Some(moved), limit_m, limit_over_radius, .. } => write!(
-                f,
+            Failure::Runaway { particle, moved_m: Some(moved), limit_m, limit_over_radius, .. } => format!(
                 "{} moved {moved:.3e} m in one step, more than {limit_over_radius} of the least radius ({limit_m:.3e} m)",
                 member("particle", particle),
             ),
-            Failure::UnstableMotion => {
-                write!(f, "the motion turns round at every step: the time step is not stable")
+            Failure::UnstableMotion => "the motion turns round at every step: the time step is not stable".into(),
+            Failure::LedgerOpen { missing_j, over_work } => ledger_open(*missing_j, *over_work),
+            Failure::PassedThrough { between: [a, b], z_m, .. } => {
+                let how = match a.body {
+                    Body::Wire { .. } => ["", "through"],
+                    Body::Sphere { .. } => ["the centre of ", "into"],
+                };
+                let [a, b] = [a, b].map(|one| member("bond", one));
+                format!("{}{a} has passed {} {b} at z = {:.1} mm, {at}", how[0], how[1], 1e3 * z_m)
             }
-            Failure::LedgerOpen { missing_j, over_work } => f.write_str(&ledger_open(*missing_j, *over_work)),
-            Failure::PassedThrough { bonds: [a, b], z_m, .. } => {
-                let [a, b] = [a, b].map(|bond| member("bond", bond));
-                write!(f, "{a} has passed through {b} at z = {:.1} mm, {at}", 1e3 * z_m)
-            }
-            Failure::Bends { body, z_m } => write!(
-                f,
+            Failure::Bends { body, z_m } => format!(
                 "{body} bends at z = {:.1} mm, {at}, but rotations were left out for a straight body under axial load",
                 1e3 * z_m,
             ),
         }
     }
-}
 
-impl Stopped {
     /// What would help, and where what is left of the run is.
     pub fn remedy(&self) -> String {
         let remedy = match &self.failure {
@@ -255,17 +265,24 @@ impl Stopped {
             }
             Failure::UnstableMotion => "lower time.safety, or time.step below the bound".to_owned(),
             Failure::LedgerOpen { .. } => LEDGER_REMEDY.to_owned(),
-            Failure::PassedThrough { relief, .. } => format!(
-                "contacts were too soft or too sparse for what pressed on them: {relief}, raise contact.hardness_factor, \
-                 lower spacing to 1 or less, or use contact.shape = \"wire\""
-            ),
+            Failure::PassedThrough { between, relief, .. } => {
+                // Free spheres alone have no spacing and no shape.
+                let sparse = match between.iter().any(|one| one.number.is_some()) {
+                    true => [" or too sparse", ", lower spacing to 1 or less, or use contact.shape = \"wire\""],
+                    false => ["", ", or material.young"],
+                };
+                format!(
+                    "contacts were too soft{} for what pressed on them: {relief}, raise contact.hardness_factor{}",
+                    sparse[0], sparse[1]
+                )
+            }
             Failure::Bends { .. } => "set plan = \"general\", so that every stage runs".to_owned(),
         };
         let Some(Kept { folder, earlier }) = &self.kept else { return remedy };
         let kept = format!("{remedy}; the results up to there are in {}", folder.display());
         match earlier {
             0 => kept,
-            n => format!("{kept}; its summary.json has {n} earlier warnings"),
+            n => format!("{kept}; its summary.json has {}", counted(*n, "earlier warning")),
         }
     }
 }
@@ -273,18 +290,41 @@ impl Stopped {
 impl fmt::Display for StopReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Strain(strain) => write!(f, "strain reached {:.4} % (stop.strain)", strain * 100.0),
-            Self::StressFraction(fraction) => {
-                write!(f, "stress fell to {} % of its peak after a rupture (stop.stress_fraction)", fraction * 100.0)
+            Self::Strain { reached, .. } => write!(f, "strain reached {:.4} % (stop.strain)", reached * 100.0),
+            Self::StressFraction { limit, .. } => write!(
+                f,
+                "stress, in the mean over two passages of a wave, fell to {} % of its peak after a rupture \
+                 (stop.stress_fraction)",
+                limit * 100.0
+            ),
+            Self::AfterDrop { limit, .. } => {
+                write!(f, "strain went {} % beyond the drop (stop.strain_after_drop)", limit * 100.0)
             }
-            Self::AfterDrop(strain) => {
-                write!(f, "strain went {} % beyond the drop (stop.strain_after_drop)", strain * 100.0)
-            }
-            Self::Time(time) => write!(f, "time reached {time:.4e} s (stop.time)"),
-            Self::Steps(steps) => write!(f, "{steps} steps were done (stop.steps)"),
+            Self::Time { reached_s, .. } => write!(f, "time reached {reached_s:.4e} s (stop.time)"),
+            Self::Steps { reached, .. } => write!(f, "{} done (stop.steps)", counted(*reached, "step")),
             Self::Interrupted => write!(f, "interrupted"),
             Self::Failed => write!(f, "the simulation failed"),
             Self::Unknown => write!(f, "not known, the run did not end properly"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_is_no_plural() {
+        assert_eq!([0, 1, 2].map(|n: usize| counted(n, "wire")), ["0 wires", "1 wire", "2 wires"]);
+    }
+
+    #[test]
+    fn a_failure_counts_the_earlier_warnings() {
+        let at = Instant::default();
+        let failure = Failure::NotFinite { quantity: Quantity::Torque };
+        let stopped =
+            |earlier| Stopped { at, failure: failure.clone(), kept: Some(Kept { folder: "out".into(), earlier }) };
+        assert!(stopped(1).remedy().ends_with("has 1 earlier warning"), "{}", stopped(1).remedy());
+        assert!(stopped(2).remedy().ends_with("has 2 earlier warnings"), "{}", stopped(2).remedy());
     }
 }

@@ -1,19 +1,19 @@
 //! `strandsnap accuracy`.
 
-use super::Ended;
-use super::cases as shared;
+use super::cases::{self as shared, ProgressLine};
+use super::ended::Ended;
 use super::interrupt;
 use super::say::{self, say};
 use super::values::{SceneArgs, Seeds, duration};
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use crate::run::folder;
 use crate::scene::quality::Quality;
-use crate::study::accuracy::{self, Options, Study, Subject, knobs, table, verified};
-use crate::study::verify::Case;
+use crate::study::accuracy::{self, Study, Subject, parameters, table, verified};
+use crate::study::runner::{CaseRunner, CaseStore};
+use crate::study::verify::{Effort, VerificationCase};
 use std::path::PathBuf;
 use std::time::Duration;
-
-const STOPPING: &str = "\nstopping; finished runs are kept, and the same command goes on with them.";
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -23,8 +23,8 @@ pub struct Args {
     /// every run is made once per seed [default: 4 where bonds scatter and nothing exact is known]
     #[arg(long, value_name = "SEEDS", conflicts_with = "seed")]
     seeds: Option<Seeds>,
-    /// Knobs to turn [default: all, see --list]
-    #[arg(long, value_name = "KNOB,KNOB", value_delimiter = ',')]
+    /// Numerical parameters to vary [default: all, see --list]
+    #[arg(long, value_name = "PARAMETER,PARAMETER", value_delimiter = ',')]
     vary: Vec<String>,
     /// Time that the study may take, such as 90s, 20m or 2h: what is worth most comes first [default: no limit]
     #[arg(long, value_name = "TIME", value_parser = duration)]
@@ -44,7 +44,7 @@ pub struct Args {
     /// Fewer levels of a verification case
     #[arg(long)]
     quick: bool,
-    /// List the knobs with the values that this scene would get, and run nothing
+    /// List the parameters with the values that this scene would get, and run nothing
     #[arg(long)]
     list: bool,
 }
@@ -55,7 +55,7 @@ pub fn accuracy(args: &Args) -> Result<Ended> {
 }
 
 /// Of verification cases, which vary what they vary.
-fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
+fn of_cases(args: &Args, cases: &[&'static VerificationCase]) -> Result<Ended> {
     let name = args.scene.scene.replace('/', "-");
     let given = [
         ("--quality", args.scene.quality != Quality::Standard),
@@ -77,58 +77,56 @@ fn of_cases(args: &Args, cases: &[&'static Case]) -> Result<Ended> {
         return Ok(Ended::Well);
     }
     let out = args.out.clone().unwrap_or_else(|| folder::accuracy(&name));
-    let stop = interrupt::install_saying(STOPPING)?;
-    let bar = shared::bar("accuracy", cases.len());
-    let began = |case: &str| {
-        bar.set_message(case.to_string());
-        bar.inc(1);
-    };
-    let found = verified::study(&name, cases, args.quick, &out, args.fresh, stop, &began);
-    bar.finish_and_clear();
-    let found = found?;
+    let _lock = shared::lock(&out, false)?;
+    let effort = if args.quick { Effort::Quick } else { Effort::Full };
+    let store = CaseStore::open(&out, args.fresh)?;
+    let stop = interrupt::install_for_cases()?;
+    let line = ProgressLine::new("accuracy");
+    // One by one and each on one thread, because their run times are shown.
+    let runner = CaseRunner { jobs: 1, threads: Some(1), budget: None, stop, tell: &|progress| line.show(progress) };
+    let found = verified::study(&name, cases, effort, &store, &runner)?;
+    drop(line);
     let files = found.write(&shared::command(), &out)?;
     say::print(format_args!("{}", found.table().to_text()));
     say::print(format_args!("\n{}", found.summary()));
-    say!("{} cases run, {} kept from before. Written:", found.made, found.kept);
+    say!("{} run, {} kept from before. Written:", counted(found.cases.len() - found.kept, "case"), found.kept);
     files.iter().for_each(|file| say!("  {}", file.display()));
-    Ok(if found.interrupted { Ended::Interrupted } else { Ended::Well })
+    interrupt::ended(stop)
 }
 
 fn of_pulled_scene(args: &Args) -> Result<Ended> {
     if args.quick {
-        let help = "say how much time there is with --budget, or turn fewer knobs with --vary";
+        let help = "say how much time there is with --budget, or vary fewer parameters with --vary";
         return Err(Error::input("--quick is for verification cases", help));
     }
-    let mut options = Options {
-        scene: args.scene.scene.clone(),
-        overrides: args.scene.overrides()?,
-        seeds: match (&args.seeds, args.scene.seed) {
-            (Some(seeds), _) => seeds.0.clone(),
-            (None, seed) => seed.into_iter().collect(),
-        },
-        vary: knobs::select(&args.vary)?,
-        budget: args.budget.map(|budget| budget.as_secs_f64()),
-        jobs: args.jobs.into(),
-        threads: args.threads.map(usize::from),
-        out: PathBuf::new(),
-        fresh: args.fresh,
+    let seeds = match (&args.seeds, args.scene.seed) {
+        (Some(seeds), _) => seeds.0.clone(),
+        (None, seed) => seed.into_iter().collect(),
     };
-    let subject = Subject::new(&options)?;
+    let parameters = parameters::select(&args.vary)?;
+    let subject = Subject::new(args.scene.load()?, &parameters, seeds)?;
     if args.list {
         say::print(format_args!("{}", table::list(&subject)));
         return Ok(Ended::Well);
     }
-    options.out = args.out.clone().unwrap_or_else(|| folder::accuracy(&subject.scene.spec.name));
+    let out = args.out.clone().unwrap_or_else(|| folder::accuracy(&subject.scene.spec.name));
+    let _lock = shared::lock(&out, false)?;
     subject.notes.iter().for_each(|note| eprintln!("note: {note}"));
-    let stop =
-        interrupt::install_saying("\nstopping; finished runs are kept, and the same command goes on with them.")?;
-    let bar = shared::bar_of_parts("accuracy");
-    let study = accuracy::study(&options, &subject, stop, &|progress| shared::show(&bar, progress, "runs"));
-    bar.finish_and_clear();
-    let study = study?;
-    let files = accuracy::write(&study, &shared::command(), &options.out)?;
+    let store = CaseStore::open(&out, args.fresh)?;
+    let stop = interrupt::install_for_cases()?;
+    let line = ProgressLine::new("accuracy");
+    let runner = CaseRunner {
+        jobs: args.jobs.into(),
+        threads: args.threads.map(usize::from),
+        budget: args.budget.map(|budget| budget.as_secs_f64()),
+        stop,
+        tell: &|progress| line.show(progress),
+    };
+    let study = accuracy::study(&subject, &store, &runner)?;
+    drop(line);
+    let files = accuracy::write(&study, &shared::command(), &out)?;
     print(&study, &files);
-    Ok(if study.interrupted { Ended::Interrupted } else { Ended::Well })
+    interrupt::ended(stop)
 }
 
 fn print(study: &Study, files: &[PathBuf]) {
@@ -137,8 +135,8 @@ fn print(study: &Study, files: &[PathBuf]) {
     say::print(format_args!("\n{}", table::reference(&study.reference, study.seeds.len())));
     table::scatter(study).iter().for_each(|line| say!("{line}"));
     table::failed(study).iter().for_each(|line| say!("{line}"));
-    for (knob, reason) in &study.absent {
-        say!("{knob} was not turned: {reason}.");
+    for (parameter, reason) in &study.absent {
+        say!("{parameter} was not varied: {reason}.");
     }
     let left_out = table::left_out(study);
     if !left_out.is_empty() {
@@ -148,12 +146,9 @@ fn print(study: &Study, files: &[PathBuf]) {
     if let Some(caution) = table::caution(study) {
         say!("{caution}");
     }
-    if study.interrupted {
-        say!("Interrupted: the same command goes on with what is missing.");
-    }
     if study.other_build > 0 {
-        say!("{} runs were made by another build with the same physics; --fresh makes them again.", study.other_build);
+        say!("Made by another build with the same physics, until --fresh: {}.", counted(study.other_build, "run"));
     }
-    say!("{} runs made, {} kept from before. Written:", study.made, study.kept);
+    say!("{} made, {} kept from before. Written:", counted(study.made, "run"), study.kept);
     files.iter().for_each(|file| say!("  {}", file.display()));
 }

@@ -11,7 +11,7 @@ pub struct AnimationArgs {
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     animation: Option<Option<PathBuf>>,
     /// Make the animation smaller than the pictures
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..=16384), requires = "animation")]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..=8192), requires = "animation")]
     animation_width: Option<u32>,
 }
 

@@ -1,7 +1,10 @@
 //! What commands that make many runs share: arguments of those that run a table of cases, progress, and what was typed.
 
+use super::interrupt;
+use super::say::say;
 use crate::base::error::{Error, Result};
-use crate::study::cases::workshop::Progress;
+use crate::run::lock::Lock;
+use crate::study::runner::{CaseRunner, Progress, Status, cores};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 
@@ -38,10 +41,29 @@ impl CaseArgs {
         (!self.no_plots).then(folder)
     }
 
-    /// Cases that run side by side.
-    pub fn threads(&self) -> usize {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.threads.map_or_else(cores, usize::from)
+    /// Calls `work` with the runner of the cases, which shows how far it is, and splits what it gives into the results,
+    /// and the error that some are missing because the user ended it.
+    ///
+    /// # Errors
+    /// What `work` answers.
+    pub fn run<T>(
+        &self,
+        command: &str,
+        work: impl FnOnce(&CaseRunner) -> Result<Vec<Status<T>>>,
+    ) -> Result<(Vec<T>, Result<()>)> {
+        let stop = interrupt::install()?;
+        let line = ProgressLine::new(command);
+        let jobs = self.threads.map_or_else(cores, usize::from);
+        let runner = CaseRunner { jobs, threads: Some(1), budget: None, stop, tell: &|progress| line.show(progress) };
+        let statuses = work(&runner)?;
+        drop(line);
+        let of = statuses.len();
+        let outputs: Vec<T> = statuses.into_iter().filter_map(Status::into_output).collect();
+        let ended = if outputs.len() < of { Err(Error::Interrupted) } else { Ok(()) };
+        if ended.is_err() {
+            say!("interrupted: {} of {of} cases were run", outputs.len());
+        }
+        Ok((outputs, ended))
     }
 
     /// Whether results can be written is found out before minutes are spent on them.
@@ -62,28 +84,51 @@ impl CaseArgs {
     }
 }
 
-/// Cases done of all.
-pub fn bar(command: &str, cases: usize) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(cases as u64), ProgressDrawTarget::stderr());
-    let style = ProgressStyle::with_template(&format!("{command} [{{bar:24}}] {{pos}} of {{len}} cases  {{msg}}"));
-    bar.with_style(style.expect("the template is constant and right"))
+/// Keeps other studies out of a folder, which is made if it is not there; `part`: others may run parts of the same study.
+///
+/// # Errors
+/// [`Error::Input`] with the number of the process that has it; [`Error::Io`].
+pub fn lock(folder: &Path, part: bool) -> Result<Lock> {
+    std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
+    if part { Lock::share(folder) } else { Lock::take(folder) }
 }
 
-/// Parts of a bar that shows a share of the work.
+/// Parts of a progress line that shows a share of the work.
 const PARTS: u64 = 1000;
 
-/// Share of the work done.
-pub fn bar_of_parts(command: &str) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
-    let style = ProgressStyle::with_template(&format!("{command} [{{bar:24}}] {{wide_msg}}"));
-    bar.with_style(style.expect("the template is constant and right"))
+/// How far a command is that runs many cases, on standard error.
+pub struct ProgressLine(ProgressBar);
+
+impl ProgressLine {
+    /// The line of a command; nothing is shown yet.
+    pub fn new(command: &str) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
+        let style = ProgressStyle::with_template(&format!("{command} [{{bar:24}}] {{wide_msg}}"));
+        Self(bar.with_style(style.expect("the template is constant and right")))
+    }
+
+    /// Shows how far the cases are.
+    pub fn show(&self, progress: &Progress) {
+        let left = progress.left.map_or(String::new(), |left| format!(", about {} left", time(left)));
+        self.0.set_position((progress.share * PARTS as f64) as u64);
+        self.say(format!("{} of {} cases{left}: {}", progress.finished, progress.of, progress.name));
+    }
+
+    /// Shows what is being done.
+    pub fn say(&self, message: String) {
+        self.0.set_message(message);
+    }
+
+    /// Takes the line away while `print` prints.
+    pub fn suspend(&self, print: impl FnOnce()) {
+        self.0.suspend(print);
+    }
 }
 
-/// Shows how far a study is; `what` are runs or cases.
-pub fn show(bar: &ProgressBar, progress: &Progress, what: &str) {
-    let left = progress.left.map_or(String::new(), |left| format!(", about {} left", time(left)));
-    bar.set_position((progress.share * PARTS as f64) as u64);
-    bar.set_message(format!("{} of {} {what}{left}: {}", progress.finished, progress.of, progress.name));
+impl Drop for ProgressLine {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
 }
 
 /// A time as people read it.

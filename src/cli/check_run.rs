@@ -1,10 +1,10 @@
 //! `strandsnap check-run`.
 
-use super::Ended;
+use super::ended::Ended;
 use super::say::{self, say};
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
-use crate::study::check_run::{self, Finding, report};
+use crate::study::check_run::{self, InvariantCheck, report};
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -23,12 +23,13 @@ pub fn check_run(args: &Args) -> Result<Ended> {
     let findings = check_run::check(&args.run)?;
     say::print(format_args!("{}", report::text(&findings)));
     let failed: Vec<&str> = findings.iter().filter(|f| f.failed()).map(|f| f.invariant.name).collect();
-    let applied = findings.iter().filter(|f| !matches!(f.outcome, check_run::Outcome::NotApplicable(_))).count();
+    let applied =
+        findings.iter().filter(|f| !matches!(f.outcome, check_run::InvariantOutcome::NotApplicable(_))).count();
     let tail = if failed.is_empty() { String::new() } else { format!("; not: {}", failed.join(", ")) };
     say!("{} of {applied} invariants hold, {} do not apply{tail}", applied - failed.len(), findings.len() - applied);
     if let Some(path) = &args.json {
         write_whole(path, &report::json(&findings))?;
         say!("findings: {}", path.display());
     }
-    Ok(if findings.iter().any(Finding::failed) { Ended::Missed } else { Ended::Well })
+    Ok(if findings.iter().any(InvariantCheck::failed) { Ended::Missed } else { Ended::Well })
 }

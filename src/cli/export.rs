@@ -2,7 +2,9 @@
 
 use super::say::say;
 use super::values::SceneArgs;
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
+use crate::base::regular::check_target;
+use crate::base::wording::counted;
 use crate::observe::files::write_whole;
 use crate::run;
 use crate::strand::centrelines;
@@ -22,10 +24,8 @@ pub struct Args {
 pub fn export(args: &Args) -> Result<()> {
     let scene = args.scene.load()?;
     let assembly = run::assemble(&scene)?;
-    if args.file.exists() && !args.overwrite {
-        return Err(Error::input(format!("{} exists", args.file.display()), "give --overwrite to replace it"));
-    }
+    check_target(&args.file, args.overwrite, "")?;
     write_whole(&args.file, &centrelines::export(&assembly))?;
-    say!("{} wires written to {}", assembly.wires.len(), args.file.display());
+    say!("{} written to {}", counted(assembly.wires.len(), "wire"), args.file.display());
     Ok(())
 }

@@ -1,33 +1,56 @@
-//! Ctrl-C: the first ends the run cleanly, the second ends the program.
+//! Ctrl-C: the first ends the run cleanly; one that comes [`PATIENCE`] later or more ends the program.
 
+use super::Ended;
 use crate::base::error::{Error, Result};
+use std::io::Write;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
-/// What shells expect of a program ended by Ctrl-C: 128 + SIGINT.
-pub const EXIT_CODE: u8 = 130;
+/// Keys pressed sooner after the first than this say no more than it did: results are being written.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 static STOP: AtomicBool = AtomicBool::new(false);
+static FIRST: OnceLock<Instant> = OnceLock::new();
 
 /// Installs the handler and gives the flag that it sets.
 ///
 /// # Errors
 /// [`Error::Missing`] when the system refuses the handler.
 pub fn install() -> Result<&'static AtomicBool> {
-    install_saying("\nstopping; results so far are kept. Press Ctrl-C again to end at once, without them.")
+    install_saying(
+        "\nstopping; results so far are kept. Ctrl-C once more, two seconds from now or later, ends at once, without them.",
+    )
 }
 
-/// [`install`] with words of one's own.
+/// [`install`] for commands that keep finished cases.
 ///
 /// # Errors
 /// As for [`install`].
-pub fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
+pub fn install_for_cases() -> Result<&'static AtomicBool> {
+    install_saying("\nstopping; finished cases are kept, and the same command goes on with them.")
+}
+
+fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
     let handler = move || {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(EXIT_CODE));
+        let now = Instant::now();
+        let first = *FIRST.get_or_init(|| now);
+        if !STOP.swap(true, Ordering::Relaxed) {
+            // A standard error that is lost must not end the run without its results.
+            let _ = writeln!(std::io::stderr(), "{words}");
+        } else if now.duration_since(first) >= PATIENCE {
+            std::process::exit(i32::from(Error::Interrupted.exit_code()));
         }
-        eprintln!("{words}");
     };
     ctrlc::set_handler(handler)
         .map_err(|e| Error::Missing { what: format!("cannot listen for Ctrl-C: {e}"), help: None })?;
     Ok(&STOP)
+}
+
+/// How a command ended that `stop` may have ended early, with its results kept.
+///
+/// # Errors
+/// [`Error::Interrupted`] when it did.
+pub fn ended(stop: &AtomicBool) -> Result<Ended> {
+    if stop.load(Ordering::Relaxed) { Err(Error::Interrupted) } else { Ok(Ended::Well) }
 }

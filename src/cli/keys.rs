@@ -2,7 +2,7 @@
 
 use super::say::say;
 use crate::base::error::{Error, Result};
-use crate::scene::keys::{Key, Kind, keys};
+use crate::scene::keys::{Key, Kind, is_meant, keys};
 use crate::scene::suggest::nearest;
 
 /// Columns that meanings are wrapped to.
@@ -10,7 +10,8 @@ const WIDTH: usize = 110;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Only keys whose path has this in it, such as "contact" or "layer[].pitch" [default: all]
+    /// Only keys whose path has this in it, such as "contact" or "layer.pitch", in any case [default: all]; `layer[]` is
+    /// `layer.0`, `layer.1` and so on in --set
     pattern: Option<String>,
     /// As JSON
     #[arg(long)]
@@ -20,7 +21,7 @@ pub struct Args {
 pub fn print(args: &Args) -> Result<()> {
     let all = keys();
     let wanted = args.pattern.as_deref().unwrap_or_default();
-    let chosen: Vec<&Key> = all.iter().filter(|key| key.key.contains(wanted)).collect();
+    let chosen: Vec<&Key> = all.iter().filter(|key| is_meant(&key.key, wanted)).collect();
     if chosen.is_empty() {
         return Err(unknown(&all, wanted));
     }
@@ -28,13 +29,14 @@ pub fn print(args: &Args) -> Result<()> {
         say!("{}", serde_json::to_string_pretty(&chosen).expect("keys hold nothing that JSON lacks"));
         return Ok(());
     }
-    for key in chosen {
+    for key in &chosen {
         let parts = [
             Some(of(&key.kind)),
             key.unit
                 .as_deref()
                 .map(|unit| if unit == "-" { "no unit, or %".into() } else { format!("such as {unit}") }),
             key.required.then(|| "required".to_owned()),
+            key.required_when.as_ref().map(|when| format!("required when {when}")),
             key.default.as_ref().or(key.otherwise.as_ref()).map(|default| format!("default {default}")),
         ];
         say!("{}: {}", key.key, parts.into_iter().flatten().collect::<Vec<_>>().join("; "));
@@ -44,6 +46,9 @@ pub fn print(args: &Args) -> Result<()> {
         };
         paragraph(&key.meaning);
         words(&key.kind).iter().for_each(|[word, meaning]| paragraph(&format!("{word}: {meaning}")));
+    }
+    if let Some(key) = chosen.iter().find(|key| key.key.contains("[]")) {
+        say!("\n[] stands for the number of the element, from 0: --set {}=…", key.key.replace("[]", ".0"));
     }
     Ok(())
 }

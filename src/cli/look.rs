@@ -1,6 +1,7 @@
 //! The options that say how frames look: the keys of a scene's `[output]`, for `run` and `render` alike.
 
-use super::values::size;
+use super::values::{size, within};
+use crate::scene::look::ZOOM;
 use crate::scene::spec::{ColourBy, OutputSpec, Theme, View};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
@@ -35,20 +36,20 @@ pub struct LookArgs {
     /// Ground
     #[arg(long, value_enum)]
     theme: Option<Theme>,
-    /// Width and height in pixels, up to 8192 each
+    /// Width and height in pixels, from 120 to 8192 each
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
     /// Turn of the eye about the vertical
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = within(-360.0, 360.0, "an angle in degrees"))]
     azimuth: Option<f64>,
     /// Turn of the eye about the horizontal
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = within(-360.0, 360.0, "an angle in degrees"))]
     elevation: Option<f64>,
     /// Magnification over what fits
-    #[arg(long, value_name = "FACTOR", value_parser = positive)]
+    #[arg(long, value_name = "FACTOR", value_parser = within(*ZOOM.start(), *ZOOM.end(), "a magnification"))]
     zoom: Option<f64>,
     /// Section that the close-up follows: z before loading
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = within(-1e8, 1e8, "a place in mm"))]
     focus_z: Option<f64>,
 }
 
@@ -69,12 +70,5 @@ impl LookArgs {
 fn put<T>(key: &mut T, option: Option<T>) {
     if let Some(value) = option {
         *key = value;
-    }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
-        _ => Err("write a number above zero, such as 2".into()),
     }
 }

@@ -16,8 +16,11 @@ pub fn completions(shell: Shell, command: &mut Command) {
 /// Writes `strandsnap.1` and a page for each command.
 ///
 /// # Errors
-/// When the folder cannot be made or a page cannot be written.
+/// A file in the place of the folder; when the folder cannot be made or a page cannot be written.
 pub fn pages(command: Command, folder: &Path) -> Result<()> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(Error::input(format!("{} is a file", folder.display()), "name a folder for the manual pages"));
+    }
     std::fs::create_dir_all(folder).map_err(|error| Error::io("cannot make the folder", folder, error))?;
     clap_mangen::generate_to(command, folder).map_err(|error| Error::io("cannot write into", folder, error))?;
     say!("manual pages are in {}; read one: man -l {}", folder.display(), folder.join("strandsnap.1").display());

@@ -1,16 +1,25 @@
 //! Floor 9: the command line. One file per subcommand; each turns arguments into a call below and prints the answer.
 
+/// Stands for the usual one in all commands: see [`say::tell`].
+macro_rules! eprintln {
+    ($($part:tt)*) => { $crate::cli::say::tell(format_args!($($part)*)) };
+}
+
 mod accuracy;
 mod animation;
 mod calibrate;
 mod cases;
 mod check_run;
+#[cfg(feature = "render")]
+mod counted;
+mod ended;
 mod export;
 mod interrupt;
 mod keys;
 mod look;
 mod manual;
 mod plan;
+mod progress;
 mod record;
 mod render;
 mod report;
@@ -24,8 +33,10 @@ mod values;
 mod verify;
 mod view;
 
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
+use ended::Ended;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Pull stranded wire until it snaps: a discrete-element engine, and the pictures that show how it fails.
@@ -57,7 +68,7 @@ enum Command {
     Export(export::Args),
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
-    /// Say what accuracy each second buys: error against run time, knob by knob
+    /// Say what accuracy each second buys: error against run time, parameter by parameter
     Accuracy(accuracy::Args),
     /// Vary a scene: pitch, wire diameter, seeds, or what a file says; gather, fit, and set beside the paper and theory
     Study(study::Args),
@@ -80,15 +91,6 @@ enum Command {
     },
 }
 
-/// How a command ended when nothing went wrong.
-enum Ended {
-    Well,
-    /// Stopped by the user with results kept: the exit code is that of a program ended by Ctrl-C.
-    Interrupted,
-    /// A study or a check ran, and a case of it misses what it must give.
-    Missed,
-}
-
 /// What the program answers to whoever called it ([`crate::base::error::Error::exit_code`], [`Ended`]).
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -97,17 +99,19 @@ Exit codes:
     2  bad input
     3  the machine lacks something (graphics adapter, Rerun viewer)
     4  the simulation had to stop, or a case or a check misses what it must give
-  130  interrupted; what was found so far is kept";
+  130  interrupted (Ctrl-C); what was found so far is kept, unless Ctrl-C comes again two seconds later or more";
 
 /// Runs the program on its arguments and answers with one of the exit codes that `--help` lists.
 pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(Ended::Well) => ExitCode::SUCCESS,
         Ok(Ended::Missed) => ExitCode::from(4),
-        Ok(Ended::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
+        // Whoever pressed Ctrl-C was told what is kept.
+        Err(error @ Error::Interrupted) => ExitCode::from(error.exit_code()),
         Err(error) => {
             let code = error.exit_code();
-            eprintln!("{:?}", miette::Report::new(error));
+            // Where this is lost too, the code is what remains.
+            let _ = writeln!(std::io::stderr(), "{:?}", miette::Report::new(error));
             ExitCode::from(code)
         }
     }

@@ -4,8 +4,8 @@ use super::say::say;
 use super::scene::expected;
 use super::values::SceneArgs;
 use crate::base::error::Result;
+use crate::run::estimate::Estimate;
 use crate::run::{self, cautions};
-use crate::scene::plan::Plan;
 use crate::strand;
 
 #[derive(Debug, clap::Args)]
@@ -18,22 +18,22 @@ pub struct Args {
 }
 
 pub fn plan(args: &Args) -> Result<()> {
-    let scene = args.scene.load()?;
+    let (scene, changed) = args.scene.load_and_tell()?;
+    let assembly = run::assemble(&scene)?;
     say!("{}: {}\n", scene.spec.name, scene.spec.about);
-    let preset = match args.scene.preset()? {
-        set if set.is_empty() => "the scene as it is written".into(),
-        set => set.join(", "),
-    };
+    let preset = if changed.is_empty() { "the scene as it is written".into() } else { changed.join(", ") };
     say!("quality: {} ({preset})\n", args.scene.quality.word());
-    say!("{}", Plan::new(&scene.spec));
+    say!("{}", scene.plan);
     if let Some(expected) = expected(&scene.spec) {
         say!("{expected}\n");
     }
-    let assembly = run::assemble(&scene)?;
     cautions::of_scene(&scene, &assembly)?.iter().for_each(|caution| say!("WARNING: {caution}\n"));
     strand::caution::deviation(&scene.spec).iter().for_each(|line| say!("{line}\n"));
     let threads = args.threads.map(usize::from);
-    let estimate = run::in_pool(threads, || run::estimate::estimate(&scene.spec, assembly))??;
+    let estimate = run::in_pool(threads, || -> Result<Estimate> {
+        let estimate = run::estimate::estimate(&scene.spec, &scene.plan, assembly.clone())?;
+        Ok(Estimate { loaded_wall: run::estimate::under_load(&scene.spec, assembly), ..estimate })
+    })??;
     say!("{estimate}");
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `strandsnap record`.
 
-use super::Ended;
+use super::ended::Ended;
 use super::run::DEFAULT_VIEWER;
 use super::select::SelectArgs;
 use crate::base::error::Result;
@@ -20,6 +20,9 @@ pub struct Args {
     /// Replace the file if it exists
     #[arg(long)]
     overwrite: bool,
+    /// Go on where files of the run were changed or are another's; the result says so
+    #[arg(long)]
+    anyway: bool,
     #[command(flatten)]
     select: SelectArgs,
     /// Stream to a Rerun viewer that is already open
@@ -36,17 +39,17 @@ pub fn record(_args: Args) -> Result<Ended> {
 pub fn record(args: Args) -> Result<Ended> {
     use super::say::say;
     use crate::run::record::{RecordOptions, record};
-    use std::sync::atomic::Ordering;
 
     let options = RecordOptions {
         selection: args.select.into(),
         colour: args.colour,
         out: args.out,
         overwrite: args.overwrite,
+        anyway: args.anyway,
         live: args.live,
     };
     let stop = super::interrupt::install()?;
     let file = record(&args.run, &options, stop)?;
     say!("recorded to {}", file.display());
-    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
+    interrupt::ended(stop)
 }

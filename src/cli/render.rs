@@ -1,7 +1,7 @@
 //! `strandsnap render`.
 
-use super::Ended;
 use super::animation::AnimationArgs;
+use super::ended::Ended;
 use super::look::LookArgs;
 use super::select::SelectArgs;
 use crate::base::error::Result;
@@ -17,6 +17,9 @@ pub struct Args {
     /// Replace earlier pictures in that folder
     #[arg(long)]
     overwrite: bool,
+    /// Go on where files of the run were changed or are another's; the result says so
+    #[arg(long)]
+    anyway: bool,
     #[command(flatten)]
     select: SelectArgs,
     #[command(flatten)]
@@ -36,14 +39,14 @@ pub fn render(_args: Args) -> Result<Ended> {
 
 #[cfg(feature = "render")]
 pub fn render(args: Args) -> Result<Ended> {
+    use super::counted::Counted;
     use super::say::say;
-    use crate::observe::progress::Counted;
     use crate::render::FrameWriter;
     use crate::run::replay::Replay;
-    use crate::run::{folder, outputs};
-    use std::sync::atomic::Ordering;
+    use crate::run::{folder, identity, outputs};
 
-    let run = Replay::open(&args.run, &args.select.into())?;
+    let doubts = identity::check(&args.run, args.anyway)?;
+    let run = Replay::open(&args.run, &args.select.into())?.doubting(&doubts);
     let mut output = look_of(&args.run);
     args.look.apply(&mut output);
     // The run is over: close-ups can look at the place of the first break from the start, and need not jump to it.
@@ -56,22 +59,25 @@ pub fn render(args: Args) -> Result<Ended> {
     }
     let writer = || FrameWriter::new(&out, &output);
     crate::render::check()?;
-    folder.open_for_pictures()?;
+    let pictures = folder.open_for_pictures()?;
     let mut writer = writer()?.with_animation(animation.clone());
     if let Some(why) = run.cut_off() {
         eprintln!("note: {why}; what there is will be drawn");
     }
     let stop = super::interrupt::install()?;
     let shown = run.show(&mut Counted::new(&mut writer, run.count(), !args.quiet), stop)?;
+    if shown == run.count() {
+        pictures.complete()?;
+    }
     let timings = writer.timings();
-    say!("{shown} pictures are in {}", out.display());
+    say!("{} in {}", crate::base::wording::counted(shown, "picture"), out.display());
     if let Some(animation) = animation.filter(|_| timings.animation_bytes > 0) {
         say!("{} of animation are in {}", outputs::megabytes(timings.animation_bytes), animation.file.display());
     }
     if !args.quiet {
         say!("frames: {timings}");
     }
-    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
+    interrupt::ended(stop)
 }
 
 /// How the run's own scene wants its frames to look. A trajectory alone, or a scene that this program cannot read any

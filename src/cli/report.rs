@@ -15,13 +15,17 @@ pub struct Args {
     /// Folder of a study of error against run time to show [default: out/accuracy/NAME, if there is one]
     #[arg(long, value_name = "DIR")]
     accuracy: Option<PathBuf>,
+    /// Go on where files of the run were changed or are another's; the result says so
+    #[arg(long)]
+    anyway: bool,
     /// Replace the file if it exists
     #[arg(long)]
     overwrite: bool,
 }
 
 pub fn report(args: &Args) -> Result<()> {
-    let written = page::write(&args.run, args.out.as_deref(), args.accuracy.as_deref(), args.overwrite)?;
+    let out = args.out.as_deref();
+    let written = page::write(&args.run, out, args.accuracy.as_deref(), args.overwrite, args.anyway)?;
     for note in &written.notes {
         eprintln!("WARNING: {note}");
     }

@@ -1,16 +1,18 @@
 //! `strandsnap run`.
 
 use super::animation::AnimationArgs;
+use super::ended::Ended;
+use super::interrupt;
 use super::look::LookArgs;
+use super::progress::Progress;
 use super::say::say;
 use super::values::SceneArgs;
-use super::{Ended, interrupt};
 use crate::base::error::Result;
+use crate::observe::Observer;
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{ANIMATION, FRAMES, RECORDING};
 use crate::run::{self, RunOptions, RunSummary, cautions, outputs};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 /// Where a Rerun viewer listens when nobody says otherwise.
 pub(super) const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
@@ -25,6 +27,9 @@ pub struct Args {
     /// Replace earlier results in that folder
     #[arg(long)]
     overwrite: bool,
+    /// Wait for another process that writes into that folder, instead of refusing
+    #[arg(long)]
+    wait: bool,
     /// Threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -55,18 +60,22 @@ pub fn run(args: Args) -> Result<Ended> {
         animation: args.animation.resolve(&out.join(ANIMATION)),
         out,
         overwrite: args.overwrite,
+        wait: args.wait,
         threads: args.threads.map(usize::from),
         frames: outputs::HAS_RENDER && !args.no_frames,
         recording: outputs::HAS_RECORD && !args.no_recording,
         live: args.live,
-        quiet: args.quiet,
     };
     let before = cautions::of_run(&scene, &run::assemble(&scene)?)?;
     before.iter().for_each(|caution| eprintln!("WARNING: {caution}"));
     let stop = interrupt::install()?;
-    let summary = run::run(&scene, &options, stop)?;
-    print(&summary, &options);
-    Ok(if stop.load(Ordering::Relaxed) { Ended::Interrupted } else { Ended::Well })
+    let summary = run::in_pool(options.threads, || {
+        let mut progress = (!args.quiet).then(|| Progress::new(&scene.spec.stop));
+        let watchers = progress.iter_mut().map(|bar| bar as &mut dyn Observer).collect();
+        run::run_watched(&scene, &options, watchers, stop)
+    })??;
+    print(&summary, &options, args.quiet);
+    interrupt::ended(stop)
 }
 
 /// Frames and recording are on unless refused; a program that cannot make them must say so.
@@ -79,16 +88,16 @@ fn note_what_was_not_built(args: &Args) {
     }
 }
 
-fn print(summary: &RunSummary, options: &RunOptions) {
+fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
     for warning in &summary.warnings {
         eprintln!("WARNING: {warning}");
     }
-    if options.quiet {
+    if quiet {
         say!("{}", one_line(summary));
     } else {
         say!("{}\n{}", summary.scene, report(summary));
     }
-    if !options.quiet {
+    if !quiet {
         say!("Results are in {}:", options.out.display());
         say!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
         if options.frames {

@@ -12,8 +12,18 @@ pub fn print(text: Arguments) {
     match out.write_fmt(text).and_then(|()| out.flush()) {
         Err(cause) if cause.kind() != ErrorKind::BrokenPipe => {
             let error = Error::io("cannot write", "standard output", cause);
-            eprintln!("{error}");
+            tell(format_args!("{error}"));
             std::process::exit(i32::from(error.exit_code()));
+        }
+        _ => {}
+    }
+}
+
+/// Prints a line to standard error; one that is lost ends the program, as [`print`] does, where `eprintln!` would panic.
+pub fn tell(text: Arguments) {
+    match writeln!(std::io::stderr(), "{text}") {
+        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => {
+            std::process::exit(i32::from(Error::io("cannot write", "standard error", cause).exit_code()));
         }
         _ => {}
     }

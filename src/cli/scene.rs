@@ -4,11 +4,13 @@ use super::keys;
 use super::say::{self, say};
 use super::values::SceneArgs;
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use crate::run::{self, cautions};
-use crate::scene::builtin;
 use crate::scene::spec::Spec;
+use crate::scene::{self, builtin};
 use crate::strand;
 use crate::strand::theory::Theory;
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -30,7 +32,7 @@ pub enum Command {
     New {
         /// The file to write, such as my-strand or my-strand.toml; never replaces one
         name: PathBuf,
-        /// The built-in scene to start from
+        /// The built-in scene to start from; a file of one's own is copied as any file
         #[arg(long, default_value = "ka4")]
         from: String,
     },
@@ -49,7 +51,7 @@ pub fn scene(command: &Command) -> Result<()> {
 fn list() -> Result<()> {
     let width = builtin::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     for (name, _) in builtin::list() {
-        let about = builtin::about(name)?;
+        let about = crate::scene::load(name, &[])?.spec.about;
         say!("{name:width$}  {}", about.lines().collect::<Vec<_>>().join(" "));
     }
     Ok(())
@@ -61,9 +63,19 @@ fn show(name: &str) -> Result<()> {
 }
 
 fn new(name: &Path, from: &str) -> Result<()> {
-    let text = builtin::find(from)?;
+    let text = builtin::find(from).map_err(|error| match Path::new(from).is_file() {
+        true => {
+            Error::input(format!("--from takes a built-in scene, and {from} is a file"), "copy it under another name")
+        }
+        false => error,
+    })?;
     let file =
         if name.extension().is_some_and(|e| e == "toml") { name.into() } else { name.with_added_extension("toml") };
+    let stem = file.file_stem().and_then(OsStr::to_str).unwrap_or_default();
+    if !scene::can_name_a_folder(stem) {
+        let what = format!("{:?} is no name for a scene", name.display().to_string());
+        return Err(Error::input(what, "use letters, digits, - and _; results go to a folder of that name"));
+    }
     // Another process may make the file between a look and the writing.
     let mut new = File::create_new(&file).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => Error::input(format!("{} exists", file.display()), "choose another name"),
@@ -71,19 +83,26 @@ fn new(name: &Path, from: &str) -> Result<()> {
     })?;
     new.write_all(text.as_bytes()).map_err(|error| Error::io("cannot write", &file, error))?;
     say!("{} is a copy of {from}; `strandsnap scene keys` lists what can be changed", file.display());
-    say!("check it: strandsnap scene check {}", file.display());
+    say!("check it: strandsnap scene check {}", for_shell(&file));
     Ok(())
+}
+
+/// A path as it can be pasted into a shell.
+fn for_shell(path: &Path) -> String {
+    let path = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "-_./\\:+".contains(c);
+    if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', r"'\''")) }
 }
 
 fn check(args: &SceneArgs) -> Result<()> {
     let scene = args.load()?;
     let assembly = run::assemble(&scene)?;
     say!(
-        "{} is fine: {} wires, {} particles, {} bonds",
+        "{} is fine: {}, {}, {}",
         args.scene,
-        assembly.wires.len(),
-        assembly.len(),
-        assembly.bond_count()
+        counted(assembly.wires.len(), "wire"),
+        counted(assembly.len(), "particle"),
+        counted(assembly.bond_count(), "bond")
     );
     if let Some(expected) = expected(&scene.spec) {
         say!("{expected}");

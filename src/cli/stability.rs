@@ -1,13 +1,12 @@
 //! `strandsnap stability`.
 
-use super::Ended;
-use super::cases::{self, CaseArgs};
-use super::interrupt;
+use super::cases::CaseArgs;
+use super::ended::Ended;
 use super::say::{self, say};
 use crate::base::error::Result;
-use crate::study::stability::outcome::{Outcome, Report};
+use crate::base::wording::counted;
+use crate::study::stability::outcome::Outcome;
 use crate::study::stability::{plots, report, run_all, select};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 const NAME: &str = "stability";
@@ -19,15 +18,8 @@ pub fn stability(args: &CaseArgs) -> Result<Ended> {
         return Ok(Ended::Well);
     }
     args.prepare(NAME)?;
-    let stop = interrupt::install()?;
-    let bar = cases::bar(NAME, cases.len());
-    let done = |report: &Report| {
-        bar.set_message(format!("{}: {}", report.case.name, report.outcome));
-        bar.inc(1);
-    };
     let began = Instant::now();
-    let reports = run_all(&cases, args.quick, args.threads(), stop, &done);
-    bar.finish_and_clear();
+    let (reports, ended) = args.run(NAME, |runner| run_all(&cases, args.quick, runner))?;
     say::print(format_args!("{}", report::table(&reports)));
     say!("\n{}", report::summary(&reports, began.elapsed().as_secs_f64()));
     if let Some(path) = &args.json {
@@ -36,11 +28,8 @@ pub fn stability(args: &CaseArgs) -> Result<Ended> {
     }
     if let Some(folder) = args.plots(NAME) {
         let files = plots::write(&reports, &folder)?;
-        say!("plots: {} files in {}", files.len(), folder.display());
+        say!("plots: {} in {}", counted(files.len(), "file"), folder.display());
     }
-    if stop.load(Ordering::Relaxed) {
-        say!("interrupted: {} of {} cases were run", reports.len(), cases.len());
-        return Ok(Ended::Interrupted);
-    }
+    ended?;
     Ok(if reports.iter().any(|r| r.outcome == Outcome::Failed) { Ended::Missed } else { Ended::Well })
 }

@@ -1,20 +1,19 @@
 //! `strandsnap study`.
 
-use super::Ended;
-use super::cases;
+use super::cases::{self, ProgressLine};
+use super::ended::Ended;
 use super::interrupt;
 use super::say::{self, say};
 use super::values::{Seeds, quality};
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use crate::run::folder;
 use crate::scene::quality::Quality;
-use crate::study::cases::workshop::Progress;
-use crate::study::sweep::gather::State;
+use crate::study::runner::{CaseRunner, CaseStore, all_outputs, cores};
 use crate::study::sweep::report::{self, Findings};
-use crate::study::sweep::{self, Changes, Cost, Definition, Gathered, Making, definition};
+use crate::study::sweep::{self, CaseResult, Changes, Cost, Definition, Gathered, definition};
+use crate::study::tensile::TensileOutcome;
 use std::path::{Path, PathBuf};
-
-const STOPPING: &str = "\nstopping; finished cases are kept, and the same command goes on with them.";
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -63,56 +62,50 @@ pub fn study(args: &Args) -> Result<Ended> {
         seeds: args.seeds.clone().map_or(Vec::new(), |seeds| seeds.0),
     };
     let definition = Definition::load(name, &changes)?;
-    sweep::check(&definition)?;
     for one in &definition.merged {
         eprintln!("note: {} {} is {}, and is not run twice", one.axis, one.same, one.kept);
     }
     let out = args.out.clone().unwrap_or_else(|| folder::study(&definition.name));
+    let jobs = args.jobs.map_or_else(cores, usize::from);
     if args.dry_run {
-        return dry_run(&definition, &out, jobs(args));
+        return dry_run(&definition, &out, jobs);
     }
     if args.collect {
-        return finish(&definition, &out, false);
+        return show(&definition, &CaseStore::of(&out), &out).map(|()| Ended::Well);
     }
-    sweep::open(&out, args.fresh)?;
-    let stop = interrupt::install_saying(STOPPING)?;
-    let bar = cases::bar_of_parts("study");
-    let tell = |progress: &Progress| cases::show(&bar, progress, "cases");
-    let making = Making { folder: &out, jobs: jobs(args), threads: None, stop, tell: &tell };
+    let _lock = cases::lock(&out, args.case.is_some())?;
+    let store = CaseStore::open(&out, args.fresh)?;
+    let stop = interrupt::install_for_cases()?;
+    let line = ProgressLine::new("study");
+    let jobs = if args.case.is_some() { 1 } else { jobs };
+    let runner = CaseRunner { jobs, threads: None, budget: None, stop, tell: &|progress| line.show(progress) };
     if let Some(number) = args.case {
-        let made = sweep::make_one(&definition, number, &Making { jobs: 1, ..making });
-        bar.finish_and_clear();
-        made?;
-        return one(&definition, number, &out, stop.load(std::sync::atomic::Ordering::Relaxed));
+        return one(&definition, number, &store, &runner);
     }
-    let costs = sweep::costs(&definition, &out, &|point| {
-        bar.set_message(format!("estimating {}", definition.point_name(point)));
+    let gathered = Gathered::read(&definition, &store);
+    let costs = sweep::costs(&definition, &gathered, &|point| {
+        line.say(format!("estimating {}", definition.point_name(point)));
     })?;
-    let made = sweep::make(&definition, &costs, &making);
-    bar.finish_and_clear();
-    made?;
-    finish(&definition, &out, stop.load(std::sync::atomic::Ordering::Relaxed))
-}
-
-/// Cases side by side.
-fn jobs(args: &Args) -> usize {
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    args.jobs.map_or_else(cores, usize::from)
+    let outputs = all_outputs(sweep::run(&definition, &costs, &store, &runner)?);
+    drop(line);
+    // What is there is shown also after an interruption, which explains what is not.
+    let shown = show(&definition, &store, &out);
+    outputs.and(shown).map(|()| Ended::Well)
 }
 
 fn list() -> Result<Ended> {
     let wide = definition::list().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     for (name, text) in definition::list() {
         let study = Definition::parse(text, &format!("{name}.toml"), Path::new("."), &Changes::default())?;
-        say!("{name:wide$}  {} ({} cases)", study.about, study.cases().len());
+        say!("{name:wide$}  {} ({})", study.about, counted(study.cases().len(), "case"));
     }
     Ok(Ended::Well)
 }
 
 fn dry_run(definition: &Definition, out: &Path, jobs: usize) -> Result<Ended> {
-    let costs = sweep::costs(definition, out, &|_| {})?;
-    let gathered = Gathered::read(definition, out)?;
-    say::print(format_args!("{}", report::agenda(definition, &gathered, &costs.cases).to_text()));
+    let gathered = Gathered::read(definition, &CaseStore::of(out));
+    let costs = sweep::costs(definition, &gathered, &|_| {})?;
+    say::print(format_args!("{}", report::case_list(definition, &gathered, &costs.cases).to_text()));
     say::print(format_args!("\n{}", report::built(definition, &gathered)));
     let by = match costs.ratio {
         Some(ratio) => {
@@ -122,43 +115,42 @@ fn dry_run(definition: &Definition, out: &Path, jobs: usize) -> Result<Ended> {
     };
     let done = costs.cases.iter().filter(|cost| **cost == Cost::Done).count();
     let left = cases::time(costs.left() / jobs as f64);
-    say!("{} cases, {done} of them done; about {left} for the others, {jobs} at a time, {by}.", costs.cases.len());
+    say!(
+        "{}, {done} of them done; about {left} for the others, {jobs} at a time, {by}.",
+        counted(costs.cases.len(), "case")
+    );
     Ok(Ended::Well)
 }
 
-/// What became of a case that was run alone.
-fn one(definition: &Definition, number: usize, out: &Path, interrupted: bool) -> Result<Ended> {
-    let gathered = Gathered::read(definition, out)?;
-    let case = &gathered.cases[number - 1];
-    let name = definition.case_name(case.point, case.seed);
-    match &case.state {
-        State::Refused(cause) => {
+/// Runs a case alone, and says what became of it.
+fn one(definition: &Definition, number: usize, store: &CaseStore, runner: &CaseRunner) -> Result<Ended> {
+    let (point, seed) = sweep::numbered(definition, number)?;
+    let case = definition.case((point, seed), 1.0, store);
+    let record = all_outputs(runner.run(&[case])?)?.remove(0);
+    let name = definition.case_name(point, seed);
+    match &record.result {
+        TensileOutcome::Refused(cause) => {
             let help = "the others can be run all the same";
-            return Err(Error::input(format!("case {number} ({name}) is refused: {cause}"), help));
+            Err(Error::input(format!("case {number} ({name}) is refused: {cause}"), help))
         }
-        State::Failed(cause) => {
+        TensileOutcome::Failed(cause) => {
             say!("case {number} ({name}) failed: {cause}");
-            return Ok(Ended::Missed);
+            Ok(Ended::Missed)
         }
-        State::Ran(_) | State::Missing => {}
+        TensileOutcome::Ran(run) => {
+            let folder = store.folder().join(record.identity.name());
+            let [strength, elongation] = [run.strength_mpa, run.elongation_percent];
+            say!("case {number} ({name}): strength {strength:.2} MPa at {elongation:.2} %, in {}", folder.display());
+            Ok(Ended::Well)
+        }
     }
-    match case.measured() {
-        Some(run) => say!(
-            "case {number} ({name}): strength {:.2} MPa at {:.2} %, in {}",
-            run.strength_mpa,
-            run.elongation_percent,
-            out.join("cases").join(&case.folder).display()
-        ),
-        None => say!("case {number} ({name}) was interrupted; the same command runs it again"),
-    }
-    Ok(if interrupted { Ended::Interrupted } else { Ended::Well })
 }
 
 /// Gathers what is there, writes and prints it.
-fn finish(definition: &Definition, out: &Path, interrupted: bool) -> Result<Ended> {
-    let gathered = Gathered::read(definition, out)?;
-    if gathered.ran() == 0 && !interrupted {
-        let cause = gathered.cases.iter().find_map(|case| case.state.cause());
+fn show(definition: &Definition, store: &CaseStore, out: &Path) -> Result<()> {
+    let gathered = Gathered::read(definition, store);
+    if gathered.ran() == 0 {
+        let cause = gathered.cases.iter().find_map(CaseResult::cause);
         let cause = cause.map_or_else(|| "none was run yet".to_string(), |cause| format!("the first says: {cause}"));
         let help = "run the study without --collect, or look at a case with `strandsnap run`";
         return Err(Error::input(format!("no case of {} has a result; {cause}", definition.name), help));
@@ -166,10 +158,7 @@ fn finish(definition: &Definition, out: &Path, interrupted: bool) -> Result<Ende
     let findings = Findings::new(definition, &gathered)?;
     let files = report::write(definition, &gathered, &findings, &cases::command(), out)?;
     say::print(format_args!("{}", report::to_text(definition, &gathered, &findings)));
-    if interrupted {
-        say!("Interrupted: the same command goes on with what is missing.");
-    }
     say!("Written:");
     files.iter().for_each(|file| say!("  {}", file.display()));
-    Ok(if interrupted { Ended::Interrupted } else { Ended::Well })
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! How single arguments are written.
 
 use crate::base::error::Result;
+use crate::scene::look::FRAME_SIDE;
 use crate::scene::quality::Quality;
 use crate::scene::{self, Scene};
 use clap::Args;
@@ -21,35 +22,30 @@ pub struct SceneArgs {
     /// Seed of the scatter; the same as --set seed=N
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// Refuse what needs more memory than this, such as 4GB [default: what is free]
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    memory: Option<u64>,
 }
 
 impl SceneArgs {
-    /// All changes, in the order in which they win: the preset, then what was set, then the seed.
-    ///
-    /// # Errors
-    /// A preset of a scene that cannot be read.
-    pub fn overrides(&self) -> Result<Vec<String>> {
-        let seed = self.seed.map(|seed| format!("seed={seed}"));
-        Ok(self.preset()?.into_iter().chain(self.set.iter().cloned()).chain(seed).collect())
-    }
-
-    /// What the preset sets; nothing at standard quality, which is the scene as it is written.
-    ///
-    /// # Errors
-    /// A scene that cannot be read.
-    pub fn preset(&self) -> Result<Vec<String>> {
-        match self.quality {
-            Quality::Standard => Ok(Vec::new()),
-            quality => Ok(quality.overrides(&scene::load(&self.scene, &[])?.spec)),
-        }
-    }
-
-    /// The scene with all changes.
+    /// The scene with all changes; `--set` wins over the preset, and `--seed` over both.
     ///
     /// # Errors
     /// Whatever is wrong in it or in them.
     pub fn load(&self) -> Result<Scene> {
-        scene::load(&self.scene, &self.overrides()?)
+        self.load_and_tell().map(|(scene, _)| scene)
+    }
+
+    /// The same, and what the preset changed, each as `key=value`.
+    ///
+    /// # Errors
+    /// Whatever is wrong in it or in them.
+    pub fn load_and_tell(&self) -> Result<(Scene, Vec<String>)> {
+        let seed = self.seed.map(|seed| format!("seed={seed}"));
+        let options: Vec<String> = self.set.iter().cloned().chain(seed).collect();
+        let mut scene = Scene { memory: self.memory, ..scene::load(&self.scene, &options)? };
+        let changed = self.quality.apply(&mut scene)?;
+        Ok((scene, changed))
     }
 }
 
@@ -101,13 +97,42 @@ impl std::str::FromStr for Seeds {
     }
 }
 
+/// A size in memory, written as `512MB` or `4GiB`.
+pub fn bytes(text: &str) -> std::result::Result<u64, String> {
+    let wrong = || "write a size with its unit, such as 512MB or 4GB".to_string();
+    let text = text.trim();
+    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').ok_or_else(wrong)?;
+    let (number, unit) = text.split_at(digits);
+    let factor: f64 = match unit.trim().to_ascii_lowercase().as_str() {
+        "mb" => 1e6,
+        "gb" => 1e9,
+        "tb" => 1e12,
+        "mib" => 1_048_576.0,
+        "gib" => 1_073_741_824.0,
+        _ => return Err(wrong()),
+    };
+    let size = number.parse::<f64>().map_err(|_| wrong())? * factor;
+    if size >= 1.0 && size <= 1e18 { Ok(size as u64) } else { Err(wrong()) }
+}
+
+/// A number within a range, both ends included; `words` say what it is, in its unit.
+pub fn within(least: f64, most: f64, words: &'static str) -> impl Fn(&str) -> std::result::Result<f64, String> + Clone {
+    move |text| match text.trim().parse::<f64>() {
+        Ok(number) if (least..=most).contains(&number) => Ok(number),
+        _ => Err(format!("write {words} from {least} to {most}")),
+    }
+}
+
 /// Pixels, written as `1280x720`.
 pub fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X', '×']);
     let parsed = sides.and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
     match parsed {
-        Some([w, h]) if w > 0 && h > 0 => Ok([w, h]),
-        _ => Err("write width and height in pixels, such as 1280x720".into()),
+        Some([w, h]) if FRAME_SIDE.contains(&w) && FRAME_SIDE.contains(&h) => Ok([w, h]),
+        _ => {
+            let (least, most) = FRAME_SIDE.into_inner();
+            Err(format!("write width and height in pixels, such as 1280x720, each from {least} to {most}"))
+        }
     }
 }
 
@@ -117,7 +142,10 @@ pub fn strain_range(text: &str) -> std::result::Result<[f64; 2], String> {
     let (from, to) = text.split_once("..").ok_or_else(wrong)?;
     let end = |side: &str, open: f64| match side.trim().trim_end_matches('%').trim() {
         "" => Ok(open),
-        number => number.parse::<f64>().map(|percent| percent / 100.0).map_err(|_| wrong()),
+        number => match number.parse::<f64>() {
+            Ok(percent) if percent.is_finite() => Ok(percent / 100.0),
+            _ => Err(wrong()),
+        },
     };
     let range = [end(from, f64::NEG_INFINITY)?, end(to, f64::INFINITY)?];
     if range[0] <= range[1] { Ok(range) } else { Err(wrong()) }
@@ -145,8 +173,26 @@ mod tests {
     #[test]
     fn sizes() {
         assert_eq!(size("1280x720"), Ok([1280, 720]));
-        for wrong in ["1280", "0x720", "ax2", "1280x", "-1x5"] {
+        for wrong in ["1280", "0x720", "ax2", "1280x", "-1x5", "15x720", "8193x720", "1280x99999999999"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn memory_is_a_number_with_its_unit() {
+        assert_eq!(bytes("4GB"), Ok(4_000_000_000));
+        assert_eq!(bytes(" 1.5 MiB"), Ok(1_572_864));
+        for wrong in ["", "4", "GB", "-4GB", "1..5GB", "nanGB", "infGB", "4 parsec", "1e300GB", "0GB", "4µB"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn numbers_have_ranges() {
+        let angle = within(-360.0, 360.0, "an angle in degrees");
+        assert_eq!(angle("-12.5"), Ok(-12.5));
+        for wrong in ["nan", "inf", "-inf", "1e30", "361", "", "x"] {
+            assert!(angle(wrong).unwrap_err().contains("from -360 to 360"), "{wrong}");
         }
     }
 
@@ -177,7 +223,7 @@ mod tests {
         assert_eq!(strain_range("20..26"), Ok([0.2, 0.26]));
         assert_eq!(strain_range("20 % .. 26 %"), Ok([0.2, 0.26]));
         assert_eq!(strain_range("..5"), Ok([f64::NEG_INFINITY, 0.05]));
-        for wrong in ["20", "26..20", "a..b"] {
+        for wrong in ["20", "26..20", "a..b", "nan..5", "..inf"] {
             assert!(strain_range(wrong).is_err(), "{wrong}");
         }
     }

@@ -1,12 +1,11 @@
 //! `strandsnap verify`.
 
-use super::Ended;
-use super::cases::{self, CaseArgs};
-use super::interrupt;
+use super::cases::CaseArgs;
+use super::ended::Ended;
 use super::say::{self, say};
 use crate::base::error::Result;
+use crate::base::wording::counted;
 use crate::study::verify::{self, CASES, Effort, Report, plots, report};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 const NAME: &str = "verify";
@@ -18,16 +17,9 @@ pub fn verify(args: &CaseArgs) -> Result<Ended> {
     }
     let cases = verify::select(&args.cases)?;
     args.prepare(NAME)?;
-    let stop = interrupt::install()?;
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
-    let bar = cases::bar(NAME, cases.len());
-    let done = |report: &Report| {
-        bar.set_message(format!("{}: {}", report.case.name, if report.passes() { "pass" } else { "MISS" }));
-        bar.inc(1);
-    };
     let began = Instant::now();
-    let reports = verify::run_all(&cases, effort, args.threads(), stop, &done)?;
-    bar.finish_and_clear();
+    let (reports, ended) = args.run(NAME, |runner| verify::run_all(&cases, effort, runner))?;
     show(&reports, began.elapsed().as_secs_f64());
     if let Some(path) = &args.json {
         report::write_json(&reports, path)?;
@@ -36,13 +28,10 @@ pub fn verify(args: &CaseArgs) -> Result<Ended> {
     if let Some(folder) = args.plots(NAME) {
         let files = plots::write(&reports, &folder)?;
         if !files.is_empty() {
-            say!("plots: {} files in {}", files.len(), folder.display());
+            say!("plots: {} in {}", counted(files.len(), "file"), folder.display());
         }
     }
-    if stop.load(Ordering::Relaxed) {
-        say!("interrupted: {} of {} cases were run", reports.len(), cases.len());
-        return Ok(Ended::Interrupted);
-    }
+    ended?;
     Ok(if reports.iter().all(Report::passes) { Ended::Well } else { Ended::Missed })
 }
 

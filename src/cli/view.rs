@@ -1,6 +1,6 @@
 //! `strandsnap view`.
 
-use super::Ended;
+use super::ended::Ended;
 use crate::base::error::Result;
 use std::path::PathBuf;
 
@@ -8,6 +8,9 @@ use std::path::PathBuf;
 pub struct Args {
     /// Folder of a run, such as out/ka4
     run: PathBuf,
+    /// Go on where files of the run were changed or are another's; a warning says so
+    #[arg(long)]
+    anyway: bool,
     /// Serve it to a browser instead of opening a window
     #[arg(long)]
     web: bool,
@@ -21,12 +24,17 @@ pub fn view(_args: Args) -> Result<Ended> {
 #[cfg(feature = "record")]
 pub fn view(args: Args) -> Result<Ended> {
     use super::say::say;
+    use crate::run::identity;
     use crate::run::view::{Viewer, find};
 
+    let doubts = identity::check(&args.run, args.anyway)?;
     let found = find(&args.run)?;
     let viewer = Viewer::installed()?;
     if let Some(mismatch) = viewer.mismatch() {
         eprintln!("WARNING: {mismatch}");
+    }
+    if !doubts.is_empty() {
+        eprintln!("WARNING: {}", identity::list(&doubts));
     }
     if found.unfinished {
         eprintln!("WARNING: the run was cut off or is still going: its recording ends early");

@@ -1,8 +1,5 @@
-//! What a run keeps in memory, stage by stage, and what each stage moves through it at every step: from the arrays as
-//! they are, so that `strandsnap plan` and the bench follow the code.
+//! What a stage keeps in memory, and what it moves through it at every step.
 
-use super::Engine;
-use super::state::State;
 use crate::base::vectors::Vectors;
 
 /// Memory of one stage.
@@ -13,45 +10,6 @@ pub struct Bytes {
     /// Read and written at each step (bytes): every array that the stage streams, once for each direction and pass.
     /// What it gathers here and there counts as if read once.
     pub moved: usize,
-}
-
-/// Memory of a run by stage; the sum of `kept` is nearly all that it holds.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct StageBytes {
-    /// The body before loading, which measuring and drawing need.
-    pub assembly: Bytes,
-    /// Motion of particles: kick, drift, gather.
-    pub integrate: Bytes,
-    /// Spins, torques and inertias; moved together with the rest by `integrate`.
-    pub rotations: Bytes,
-    /// Bonds and rupture.
-    pub bonds: Bytes,
-    /// Contacts.
-    pub contacts: Bytes,
-    /// Neighbour search.
-    pub neighbours: Bytes,
-    /// Bound on the time step.
-    pub time_step: Bytes,
-}
-
-impl StageBytes {
-    /// Names, in order, and what each keeps.
-    pub fn stages(&self) -> [(&'static str, Bytes); 7] {
-        [
-            ("assembly", self.assembly),
-            ("motion", self.integrate),
-            ("rotations", self.rotations),
-            ("bonds", self.bonds),
-            ("contacts", self.contacts),
-            ("neighbours", self.neighbours),
-            ("time step", self.time_step),
-        ]
-    }
-
-    /// All that is kept (bytes).
-    pub fn kept(&self) -> usize {
-        self.stages().iter().map(|(_, bytes)| bytes.kept).sum()
-    }
 }
 
 /// Memory behind a vector (bytes).
@@ -67,58 +25,3 @@ pub(super) fn behind_all(v: &Vectors) -> usize {
 /// A vector, and a number, of a particle (bytes).
 pub(super) const VECTOR: usize = 3 * size_of::<f64>();
 pub(super) const NUMBER: usize = size_of::<f64>();
-
-impl Engine {
-    /// Memory by stage, now.
-    pub fn bytes(&self) -> StageBytes {
-        let state = &self.state;
-        let a = &self.assembly;
-        let assembly = [&a.position, &a.velocity, &a.spin].map(behind_all).iter().sum::<usize>()
-            + [&a.radius, &a.mass, &a.inertia, &a.rest_length].map(behind).iter().sum::<usize>()
-            + behind(&a.wire_of);
-        let mut bonds = self.bonds.as_ref().map_or(Bytes::default(), |b| b.bytes());
-        bonds.kept += behind(&state.bond.data) + behind(&state.whole);
-        let mut contacts = self.contacts.as_ref().map_or(Bytes::default(), |c| c.stage.bytes(state.len()));
-        contacts.kept += behind_all(&state.contact_force) + behind_all(&state.contact_torque);
-        StageBytes {
-            assembly: Bytes { kept: assembly, moved: 0 },
-            integrate: Bytes { kept: motion(state), moved: state.len() * self.moved_per_particle() },
-            rotations: Bytes { kept: rotations(state), moved: 0 },
-            bonds,
-            contacts,
-            neighbours: Bytes { kept: self.contacts.as_ref().map_or(0, |c| c.neighbours.bytes()), moved: 0 },
-            time_step: Bytes { kept: self.stiffness.bytes(), moved: 0 },
-        }
-    }
-
-    /// What kick, drift and gather move for each particle (bytes).
-    fn moved_per_particle(&self) -> usize {
-        let (turn, contacts) = (self.plan.rotations, self.contacts.is_some());
-        // Velocity in and out, force, inverse mass; and the same for spins.
-        let kick = (3 * VECTOR + NUMBER) * if turn { 2 } else { 1 };
-        // Position in and out, velocity; the position at the last search.
-        let drift = 3 * VECTOR + if contacts { VECTOR } else { 0 };
-        // What the bonds do, what contacts do, and the sums.
-        let sums = if turn { 2 } else { 1 };
-        let gather = state_actions(&self.state) + sums * VECTOR * if contacts { 2 } else { 1 };
-        kick + drift + gather
-    }
-}
-
-/// What bonds leave for each particle (bytes).
-fn state_actions(state: &State) -> usize {
-    if state.bond.data.is_empty() { 0 } else { state.bond.fields() * NUMBER }
-}
-
-/// Everything that moves a particle along (bytes).
-fn motion(s: &State) -> usize {
-    [&s.x, &s.v, &s.force].map(behind_all).iter().sum::<usize>()
-        + [&s.radius, &s.thinned, &s.radius0, &s.mass, &s.inverse_mass].map(behind).iter().sum::<usize>()
-        + behind(&s.hold)
-        + behind(&s.fixed)
-}
-
-/// Everything that turns it (bytes).
-fn rotations(s: &State) -> usize {
-    behind_all(&s.w) + behind_all(&s.torque) + behind(&s.inertia) + behind(&s.inverse_inertia)
-}

@@ -1,9 +1,9 @@
 //! Grips, holds and applied loads: prescribed motion, the reactions to it, and the work done.
 
+use super::loading_rate::{self, LoadingRate, Rule};
 use super::neighbours::Stretch;
-use super::pace::{self, Pace, Rule};
 use super::state::State;
-use super::straight::{Straight, runs};
+use super::straight::{StraightGrip, runs};
 use crate::base::error::{Error, Result};
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
 use crate::strand::assembly::Assembly;
@@ -62,7 +62,7 @@ pub struct Holds {
     /// Spin of the upper grip about z (rad/s).
     spin: f64,
     /// Speed of an adaptive pull.
-    pub(super) pace: Option<Pace>,
+    pub(super) loading_rate: Option<LoadingRate>,
     /// Reactions of the last step.
     pub reaction: Reaction,
     /// Work done so far (J).
@@ -82,7 +82,7 @@ impl Holds {
             stretch: Stretch::default(),
             free_length: 0.0,
             spin: spec.grip.as_ref().map_or(0.0, |g| g.rotation_rate),
-            pace: None,
+            loading_rate: None,
             reaction: Reaction::default(),
             work: 0.0,
         };
@@ -103,8 +103,8 @@ impl Holds {
         }
         holds.mark(state);
         holds.start_velocities(state);
-        let inertia = pace::inertia(state, |z| holds.share(z));
-        holds.pace = Rule::new(spec, inertia, holds.free_length).map(Pace::new);
+        let inertia = loading_rate::inertia(state, |z| holds.share(z));
+        holds.loading_rate = Rule::new(spec, inertia, holds.free_length).map(LoadingRate::new);
         holds.work = holds.kinetic(state);
         Ok(holds)
     }
@@ -192,16 +192,25 @@ impl Holds {
         if self.free_length > 0.0 { self.stretch.displacement / self.free_length } else { 0.0 }
     }
 
+    /// Speed of the upper grip along z now, of a pull at constant or adaptive speed (m/s); 0 of any other drive.
+    pub fn speed(&self) -> f64 {
+        match (&self.loading_rate, self.grip.as_ref().map(|grip| grip.drive)) {
+            (Some(rate), _) => rate.speed,
+            (None, Some(DriveSpec::Speed(speed))) => speed,
+            _ => 0.0,
+        }
+    }
+
     /// Overrides the kicked velocities of held particles; `kicked` is the time that the kick spanned (s).
     pub fn apply(&mut self, state: &mut State, kicked: f64, arch: Arch) {
         let dt = state.dt;
         let mut rise = 0.0;
-        if let Some(pace) = &mut self.pace {
-            pace.advance(kicked);
+        if let Some(rate) = &mut self.loading_rate {
+            rate.advance(kicked);
         }
         if let Some(grip) = &self.grip {
             rise = match grip.drive {
-                DriveSpec::Speed(v) => self.pace.as_ref().map_or(v, |pace| pace.speed) * dt,
+                DriveSpec::Speed(v) => self.loading_rate.as_ref().map_or(v, |rate| rate.speed) * dt,
                 DriveSpec::Cyclic { amplitude, frequency } => {
                     let at = |t: f64| amplitude * (TAU * frequency * t).sin();
                     at(state.time + dt) - at(state.time)
@@ -225,21 +234,21 @@ impl Holds {
             }
         }
         self.groups = groups;
-        if self.change() != 0.0 {
-            self.hurry(state, kicked);
+        if self.speed_change() != 0.0 {
+            self.change_speed(state, kicked);
         }
         self.stretch.displacement += rise;
     }
 
     /// Change of speed of an adaptive pull in this step (m/s).
-    fn change(&self) -> f64 {
-        self.pace.as_ref().map_or(0.0, |pace| pace.change)
+    fn speed_change(&self) -> f64 {
+        self.loading_rate.as_ref().map_or(0.0, |rate| rate.change)
     }
 
     /// Speeds up or slows down the affine field of an adaptive pull. Held particles are left alone: their grip has moved
     /// them.
-    fn hurry(&mut self, state: &mut State, kicked: f64) {
-        let change = self.change();
+    fn change_speed(&mut self, state: &mut State, kicked: f64) {
+        let change = self.speed_change();
         for p in (0..state.len()).filter(|p| state.fixed[*p] == 0) {
             let push = self.share(state.x.z[p]) * change;
             let kick = state.force.z[p] * kicked / state.mass[p];
@@ -266,11 +275,11 @@ impl Holds {
     fn straight(&mut self, group: &Group, state: &mut State, rise: f64, kicked: f64, arch: Arch) {
         let speed = if group.driven { rise / state.dt } else { 0.0 };
         let axis = self.axis.to_array();
-        let effort = arch.dispatch(Straight { runs: &group.runs, state, speed, kicked, axis });
+        let effort = arch.dispatch(StraightGrip { runs: &group.runs, state, speed, kicked, axis });
         self.work += effort.work;
         if group.driven {
             // What it takes to speed up the held particles themselves loads the drive, not the body.
-            self.reaction.force[1] = effort.force - self.change() / kicked * effort.mass;
+            self.reaction.force[1] = effort.force - self.speed_change() / kicked * effort.mass;
             self.reaction.torque = effort.torque;
         } else {
             self.reaction.force[0] = -effort.force;
@@ -284,7 +293,7 @@ impl Holds {
         // The chord of the exact rotation, so that particles stay on their circle.
         let chord = (DMat2::from_angle(spin * dt) - DMat2::IDENTITY) * (1.0 / dt);
         // What it takes to speed up the held particles themselves loads the drive, not the body.
-        let acceleration = if group.driven { self.change() / kicked } else { 0.0 };
+        let acceleration = if group.driven { self.speed_change() / kicked } else { 0.0 };
         let mut sum = DVec3::ZERO;
         let mut torque = 0.0;
         for p in &group.particles {
@@ -401,3 +410,6 @@ fn smooth(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
+
+#[cfg(test)]
+mod tests;

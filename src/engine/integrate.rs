@@ -1,6 +1,6 @@
 //! Leapfrog: forces gathered per particle in a fixed order, velocities kicked, positions drifted.
 
-use super::spheres::SecondSides;
+use super::contact::spheres::second::SecondSides;
 use super::state::{BondActions, CHUNK, State};
 use crate::base::lanes::{BLOCK, Lanes, Real};
 use crate::base::vectors::Vectors;

@@ -1,11 +1,9 @@
-//! What is measured: nominal stress, stresses per wire and layer, energies, snapshots for those who draw and record.
+//! Running means of what is measured: strain, nominal stress, grip forces, stresses per wire.
 
-use super::Engine;
 use super::bonds::Bonds;
+use super::estimates::wave_passage;
 use super::grips::{Holds, Reaction};
-use super::view::{BondState, Energy, RunInfo, Sample, Snapshot, WireInfo};
-use crate::reference::helix;
-use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, RuptureCriterion, Spec};
+use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -62,7 +60,7 @@ impl Measures {
             of_wire.push(first..slots.len());
         }
         Self {
-            window: WINDOW * passage(spec, assembly),
+            window: WINDOW * wave_passage(spec, assembly),
             area: assembly.area,
             steps: VecDeque::new(),
             sum: Step { length: 0.0, values: vec![0.0; BONDS + slots.len()] },
@@ -98,6 +96,21 @@ impl Measures {
         if self.sum.length > 0.0 { self.sum.values[value] / self.sum.length } else { 0.0 }
     }
 
+    /// Force of the lower grip and of the upper grip, tension positive (N).
+    pub fn grip_force(&self) -> [f64; 2] {
+        [0, 1].map(|grip| self.mean(FORCE + grip))
+    }
+
+    /// Torque about z on the upper grip (N m).
+    pub fn torque(&self) -> f64 {
+        self.mean(TORQUE)
+    }
+
+    /// Wires broken so far.
+    pub fn wires_broken(&self) -> usize {
+        self.broken.iter().filter(|broken| **broken).count()
+    }
+
     /// Strain of the body: grip displacement over the length that is free between the grips (-).
     pub fn strain(&self) -> f64 {
         self.mean(STRAIN)
@@ -110,7 +123,7 @@ impl Measures {
 
     /// Axial force of a wire (N): mean over the bonds in the middle of the gauge, in which a broken one counts with zero
     /// from the moment at which it broke, whatever it carried before.
-    fn wire_force(&self, wire: usize, whole: &[bool]) -> f64 {
+    pub fn wire_force(&self, wire: usize, whole: &[bool]) -> f64 {
         let range = self.of_wire[wire].clone();
         let count = range.len().max(1) as f64;
         range.filter(|i| whole[self.middle[*i]]).map(|i| self.mean(BONDS + i)).sum::<f64>() / count
@@ -120,11 +133,6 @@ impl Measures {
     pub fn mark_broken(&mut self, wire: usize) -> bool {
         !std::mem::replace(&mut self.broken[wire], true)
     }
-}
-
-/// Time in which an elastic wave runs along the body (s).
-fn passage(spec: &Spec, assembly: &Assembly) -> f64 {
-    assembly.length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt()
 }
 
 /// Bonds of wire `w` within a fortieth of the gauge around its middle, at least one.
@@ -146,254 +154,4 @@ fn middle(assembly: &Assembly, w: usize, gauge: [f64; 2]) -> Vec<usize> {
     } else {
         near
     }
-}
-
-impl Engine {
-    /// A row of the curve.
-    pub fn sample(&self) -> Sample {
-        let wire_stress: Vec<f64> = (0..self.assembly.wires.len()).map(|w| self.wire_stress(w)).collect();
-        let layer_stress = (0..self.assembly.layers.len())
-            .map(|layer| {
-                let of_layer = || (0..wire_stress.len()).filter(|w| self.assembly.wires[*w].layer == layer);
-                of_layer().map(|w| wire_stress[w]).sum::<f64>() / of_layer().count().max(1) as f64
-            })
-            .collect();
-        Sample {
-            step: self.state.step,
-            time: self.state.time,
-            strain: self.strain(),
-            stress: self.stress(),
-            grip_force: [0, 1].map(|grip| self.measures.mean(FORCE + grip)),
-            torque: self.measures.mean(TORQUE),
-            layer_stress,
-            wire_stress,
-            wires_broken: self.measures.broken.iter().filter(|b| **b).count(),
-            bonds_broken: self.rupture_count,
-            contacts: self.contacts.as_ref().map_or(0, |c| c.stage.active()),
-            time_step: self.next_dt,
-            energy: self.energy(),
-        }
-    }
-
-    /// Nominal axial stress of a wire at mid-gauge (Pa): the mean over its bonds in the middle twentieth of the gauge, of
-    /// which those that are broken carry nothing. A wire that broke there reports what its pieces still carry by friction.
-    pub fn wire_stress(&self, wire: usize) -> f64 {
-        self.measures.wire_force(wire, &self.state.whole) / self.assembly.wires[wire].area()
-    }
-
-    /// The energy ledger now.
-    pub fn energy(&self) -> Energy {
-        Energy {
-            work: self.holds.work_now(&self.state),
-            kinetic: self.kinetic(),
-            elastic_bonds: self.bonds.as_ref().map_or(0.0, |b| b.elastic_energy(&self.state)),
-            elastic_contacts: self.contacts.as_ref().map_or(0.0, |c| c.stage.elastic_energy(&self.state)),
-            ..self.energy
-        }
-    }
-
-    /// Kinetic energy now (J). Leapfrog's is a product of two velocities half a step apart, which rounding errors in a body
-    /// at rest turn round at every step: what is negative by less than a negligible energy is rest.
-    fn kinetic(&self) -> f64 {
-        let kinetic = self.holds.kinetic(&self.state);
-        if kinetic < 0.0 && -kinetic <= self.negligible_energy() { 0.0 } else { kinetic }
-    }
-
-    /// An energy that is nothing (J): what an elastic strain of 1e-9 everywhere would store.
-    pub fn negligible_energy(&self) -> f64 {
-        const STRAIN: f64 = 1e-9;
-        let volume = self.assembly.mass.iter().sum::<f64>() / (self.spec.material.density * self.spec.time.mass_scale);
-        0.5 * self.spec.material.young * STRAIN * STRAIN * volume
-    }
-
-    /// Every particle.
-    pub fn snapshot(&self) -> Snapshot {
-        let state = &self.state;
-        let n = state.len();
-        let mut bond_state = vec![BondState::Absent; n];
-        let mut bond_stress = vec![0.0; n];
-        let mut plastic_strain = vec![0.0; n];
-        let mut utilisation = vec![0.0; n];
-        if let Some(bonds) = &self.bonds {
-            for slot in (0..n).filter(|s| self.assembly.is_bond(*s)) {
-                let p = bonds.plastic_strain(slot);
-                plastic_strain[slot] = p as f32;
-                bond_stress[slot] = bonds.stress(slot) as f32;
-                utilisation[slot] = if state.whole[slot] { bonds.utilisation(slot, state) as f32 } else { 1.0 };
-                bond_state[slot] = match (state.whole[slot], p > 0.0) {
-                    (false, _) => BondState::Broken,
-                    (true, true) => BondState::Yielding,
-                    (true, false) => BondState::Whole,
-                };
-            }
-        }
-        Snapshot {
-            sample: self.sample(),
-            position: state.x.iter().map(|x| x.as_vec3().to_array()).collect(),
-            radius: state.radius.iter().map(|r| *r as f32).collect(),
-            speed: state.v.iter().map(|v| v.length() as f32).collect(),
-            bond_state,
-            bond_stress,
-            plastic_strain,
-            utilisation,
-            contact_pressure: self.contact_pressure(),
-        }
-    }
-
-    /// [`Snapshot::contact_pressure`] (Pa).
-    fn contact_pressure(&self) -> Vec<f32> {
-        let mut force = vec![0.0; self.state.len()];
-        if let Some(contacts) = &self.contacts {
-            contacts.stage.add_normal_forces(&mut force);
-        }
-        force.iter().enumerate().map(|(i, f)| (f / shown_area(&self.assembly, i)) as f32).collect()
-    }
-
-    /// What does not change during the run.
-    pub fn info(&self) -> RunInfo {
-        let a = &self.assembly;
-        let gauge = self.holds.stretch.gauge;
-        let (stress_range, plastic_strain_range) = self.ranges();
-        RunInfo {
-            name: self.spec.name.clone(),
-            about: self.spec.about.clone(),
-            layers: a.layers.iter().map(|l| l.name.clone()).collect(),
-            wires: a
-                .wires
-                .iter()
-                .map(|w| WireInfo { layer: w.layer, first: w.first, len: w.len, diameter: w.diameter })
-                .collect(),
-            wire_particles: a.wire_particles,
-            particles: a.len(),
-            radius: a.radius.iter().map(|r| *r as f32).collect(),
-            rest_position: a.position.iter().map(|x| x.as_vec3().to_array()).collect(),
-            gauge: (gauge[1] > gauge[0]).then_some(gauge),
-            stress_range,
-            plastic_strain_range,
-            speed_range: [0.0, self.greatest_speed()],
-            contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
-            strain_end: self.strain_end(),
-            negligible_energy: self.negligible_energy(),
-            wave_passage: passage(&self.spec, a),
-        }
-    }
-
-    /// The strain at which bonds are expected to break (-); infinite when they never do.
-    pub(super) fn rupture_strain(&self) -> f64 {
-        match self.spec.bond.rupture.as_ref().map(|r| &r.criterion) {
-            // True plastic strain to engineering strain.
-            Some(RuptureCriterion::PlasticStrain { strain }) => strain.exp_m1(),
-            Some(RuptureCriterion::FibreStrain { strain }) => *strain,
-            Some(RuptureCriterion::BeamStress { tensile, .. }) => tensile / self.spec.material.young,
-            None => f64::INFINITY,
-        }
-    }
-
-    fn strain_end(&self) -> Option<f64> {
-        let gauge = self.holds.stretch.gauge;
-        if gauge[1] <= gauge[0] {
-            return None;
-        }
-        let DriveSpec::Speed(speed) = self.spec.grip.as_ref()?.drive else { return self.spec.stop.strain };
-        if speed == 0.0 {
-            return self.spec.stop.strain;
-        }
-        // An adaptive pull comes at most this far in its time.
-        let speed = self.spec.grip.as_ref()?.adaptive.as_ref().map_or(speed, |adaptive| adaptive.fastest);
-        let timed = self.spec.stop.time.map_or(f64::INFINITY, |t| t * speed.abs() / (gauge[1] - gauge[0]));
-        let stop = self.spec.stop.strain.unwrap_or(f64::INFINITY).min(timed);
-        if speed < 0.0 {
-            // Compression ends where it is told to: nothing foretells at which strain a wire breaks in it.
-            return stop.is_finite().then_some(-stop);
-        }
-        let ends_broken = self.spec.stop.stress_fraction.is_some() || self.spec.stop.strain_after_drop.is_some();
-        let end = if ends_broken { stop.min(1.1 * self.rupture_strain()) } else { stop };
-        end.is_finite().then_some(end)
-    }
-
-    /// Fixed ranges of true axial stress (Pa) and plastic strain (-) that the run will not leave.
-    fn ranges(&self) -> ([f64; 2], [f64; 2]) {
-        let strain = self.strain_end().unwrap_or(0.0).min(self.rupture_strain());
-        match &self.spec.bond.law {
-            BondLawSpec::ElastoPlastic(h) => {
-                let p = if strain > 0.0 { strain.ln_1p() } else { 0.01 };
-                ([0.0, round_up(h.stress(p))], [0.0, round_up(p)])
-            }
-            BondLawSpec::Elastic => {
-                let impact = self.spec.material.young * self.greatest_speed()
-                    / (self.spec.material.young / self.spec.material.density).sqrt();
-                let pulled = self.spec.material.young * strain.abs();
-                let top = round_up(pulled.max(impact).max(1e6));
-                ([-top, top], [0.0, 1.0])
-            }
-        }
-    }
-
-    /// Nominal axial stress of a wire strained by `strain` (-), by its bond law alone (Pa).
-    pub(super) fn nominal_stress(&self, strain: f64) -> f64 {
-        let elastic = self.spec.material.young * strain;
-        match &self.spec.bond.law {
-            BondLawSpec::Elastic => elastic,
-            // True stress over stretch, with an incompressible wire.
-            BondLawSpec::ElastoPlastic(h) => elastic.min(h.stress(strain.ln_1p()) / (1.0 + strain)),
-        }
-    }
-
-    /// Upper end of a range of contact pressure (Pa); `stress` is that of the range of axial stress (Pa).
-    ///
-    /// A wire under tension N presses inwards with N κ per length, κ = sin²β/R its curvature; a layer carries what
-    /// all layers from itself outwards press, and feels it from both sides. As the strand stretches by λ its lay
-    /// radii shrink as λ^(−1/2) and its pitch grows as λ, so κ ≈ R (2π/h)² falls as λ^(−5/2), and each particle
-    /// answers for a length that grows as λ: the pressure goes with the nominal stress over λ^(3/2). A jaw adds its
-    /// own pressure.
-    fn contact_pressure_range(&self, stress: f64) -> f64 {
-        let a = &self.assembly;
-        let end = self.strain_end().unwrap_or(0.0).min(self.rupture_strain()).max(0.0);
-        let pressing = |strain: f64| self.nominal_stress(strain) / (1.0 + strain).powf(1.5);
-        let tension = (0..=50).map(|k| pressing(end * f64::from(k) / 50.0)).fold(0.0, f64::max);
-        let (mut press, mut deepest) = (0.0, 0.0f64);
-        for (k, layer) in a.layers.iter().enumerate().rev() {
-            let wires = a.wires.iter().filter(|w| w.layer == k);
-            let (count, Some(wire)) = (wires.clone().count(), wires.clone().next()) else { continue };
-            if layer.lay_radius > 0.0 && layer.pitch.is_finite() {
-                press += count as f64 * tension * wire.area() * helix::curvature(layer.lay_radius, layer.pitch);
-            }
-            deepest = deepest.max(2.0 * press / (count as f64 * wire.diameter));
-        }
-        let jaw = match self.spec.grip.as_ref().map(|g| g.kind) {
-            Some(GripKind::Jaw { pressure }) => 2.0 * pressure,
-            _ => 0.0,
-        };
-        let top = deepest.max(jaw);
-        round_up(if top > 0.0 { top } else { 0.1 * stress.abs() })
-    }
-
-    fn greatest_speed(&self) -> f64 {
-        let prescribed = self.spec.grip.as_ref().map_or(0.0, |g| match g.drive {
-            DriveSpec::Speed(v) => g.adaptive.as_ref().map_or(v.abs(), |adaptive| adaptive.fastest),
-            DriveSpec::Cyclic { amplitude, frequency } => std::f64::consts::TAU * frequency * amplitude,
-        });
-        let free = self.assembly.velocity.iter().map(|v| v.length()).fold(0.0, f64::max);
-        let held = self.spec.holds.iter().map(|h| h.velocity.length()).fold(0.0, f64::max);
-        let fastest = prescribed.max(free).max(held);
-        if fastest > 0.0 { fastest } else { 1.0 }
-    }
-}
-
-/// Area that particle `i` shows to its neighbours (m²): d a in a wire, π r² for a free sphere.
-fn shown_area(a: &Assembly, i: usize) -> f64 {
-    let d = 2.0 * a.radius[i];
-    if i >= a.wire_particles {
-        return std::f64::consts::FRAC_PI_4 * d * d;
-    }
-    // The last particle of a wire has its bond before it.
-    let spacing = if a.is_bond(i) || i == 0 { a.rest_length[i] } else { a.rest_length[i - 1] };
-    d * spacing
-}
-
-/// The next round number (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 × a power of ten) at or above `value`.
-fn round_up(value: f64) -> f64 {
-    let scale = 10f64.powf(value.log10().floor());
-    let round = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 10.0];
-    round.into_iter().map(|r| r * scale).find(|r| *r >= value * (1.0 - 1e-9)).unwrap_or(value)
 }

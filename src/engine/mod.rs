@@ -6,45 +6,50 @@
 
 pub mod bonds;
 pub mod bytes;
-pub mod contacts;
-pub mod crossing;
+pub mod contact;
+pub mod estimates;
 pub mod grips;
+mod info;
 pub mod integrate;
-mod kinds;
+mod loading_rate;
 pub mod measure;
+pub mod memory;
+mod monitor;
 pub mod neighbours;
-pub mod pace;
-pub mod pair;
 pub mod rupture;
-pub mod spheres;
+mod shared_rows;
 pub mod state;
-pub mod straight;
+mod step_choice;
+pub mod step_view;
+mod straight;
 pub mod time_step;
+mod timings;
 pub mod view;
-pub mod watch;
-pub mod wires;
 
 use crate::base::error::{Error, Result};
-use crate::base::finding::{Failure, StepLimit};
+use crate::base::finding::{Failure, Notice, StepLimit, Stopped};
 use crate::law::bond::elastic::Elastic;
 use crate::law::bond::elasto_plastic::ElastoPlastic;
 use crate::law::bond::{BondLaw, Moduli};
-use crate::law::contact::constants::effective_modulus;
 use crate::scene::plan::{ContactPlan, Plan};
-use crate::scene::spec::{BondLawSpec, Material, Spec};
+use crate::scene::spec::{BondLawSpec, Spec};
 use crate::strand::assembly::Assembly;
 use bonds::{BondStage, Bonds};
-use contacts::Contacts;
+use contact::Contacts;
 use grips::Holds;
+use loading_rate::Ahead;
 use measure::Measures;
+use memory::StageBytes;
+use monitor::{Action, Monitor};
 use neighbours::Neighbours;
 use pulp::Arch;
 use rupture::RuptureCheck;
 use state::State;
-use std::time::{Duration, Instant};
+use std::time::Instant;
+use step_view::StepView;
 use time_step::{Bound, Stiffness};
-use view::{Energy, Rupture};
-use watch::Watch;
+pub use timings::Timings;
+use view::{Energy, Findings, RunInfo, Rupture, Sample, Snapshot};
 
 /// Revision of the physics: raised whenever a run gives other bits than before, which `tests/revision.rs` sees. Kept results
 /// of another revision are not those that this engine would give.
@@ -52,61 +57,8 @@ pub const REVISION: u32 = 1;
 
 /// Steps between two evaluations of the bound on the time step.
 const BOUND_INTERVAL: u64 = 64;
-/// Greatest growth of the step at one evaluation (-).
-const GROWTH: f64 = 2.0;
-/// First step of bodies that overlap, over the usual one (-); it grows from one evaluation to the next.
-const START: f64 = 0.25;
-/// Energy of contacts at the start, over a negligible one, from which bodies count as overlapping (-): that of an elastic
-/// strain of 1e-4 everywhere.
-const THROWN: f64 = 1e10;
-/// Steps of free flight until the end of the run (-).
-const FLIGHT_STEPS: f64 = 10_000.0;
-/// Least number of steps of an impact (-); leapfrog is then good for (π/100)²/24 of its time, 4e-5.
-const IMPACT_STEPS: f64 = 100.0;
 /// A particle that moves further than this share of the least radius in one step has run away (-).
 const RUNAWAY: f64 = 0.1;
-/// What is fast is stepped so that it moves no further than this share of the least radius in one step (-): half of
-/// what counts as running away, for speeds that grow between two evaluations.
-const TRAVEL: f64 = 0.05;
-
-/// Wall time spent per stage.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Timings {
-    /// Kick, holds, drift, gather.
-    pub integrate: Duration,
-    /// Neighbour search.
-    pub neighbours: Duration,
-    /// Bonds and rupture.
-    pub bonds: Duration,
-    /// Contacts.
-    pub contacts: Duration,
-    /// Bound on the time step.
-    pub time_step: Duration,
-}
-
-impl Timings {
-    /// Every stage with its name.
-    pub fn stages(&self) -> [(&'static str, Duration); 5] {
-        [
-            ("motion", self.integrate),
-            ("bonds", self.bonds),
-            ("contacts", self.contacts),
-            ("neighbours", self.neighbours),
-            ("time step", self.time_step),
-        ]
-    }
-
-    /// What has been spent since `earlier`.
-    pub fn since(&self, earlier: &Self) -> Self {
-        Self {
-            integrate: self.integrate - earlier.integrate,
-            neighbours: self.neighbours - earlier.neighbours,
-            bonds: self.bonds - earlier.bonds,
-            contacts: self.contacts - earlier.contacts,
-            time_step: self.time_step - earlier.time_step,
-        }
-    }
-}
 
 /// Contacts with their neighbour search.
 struct ContactPart {
@@ -135,16 +87,16 @@ pub struct Engine {
     least_radius: f64,
     timings: Timings,
     arch: Arch,
-    watch: Watch,
+    monitor: Monitor,
 }
 
 impl Engine {
-    /// Sets the assembly up for its first step.
+    /// Sets the assembly up for its first step. `plan` is that of `spec` ([`Plan::new`]).
     ///
     /// # Errors
     /// When there is no stable step because nothing is stiff and the scene fixes none, or a grip holds nothing.
-    pub fn new(spec: &Spec, assembly: Assembly) -> Result<Self> {
-        Self::set_up(spec, assembly, build_bonds)
+    pub fn new(spec: &Spec, plan: &Plan, assembly: Assembly) -> Result<Self> {
+        Self::set_up(spec, plan, assembly, build_bonds)
     }
 
     /// [`Engine::new`] with a bond law of one's own in the place of the scene's, whose `bond.law` and hardening then say
@@ -152,24 +104,24 @@ impl Engine {
     ///
     /// # Errors
     /// As for [`Engine::new`].
-    pub fn with_law<L: BondLaw>(spec: &Spec, assembly: Assembly, law: L) -> Result<Self> {
-        Self::set_up(spec, assembly, |spec, plan, assembly| bond_stage(law, spec, plan, assembly))
+    pub fn with_law<L: BondLaw>(spec: &Spec, plan: &Plan, assembly: Assembly, law: L) -> Result<Self> {
+        Self::set_up(spec, plan, assembly, |spec, plan, assembly| bond_stage(law, spec, plan, assembly))
     }
 
     fn set_up(
         spec: &Spec,
+        plan: &Plan,
         assembly: Assembly,
         build_bonds: impl FnOnce(&Spec, &Plan, &Assembly) -> Box<dyn Bonds>,
     ) -> Result<Self> {
-        let plan = Plan::new(spec);
         let mut state = State::new(&assembly, plan.rotations);
         let holds = Holds::new(spec, &assembly, &mut state)?;
-        let bonds = if plan.bonds { Some(build_bonds(spec, &plan, &assembly)) } else { None };
+        let bonds = if plan.bonds { Some(build_bonds(spec, plan, &assembly)) } else { None };
         let measures = Measures::new(spec, &assembly, &holds);
         let least_radius = assembly.radius.iter().copied().fold(f64::MAX, f64::min);
         let mut engine = Self {
             spec: spec.clone(),
-            plan,
+            plan: plan.clone(),
             state,
             bonds,
             contacts: None,
@@ -183,7 +135,7 @@ impl Engine {
             least_radius,
             timings: Timings::default(),
             arch: Arch::new(),
-            watch: Watch::new(spec, &assembly),
+            monitor: Monitor::new(spec, &assembly),
             holds,
             assembly,
         };
@@ -201,9 +153,9 @@ impl Engine {
     fn add_contacts(&mut self) {
         let Some(contact) = &self.spec.contact else { return };
         let diameter = 2.0 * self.assembly.radius.iter().copied().fold(0.0, f64::max);
-        self.state.meet_contacts();
+        self.state.make_room_for_contacts();
         self.contacts = Some(ContactPart {
-            stage: contacts::build(contact, &self.spec.material, &self.assembly),
+            stage: contact::build(contact, &self.spec.material, &self.assembly),
             neighbours: Neighbours::new(&self.assembly, contact.skin * diameter, contact.shape),
             stale: true,
         });
@@ -217,9 +169,7 @@ impl Engine {
     pub fn step(&mut self) -> Result<()> {
         if self.state.step.is_multiple_of(BOUND_INTERVAL) && self.state.step > 0 {
             self.choose_step()?;
-            self.choose_pace(BOUND_INTERVAL);
-            self.watch_stages()?;
-            self.watch_necking();
+            self.watch()?;
         }
         let began = Instant::now();
         let kicked = 0.5 * (self.state.dt + self.next_dt);
@@ -237,7 +187,7 @@ impl Engine {
         self.state.travel += largest2.sqrt();
         let limit = RUNAWAY * self.least_radius;
         if largest2.is_nan() || largest2 > limit * limit {
-            return Err(self.runaway(limit));
+            return Err(self.failed(monitor::ran_away(&self.view(), RUNAWAY)));
         }
         if let Some(c) = &mut self.contacts {
             c.stale |= c.neighbours.stale(&self.state, &self.holds.stretch);
@@ -260,7 +210,7 @@ impl Engine {
         self.timings.bonds += after_bonds - began;
         let stale = self.contacts.as_ref().is_some_and(|c| c.stale);
         if stale {
-            self.inspect()?;
+            self.check_crossings()?;
         }
         if let Some(c) = &mut self.contacts {
             if c.stale {
@@ -278,9 +228,11 @@ impl Engine {
             self.energy.friction += partial.friction;
             self.energy.damping += partial.damping;
             self.timings.contacts += after_search.elapsed();
-            self.watch_contacts(partial.deepest);
+            if self.monitor.is_deepest(&partial.deepest) {
+                self.show(|monitor, view| monitor.look_at_contact(partial.deepest, view));
+            }
             if stale {
-                self.watch_stretch();
+                self.show(Monitor::look_at_search);
             }
         }
         let before_gather = Instant::now();
@@ -335,7 +287,7 @@ impl Engine {
         }
     }
 
-    /// Follows the bound on the stable step; small changes are left alone, so that leapfrog keeps its even step.
+    /// Follows the bound on the stable step.
     fn choose_step(&mut self) -> Result<()> {
         let began = Instant::now();
         self.stiffness.clear();
@@ -349,94 +301,59 @@ impl Engine {
         let hold = &self.state.hold;
         self.bound = self.stiffness.bound(&self.state, self.spec.time.contact_resolution, |p| hold[p] != 0);
         self.timings.time_step += began.elapsed();
-        self.next_dt = self.wanted_step()?;
-        self.watch_step();
+        self.next_dt = step_choice::choose(&self.view())?;
+        self.show(|monitor, view| monitor.look_at_step(view));
         Ok(())
     }
 
-    /// The step to take from here on (s).
-    fn wanted_step(&self) -> Result<f64> {
-        if let Some(step) = self.spec.time.step {
-            return Ok(step);
+    /// Lets the monitor look at everything, and does what it answers.
+    fn watch(&mut self) -> Result<()> {
+        for action in self.show(Monitor::look) {
+            match action {
+                Action::AddContacts => self.add_contacts(),
+                Action::AdjustLoadingRate(ahead) => {
+                    let interval = BOUND_INTERVAL as f64 * self.next_dt;
+                    self.holds.loading_rate.iter_mut().for_each(|rate| rate.aim(ahead, interval));
+                }
+                Action::Stop(failure) => return Err(self.failed(failure)),
+            }
         }
-        let stiff = (self.spec.time.safety * self.bound.step).min(self.impact_step());
-        let wanted = if self.bonds.is_some() && stiff.is_finite() { stiff } else { stiff.min(self.flight_step()) };
-        let wanted = wanted.min(self.travel_step());
-        if !wanted.is_finite() && self.next_dt == 0.0 {
-            return Err(Error::input(
-                "nothing in this scene is stiff, so there is no bound on the time step",
-                "state time.step, e.g. step = \"1e-7 s\", or stop.time",
-            ));
+        Ok(())
+    }
+
+    /// Shows the monitor what there is.
+    fn show<A>(&mut self, look: impl FnOnce(&mut Monitor, &StepView) -> A) -> A {
+        let mut monitor = std::mem::take(&mut self.monitor);
+        let answer = look(&mut monitor, &self.view());
+        self.monitor = monitor;
+        answer
+    }
+
+    /// The error that ends a run now.
+    fn failed(&self, failure: Failure) -> Error {
+        Error::Simulation(Box::new(Stopped { at: self.view().instant(), failure, kept: None }))
+    }
+
+    /// What can be seen between two steps.
+    pub fn view(&self) -> StepView<'_> {
+        StepView {
+            spec: &self.spec,
+            plan: &self.plan,
+            assembly: &self.assembly,
+            state: &self.state,
+            bonds: self.bonds.as_deref(),
+            contacts: self.contacts.as_ref().map(|c| &*c.stage),
+            neighbours: self.contacts.as_ref().map(|c| &c.neighbours),
+            holds: &self.holds,
+            measures: &self.measures,
+            ledger: &self.energy,
+            ruptures: self.rupture_count,
+            bound: &self.bound,
+            time_step: self.next_dt,
         }
-        // What is foreseen at one step may not hold for a much longer one.
-        let wanted = if self.next_dt > 0.0 { wanted.min(GROWTH * self.next_dt) } else { wanted * self.start() };
-        let changes = wanted.is_finite() && (self.next_dt == 0.0 || (wanted / self.next_dt - 1.0).abs() > 0.01);
-        Ok(if changes { wanted } else { self.next_dt })
     }
 
-    /// Share of the step that the first steps take (-): bodies that overlap from the start are thrown apart in a few
-    /// steps, and with full ones the energy of that is off by per cents.
-    fn start(&self) -> f64 {
-        let much = THROWN * self.negligible_energy();
-        let pressed = self.contacts.as_ref().is_some_and(|c| c.stage.elastic_energy(&self.state) > much);
-        if pressed { START } else { 1.0 }
-    }
-
-    /// Free flight: nothing limits the step but how finely the scene wants to be seen (s).
-    fn flight_step(&self) -> f64 {
-        self.spec.stop.time.map_or(f64::INFINITY, |time| time / FLIGHT_STEPS)
-    }
-
-    /// The step in which the fastest particle moves by [`TRAVEL`] of the least radius (s); infinite at rest.
-    fn travel_step(&self) -> f64 {
-        TRAVEL * self.least_radius / self.fastest()
-    }
-
-    /// Greatest speed of a particle now (m/s).
-    fn fastest(&self) -> f64 {
-        self.state.v.iter().map(|v| v.length()).fold(0.0, f64::max)
-    }
-
-    /// A share of the shortest impact of a free sphere (s): nothing is stiff before two bodies meet, so the bound comes
-    /// too late for them, and an impact of a few steps, though stable, has the wrong outcome.
-    ///
-    /// Contact time 2.868 (m*²/(R*E*²v))^(1/5) (Hertz), m* against an equal sphere, R* against a flat one, twice the
-    /// greatest speed.
-    fn impact_step(&self) -> f64 {
-        let spheres = self.assembly.wire_particles..self.assembly.len();
-        if self.contacts.is_none() || spheres.is_empty() {
-            return f64::INFINITY;
-        }
-        let Material { young, poisson, .. } = self.spec.material;
-        let modulus = effective_modulus(young, poisson, young, poisson);
-        let speed = 2.0 * self.fastest();
-        let impact = |p: usize| {
-            let mass = 0.5 * self.state.mass[p];
-            2.868 * (mass * mass / (self.state.radius[p] * modulus * modulus * speed)).powf(0.2)
-        };
-        spheres.map(impact).fold(f64::INFINITY, f64::min) / IMPACT_STEPS
-    }
-
-    fn runaway(&self, limit: f64) -> Error {
-        let far = |p: usize| (self.state.v.get(p) * self.state.dt).length();
-        let worst = (0..self.state.len())
-            .max_by(|a, b| {
-                let key = |p: usize| if far(p).is_nan() { f64::INFINITY } else { far(p) };
-                key(*a).total_cmp(&key(*b))
-            })
-            .unwrap_or(0);
-        let moved = far(worst);
-        self.failed(Failure::Runaway {
-            particle: self.member(worst),
-            moved_m: (!moved.is_nan()).then_some(moved),
-            limit_m: limit,
-            limit_over_radius: RUNAWAY,
-            step_s: self.state.dt,
-            bound_s: Some(self.bound.step).filter(|bound| bound.is_finite()),
-        })
-    }
-
-    /// Strain of the body: grip displacement over gauge length, smoothed as stress is, so that the two belong together
+    /// Strain of the body: grip displacement over the free length between the particles held, smoothed as stress is, so that the two belong together
     /// ([`measure::Measures`]) (-).
     pub fn strain(&self) -> f64 {
         self.measures.strain()
@@ -469,25 +386,67 @@ impl Engine {
 
     /// What limits the time step.
     pub fn time_step_limit(&self) -> StepLimit {
-        let bound = &self.bound;
-        let stiff = self.spec.time.safety * bound.step;
-        if self.spec.time.step.is_some() {
-            StepLimit::Scene { bound_s: Some(bound.step).filter(|bound| bound.is_finite()) }
-        } else if self.travel_step() < stiff.min(self.impact_step()) {
-            StepLimit::Travel { share_of_radius: TRAVEL }
-        } else if self.impact_step() < stiff {
-            StepLimit::Impact { steps: IMPACT_STEPS }
-        } else if !bound.step.is_finite() {
-            StepLimit::None
-        } else {
-            StepLimit::Stiffness {
-                mode: bound.mode,
-                element: bound.element(),
-                body: self.body(bound.particle),
-                bound_s: bound.step,
-                safety: self.spec.time.safety,
-            }
-        }
+        step_choice::limit(&self.view())
+    }
+
+    /// A row of the curve.
+    pub fn sample(&self) -> Sample {
+        self.view().sample()
+    }
+
+    /// Every particle.
+    pub fn snapshot(&self) -> Snapshot {
+        self.view().snapshot()
+    }
+
+    /// The energy ledger now.
+    pub fn energy(&self) -> Energy {
+        self.view().energy()
+    }
+
+    /// What does not change during the run.
+    pub fn info(&self) -> RunInfo {
+        info::info(&self.spec, &self.assembly, self.holds.stretch.gauge)
+    }
+
+    /// Memory by stage, now.
+    pub fn bytes(&self) -> StageBytes {
+        StageBytes::of(&self.view(), self.stiffness.bytes())
+    }
+
+    /// Speed of the upper grip along z now, of a pull at constant or adaptive speed (m/s); 0 of any other drive.
+    pub fn grip_speed(&self) -> f64 {
+        self.holds.speed()
+    }
+
+    /// Time that an adaptive pull is expected to take from here to `strain` (s), by the law of the bonds alone. `None` of
+    /// any other drive.
+    pub fn adaptive_time(&self, strain: f64) -> Option<f64> {
+        let now = Ahead { work: self.holds.work, strain: self.holds.strain(), left: 0.0 };
+        Some(self.holds.loading_rate.as_ref()?.time_to(strain, now, &self.spec, self.assembly.area))
+    }
+
+    /// Notices since the last call, in order.
+    pub fn take_notices(&mut self) -> Vec<Notice> {
+        self.monitor.take_notices()
+    }
+
+    /// Those of them that have become worse since they were given, as they were at their worst.
+    pub fn take_worse(&mut self) -> Vec<Notice> {
+        self.monitor.take_worse()
+    }
+
+    /// What was seen of the engine's own limits over the whole run so far.
+    pub fn findings(&self) -> Findings {
+        self.monitor.findings(&self.view())
+    }
+
+    /// Looks whether wires passed through each other since the last neighbour search.
+    ///
+    /// # Errors
+    /// [`Error::Simulation`] when two did.
+    pub fn check_crossings(&self) -> Result<()> {
+        monitor::crossed(&self.view()).map_or(Ok(()), |failure| Err(self.failed(failure)))
     }
 
     /// Ruptures since the last call, in order.

@@ -206,7 +206,7 @@ impl Neighbours {
         let grown = self.longest * (1.0 + self.skin / (reach + self.skin)) + self.skin;
         match self.shape {
             Shape::Wire => {
-                let broken = state.parted.iter().any(|length| *length > 0.0);
+                let broken = state.length_at_break.iter().any(|length| *length > 0.0);
                 let aside = if broken { 1.0 } else { SQRT_HALF };
                 reach.hypot(aside * grown.min(MOST_STRETCH * self.rest)) - reach
             }
@@ -224,6 +224,11 @@ impl Neighbours {
     /// The list, and the positions, of the last search.
     pub fn last(&self) -> (&PairList, &Vectors) {
         (&self.list, &self.reference)
+    }
+
+    /// What touches.
+    pub fn shape(&self) -> Shape {
+        self.shape
     }
 
     /// Skin (m).

@@ -101,7 +101,7 @@ pub struct State {
     /// Whether each bond slot holds.
     pub whole: Vec<bool>,
     /// Length without stress that the bond of each slot had when it broke (m); 0 where none did.
-    pub parted: Vec<f64>,
+    pub length_at_break: Vec<f64>,
     /// Current contact radii (m).
     pub radius: Vec<f64>,
     /// By how much each has shrunk in the last step (m).
@@ -144,7 +144,7 @@ impl State {
             contact_torque: Vectors::default(),
             bond: BondActions::new(n, turn),
             whole: (0..n).map(|i| a.is_bond(i)).collect(),
-            parted: vec![0.0; n],
+            length_at_break: vec![0.0; n],
             radius: a.radius.clone(),
             thinned: vec![0.0; n],
             radius0: a.radius.clone(),
@@ -168,15 +168,16 @@ impl State {
     }
 
     /// What contacts read, and what they write.
-    pub fn split_contacts(&mut self) -> (Seen<'_>, ContactSides<'_>) {
+    pub fn split_contacts(&mut self) -> (ParticleView<'_>, ContactSides<'_>) {
         let (x, v, w) = (self.x.rows(), self.v.rows(), self.w.rows());
-        let seen = Seen { x, v, w, radius: &self.radius, thinned: &self.thinned, dt: self.dt, travel: self.travel };
+        let seen =
+            ParticleView { x, v, w, radius: &self.radius, thinned: &self.thinned, dt: self.dt, travel: self.travel };
         let (f, t) = (&mut self.contact_force, &mut self.contact_torque);
         (seen, ContactSides { force: [&mut f.x, &mut f.y, &mut f.z], torque: [&mut t.x, &mut t.y, &mut t.z] })
     }
 
     /// Makes room for what contacts do.
-    pub fn meet_contacts(&mut self) {
+    pub fn make_room_for_contacts(&mut self) {
         self.contact_force = Vectors::zeros(self.len());
         self.contact_torque = Vectors::zeros(self.len());
     }
@@ -224,7 +225,7 @@ impl State {
 }
 
 /// What contacts see of all particles; see [`State`].
-pub struct Seen<'a> {
+pub struct ParticleView<'a> {
     /// Centres (m).
     pub x: [&'a [f64]; 3],
     /// Velocities (m/s).
@@ -267,7 +268,7 @@ impl<'a> ContactSides<'a> {
 
 /// Sums of one chunk each; added up in order.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Partial {
+pub struct ChunkSums {
     /// Plastic work (J).
     pub plastic: f64,
     /// Viscous damping (J).
@@ -299,21 +300,21 @@ impl Deepest {
     /// Takes in a touching pair with its overlap, the smaller radius (m), the area (m²) and the normal force (N). No
     /// division unless it is the deepest so far: every contact comes by at every step.
     #[inline(always)]
-    pub fn meet(&mut self, pair: [u32; 2], overlap: f64, radius: f64, area: impl FnOnce() -> f64, force: f64) {
+    pub fn take_in(&mut self, pair: [u32; 2], overlap: f64, radius: f64, area: impl FnOnce() -> f64, force: f64) {
         if overlap > self.ratio * radius {
             *self = Self { ratio: overlap / radius, pair, force, area: area() };
         }
     }
 }
 
-impl Partial {
+impl ChunkSums {
     /// Nothing yet, but a contact counts as deepest only beyond `deepest`: while a run has seen deeper ones, none does.
     pub fn beyond(deepest: Deepest) -> Self {
         Self { deepest, ..Self::default() }
     }
 
     /// Adds another partial sum.
-    pub fn add(&mut self, other: &Partial) {
+    pub fn add(&mut self, other: &ChunkSums) {
         self.plastic += other.plastic;
         self.damping += other.damping;
         self.friction += other.friction;

@@ -20,7 +20,7 @@ pub fn runs(particles: &[u32]) -> Vec<Range<usize>> {
 }
 
 /// Gives the particles of a grip its velocity, after a kick.
-pub struct Straight<'a> {
+pub struct StraightGrip<'a> {
     pub runs: &'a [Range<usize>],
     pub state: &'a mut State,
     /// Velocity along z (m/s).
@@ -53,7 +53,7 @@ struct Sums {
     work: [f64; BLOCK],
 }
 
-impl WithSimd for Straight<'_> {
+impl WithSimd for StraightGrip<'_> {
     type Output = Effort;
 
     #[inline(always)]
@@ -73,7 +73,7 @@ impl WithSimd for Straight<'_> {
     }
 }
 
-impl Straight<'_> {
+impl StraightGrip<'_> {
     /// As many particles from the first of `run` on as a register holds. Past its end masses are 0, and so is the rest.
     #[inline(always)]
     fn hold<S: Simd>(&mut self, simd: S, run: Range<usize>, lane: usize, sums: &mut Sums) {

@@ -114,7 +114,7 @@ pub struct Sample {
     pub step: u64,
     /// Simulated time (s).
     pub time: f64,
-    /// Grip displacement over gauge length (-). Like stress, forces and torque it is a running mean over an eighth of an
+    /// Grip displacement over the free length between the particles held (-); 0 without grips. Like stress, forces and torque it is a running mean over an eighth of an
     /// elastic wave's passage ([`crate::engine::measure::Measures`]): all of them lag alike, so none is shifted against
     /// another. Energies and counts are those of the instant.
     pub strain: f64,
@@ -234,14 +234,14 @@ pub struct DeepestContact {
     pub position: [f64; 3],
     /// Normal force (N).
     pub force: f64,
-    /// Force over the area πR*δ of the contact (Pa).
+    /// Force over the area of the contact (Pa): πR*δ of a circle, Σ √(2R*δ) ds of a patch along a smooth wire.
     pub pressure: f64,
     /// Step.
     pub step: u64,
     /// Simulated time (s).
     pub time: f64,
-    /// Strain of the body (-).
-    pub strain: f64,
+    /// Strain of the body (-); `None` without grips.
+    pub strain: Option<f64>,
 }
 
 /// A time step, and when it was chosen.
@@ -253,8 +253,8 @@ pub struct StepAt {
     pub step: u64,
     /// Simulated time (s).
     pub time: f64,
-    /// Strain of the body (-).
-    pub strain: f64,
+    /// Strain of the body (-); `None` without grips.
+    pub strain: Option<f64>,
     /// What limited it.
     pub limit: StepLimit,
 }

@@ -1,6 +1,7 @@
 //! An animation of the frames, as it is asked for.
 
 use crate::base::error::{Error, Result};
+use crate::base::regular::check_target;
 use std::path::PathBuf;
 
 /// Where it goes.
@@ -44,13 +45,7 @@ impl Animation {
     /// [`Error::Input`] for a file name with another ending, or one that is taken while `overwrite` is not set.
     pub fn check(&self, overwrite: bool) -> Result<()> {
         self.format()?;
-        if self.file.exists() && !overwrite {
-            return Err(Error::input(
-                format!("{} exists", self.file.display()),
-                "give --overwrite to replace it, or another name with --animation",
-            ));
-        }
-        Ok(())
+        check_target(&self.file, overwrite, "--animation")
     }
 }
 

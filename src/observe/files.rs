@@ -2,6 +2,7 @@
 
 use super::partial;
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -10,9 +11,11 @@ use std::path::{Path, PathBuf};
 /// interruption never leaves half a file under that name.
 ///
 /// # Errors
-/// [`Error::Io`] when the folder cannot be written or the disk is full.
+/// [`Error::Input`] where a device, a pipe, a link or a folder has that name; [`Error::Io`] when the folder cannot be
+/// written or the disk is full.
 pub fn write_whole(path: &Path, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<()> {
     let refuse = |source| Error::io("cannot write", path, source);
+    regular::replaceable(path)?;
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -43,8 +46,7 @@ impl LiveTable {
     /// # Errors
     /// [`Error::Io`] when the file cannot be created.
     pub fn create(path: PathBuf, header: &[String]) -> Result<Self> {
-        let growing = partial::name(&path);
-        let file = File::create(&growing).map_err(|e| Error::io("cannot write", &growing, e))?;
+        let file = partial::create(&path)?;
         let writer = csv::Writer::from_writer(BufWriter::new(file));
         let mut table = Self { path, writer };
         table.row(header)?;

@@ -1,8 +1,9 @@
 //! Watches whether the run can be trusted: every value finite, energy accounted for, loading quasi-static.
 
 use crate::base::error::{Error, Result};
-use crate::base::finding::{Failure, Finding, Instant, Notice, Once, Quantity, Stopped};
+use crate::base::finding::{Failure, Finding, Instant, Notice, Quantity, Stopped};
 use crate::base::units::percent;
+use crate::base::worst::Worst;
 use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::scene::spec::TimeSpec;
 use serde::{Deserialize, Serialize};
@@ -72,7 +73,7 @@ pub struct Guard {
     residual: Option<f64>,
     now: Instant,
     notices: Vec<Notice>,
-    made: Once,
+    worst: Worst,
 }
 
 impl Guard {
@@ -90,7 +91,7 @@ impl Guard {
             residual: None,
             now: Instant::default(),
             notices: Vec::new(),
-            made: Once::default(),
+            worst: Worst::default(),
         }
     }
 
@@ -158,6 +159,11 @@ impl Guard {
         std::mem::take(&mut self.notices)
     }
 
+    /// Those of them that have become worse since they were given, as they were at their worst.
+    pub fn take_worse(&mut self) -> Vec<Notice> {
+        self.worst.take_worse()
+    }
+
     /// How far from quasi-static loading was so far.
     pub fn quasi_static(&self) -> QuasiStatic {
         if !self.gripped {
@@ -185,9 +191,10 @@ impl Guard {
         Instant { step, time, strain: self.gripped.then_some(strain) }
     }
 
-    fn found(&mut self, finding: Finding) {
-        if self.made.first(finding.kind()) {
-            self.notices.push(Notice { at: self.now, finding });
+    /// Takes note of a finding that is the worst of its kind by `measure`.
+    fn found(&mut self, measure: f64, finding: Finding) {
+        if self.worst.tops(finding.kind(), measure) {
+            self.notices.extend(self.worst.put(measure, Notice { at: self.now, finding }));
         }
     }
 
@@ -197,7 +204,7 @@ impl Guard {
             return;
         }
         if !self.is_settled() {
-            self.found(Finding::TooShort { passages: self.now.time / self.passage, start: FIRST_PASSAGES });
+            self.found(0.0, Finding::TooShort { passages: self.now.time / self.passage, start: FIRST_PASSAGES });
         }
         let seen = self.quasi_static();
         if let Some(ratio) = seen.kinetic_over_internal_max {
@@ -206,13 +213,14 @@ impl Guard {
         if let Some(mismatch) = seen.grip_force_mismatch_percent
             && mismatch > percent(self.limits.mismatch_limit)
         {
-            self.found(Finding::GripForcesDiffer { mismatch: 0.01 * mismatch, limit: self.limits.mismatch_limit });
+            let limit = self.limits.mismatch_limit;
+            self.found(mismatch, Finding::GripForcesDiffer { mismatch: 0.01 * mismatch, limit });
         }
     }
 
     fn judge_kinetic(&mut self, over_internal: f64) {
         if over_internal > self.limits.kinetic_limit {
-            self.found(Finding::KineticEnergy { over_internal, limit: self.limits.kinetic_limit });
+            self.found(over_internal, Finding::KineticEnergy { over_internal, limit: self.limits.kinetic_limit });
         }
     }
 
@@ -238,7 +246,7 @@ impl Guard {
         if share > ENERGY_STOP {
             return Err(failed(self.now, Failure::LedgerOpen { missing_j: gap, over_work: share }));
         }
-        self.found(Finding::LedgerOpen { missing_j: gap, over_work: share });
+        self.found(share, Finding::LedgerOpen { missing_j: gap, over_work: share });
         Ok(())
     }
 
@@ -398,6 +406,19 @@ mod tests {
         let error = new().row(&open).unwrap_err();
         assert!(error.to_string().contains("42.86 % of the work done, came from nowhere"), "{error}");
         assert_eq!(error.exit_code(), 4);
+    }
+
+    #[test]
+    fn an_open_ledger_is_told_again_at_its_worst() {
+        let open = |step, work| {
+            let row = row(0.0, 100.0, [1.0, 1.0]);
+            Sample { step, energy: Energy { work, ..row.energy }, ..row }
+        };
+        let mut guard = gripped(&[open(1, 102.0), open(2, 110.0), open(3, 105.0)]);
+        assert_eq!(guard.take_notices()[0].at.step, 1);
+        let worst = guard.take_worse();
+        assert_eq!((worst.len(), worst[0].at.step), (1, 2));
+        assert!(worst[0].to_string().contains("9.09 % of the work done"), "{worst:?}");
     }
 
     #[test]

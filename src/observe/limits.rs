@@ -27,15 +27,15 @@ pub struct Deepest {
     pub between: [Body; 2],
     /// Where (mm).
     pub z_mm: f64,
-    /// Strain of the body (%).
-    pub strain_percent: f64,
+    /// Strain of the body (%); `None` without grips.
+    pub strain_percent: Option<f64>,
     /// Simulated time (s).
     pub time_s: f64,
     /// Step.
     pub step: u64,
     /// Normal force (N).
     pub force_n: f64,
-    /// Mean pressure over the contact (MPa).
+    /// Force over the area of the contact (MPa): πR*δ of a circle, Σ √(2R*δ) ds of a patch along a smooth wire.
     pub pressure_mpa: f64,
 }
 
@@ -44,8 +44,8 @@ pub struct Deepest {
 pub struct Step {
     /// The time step (s).
     pub seconds: f64,
-    /// Strain of the body (%).
-    pub strain_percent: f64,
+    /// Strain of the body (%); `None` without grips.
+    pub strain_percent: Option<f64>,
     /// Simulated time (s).
     pub time_s: f64,
     /// What limited it.
@@ -60,7 +60,7 @@ impl Limits {
                 overlap_percent_of_radius: percent(at.ratio),
                 between: at.bodies,
                 z_mm: mm(at.position[2]),
-                strain_percent: percent(at.strain),
+                strain_percent: at.strain.map(percent),
                 time_s: at.time,
                 step: at.step,
                 force_n: at.force,
@@ -74,5 +74,5 @@ impl Limits {
 }
 
 fn step(at: StepAt) -> Step {
-    Step { seconds: at.seconds, strain_percent: percent(at.strain), time_s: at.time, limited_by: at.limit }
+    Step { seconds: at.seconds, strain_percent: at.strain.map(percent), time_s: at.time, limited_by: at.limit }
 }

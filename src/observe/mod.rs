@@ -5,10 +5,10 @@ pub mod colouring;
 pub mod files;
 pub mod guard;
 pub mod limits;
+pub mod origin;
 pub mod partial;
 pub mod peaks;
 pub mod planned;
-pub mod progress;
 #[cfg(feature = "record")]
 pub mod recording;
 pub mod report;

@@ -1,6 +1,7 @@
 //! The short report at the end of a run, in plain words.
 
 use super::summary::{Break, Extreme, ExtremeKind, RunSummary};
+use crate::base::wording::counted;
 use std::fmt::Write;
 
 /// The report of a run: strength, elongation, breaks, energy, quasi-static measures, cost.
@@ -47,8 +48,8 @@ pub fn report(summary: &RunSummary) -> String {
     }
     if let Some(deep) = &summary.limits.deepest_contact {
         let [a, b] = &deep.between;
-        let when = match summary.final_strain_percent {
-            Some(_) => format!("strain {:.2} %", deep.strain_percent),
+        let when = match deep.strain_percent {
+            Some(strain) => format!("strain {strain:.2} %"),
             None => format!("t = {:.3e} s", deep.time_s),
         };
         let depth = deep.overlap_percent_of_radius;
@@ -71,13 +72,13 @@ pub fn report(summary: &RunSummary) -> String {
 
 /// One line for logs and quiet runs.
 pub fn one_line(summary: &RunSummary) -> String {
-    let mut parts = vec![format!("{} steps in {:.1} s", summary.cost.steps, summary.cost.wall_s)];
+    let mut parts = vec![format!("{} in {:.1} s", counted(summary.cost.steps, "step"), summary.cost.wall_s)];
     let draw = summary.one_draw.map_or(String::new(), |draw| format!(" (one draw, seed {})", draw.seed));
     let named = |e: Extreme| format!("{} {:.2} MPa at {:.2} %{draw}", e.kind.name(), e.stress_mpa, e.strain_percent);
     parts.extend(summary.extremes().map(named));
     let wires: usize = summary.wires_broken_by_layer.values().map(|n| n.of).sum();
     if wires > 0 {
-        parts.push(format!("{} of {wires} wires broken", summary.wires_broken));
+        parts.push(format!("{} of {} broken", summary.wires_broken, counted(wires, "wire")));
     }
     format!("{}: {}; {}", summary.scene, parts.join(", "), summary.stopped_because)
 }
@@ -105,13 +106,13 @@ fn time_step(summary: &RunSummary) -> String {
 
 fn cost(summary: &RunSummary) -> String {
     let cost = &summary.cost;
-    let mut text = format!("{} steps, {:.1} s", cost.steps, cost.wall_s);
+    let mut text = format!("{}, {:.1} s", counted(cost.steps, "step"), cost.wall_s);
     if let Some(cpu) = cost.cpu_s {
         let _ = write!(text, ", {cpu:.1} s of processor time");
     }
     if let Some(ms) = cost.ms_per_step {
         let _ = write!(text, ", {ms:.3} ms per step");
     }
-    let _ = write!(text, " on {} threads", cost.threads);
+    let _ = write!(text, " on {}", counted(cost.threads, "thread"));
     text
 }

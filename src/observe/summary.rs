@@ -9,8 +9,9 @@ use super::tables::{cause, layer_name};
 use super::timings::Timings;
 use super::wording::OneDraw;
 use crate::base::error::Result;
-use crate::base::finding::{Finding, FindingKind, Instant, Notice, StopReason};
+use crate::base::finding::{Failure, Finding, Instant, Notice, StopReason, Stopped};
 use crate::base::units::{mm, mpa, percent};
+use crate::base::worst::renew;
 use crate::engine::view::{Energy, RunInfo, Rupture, Sample};
 use crate::scene::spec::{DriveSpec, Spec};
 use serde::{Deserialize, Serialize};
@@ -85,10 +86,11 @@ pub struct RunSummary {
     /// What the run cost and with what it was made.
     #[serde(flatten)]
     pub cost: Cost,
-    /// What must be known before believing the run, in words: the error that ended it first, then the findings in the
-    /// order in which they were made; empty when there is nothing.
+    /// What must be known before believing the run, in words: an error that ended it, then the findings in their order;
+    /// empty when there is nothing.
     pub warnings: Vec<String>,
-    /// The findings as facts.
+    /// The findings as facts: the failure that ended the run, then the others in the order of their steps, each kind once,
+    /// at its worst.
     pub findings: Vec<Found>,
 }
 
@@ -264,13 +266,12 @@ impl Summariser {
         let at = Instant { step: self.last.step, time: self.last.time, strain: gripped.then_some(self.last.strain) };
         let mut notices = self.notices.clone();
         notices.extend(off.map(|finding| Notice { at, finding }));
-        let (failures, others): (Vec<_>, Vec<_>) =
-            notices.iter().partition(|notice| notice.finding.kind() == FindingKind::Failed);
-        let said = failures.into_iter().chain(others).map(Notice::to_string);
+        notices.sort_by_key(|notice| (failure(notice).is_none(), notice.at.step));
+        let said = notices.iter().map(Notice::to_string);
         RunSummary {
             scene: spec.name.clone(),
             stopped: closing.stopped,
-            stopped_because: closing.stopped.to_string(),
+            stopped_because: because(&closing, notices.first()),
             tensile_strength_mpa: strength.map(|peak| mpa(peak.stress)),
             fracture_elongation_percent: strength.map(|peak| percent(peak.strain)),
             elongation_at_20_percent_drop_percent: drop.map(percent),
@@ -337,6 +338,27 @@ impl Summariser {
     }
 }
 
+/// The failure that a notice tells of.
+fn failure(notice: &Notice) -> Option<&Failure> {
+    match &notice.finding {
+        Finding::Failed { failure } => Some(failure),
+        _ => None,
+    }
+}
+
+/// Why a run ended, in words; of an error or a failure, which is the `first` of all notices, what it was.
+fn because(closing: &Closing, first: Option<&Notice>) -> String {
+    let stopped = || {
+        let notice = first?;
+        Some(Stopped { at: notice.at, failure: failure(notice)?.clone(), kept: None })
+    };
+    match (&closing.error, stopped()) {
+        (Some(error), _) => format!("an error ended it: {error}"),
+        (None, Some(stopped)) => format!("{} at step {}: {}", closing.stopped, stopped.at.step, stopped.why()),
+        (None, None) => closing.stopped.to_string(),
+    }
+}
+
 fn found(Notice { at, finding }: Notice) -> Found {
     Found { step: at.step, time_s: at.time, strain_percent: at.strain.map(percent), finding }
 }
@@ -387,7 +409,7 @@ impl Observer for Summariser {
     }
 
     fn notice(&mut self, notice: &Notice) -> Result<()> {
-        self.notices.push(notice.clone());
+        renew(&mut self.notices, notice);
         Ok(())
     }
 
@@ -402,171 +424,4 @@ impl Observer for Summariser {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::peaks::Peak;
-    use super::*;
-    use crate::base::finding::{Failure, Quantity};
-    use crate::engine::view::WireInfo;
-
-    fn info() -> Arc<RunInfo> {
-        let wire = |layer| WireInfo { layer, len: 2, ..WireInfo::default() };
-        Arc::new(RunInfo {
-            layers: vec!["core".into(), "outer".into()],
-            wires: vec![wire(0), wire(1), wire(1)],
-            gauge: Some([10e-3, 110e-3]),
-            strain_end: Some(0.3),
-            negligible_energy: 1e-12,
-            wave_passage: 3e-5,
-            ..RunInfo::default()
-        })
-    }
-
-    fn rupture(order: usize, wire: usize, layer: usize) -> Rupture {
-        Rupture {
-            order,
-            step: 10,
-            strain: 0.25,
-            wire,
-            layer,
-            position: [0.0, 0.0, 0.0657],
-            rest_z: 0.05,
-            stress: 294e6,
-            body_stress: 300e6,
-            first_of_wire: true,
-            ..Rupture::default()
-        }
-    }
-
-    fn row(strain: f64, stress: f64) -> Sample {
-        let energy = Energy { work: 2.0, elastic_bonds: 1.0, kinetic: 0.5, ..Energy::default() };
-        Sample { strain, stress, energy, ..Sample::default() }
-    }
-
-    fn spec() -> Spec {
-        // Only its name, seed and limits are read; any scene will do.
-        crate::scene::load("single-wire", &[]).unwrap().spec
-    }
-
-    fn seen() -> Summariser {
-        let mut summariser = Summariser::new();
-        summariser.start(&info()).unwrap();
-        for (strain, stress) in [(0.0, 0.0), (0.1, 250e6), (0.2, 300e6)] {
-            summariser.sample(&row(strain, stress)).unwrap();
-        }
-        for (order, wire, layer) in [(1, 2, 1), (2, 0, 0), (3, 2, 1)] {
-            summariser.rupture(&rupture(order, wire, layer)).unwrap();
-        }
-        summariser.sample(&row(0.3, 200e6)).unwrap();
-        summariser
-    }
-
-    fn close(value: Option<f64>, right: f64) {
-        let value = value.expect("there is a value");
-        assert!((value - right).abs() < 1e-9 * right.abs(), "{value} is not {right}");
-    }
-
-    #[test]
-    fn strength_and_elongations_are_read_from_the_curve() {
-        let summary = seen().summary(&spec(), 3, Closing::default());
-        close(summary.tensile_strength_mpa, 300.0);
-        close(summary.fracture_elongation_percent, 20.0);
-        // 240 MPa lies 60 % of the way from (20 %, 300 MPa) to (30 %, 200 MPa).
-        close(summary.elongation_at_20_percent_drop_percent, 26.0);
-        close(summary.residual_stress_mpa, 200.0);
-        close(summary.energy_residual_percent, 25.0);
-    }
-
-    #[test]
-    fn a_wire_that_breaks_twice_is_one_broken_wire() {
-        let summary = seen().summary(&spec(), 3, Closing::default());
-        assert_eq!(summary.wires_broken, 2);
-        assert_eq!(summary.bonds_broken, 3);
-        assert_eq!(summary.wires_broken_by_layer["core"], BrokenOf { broken: 1, of: 1 });
-        assert_eq!(summary.wires_broken_by_layer["outer"], BrokenOf { broken: 1, of: 2 });
-        let first = summary.first_rupture.unwrap();
-        assert_eq!((first.wire, first.layer.as_str(), first.order), (3, "outer", 1));
-        assert!((first.z_mm - 65.7).abs() < 1e-9);
-        assert_eq!(summary.breaks_by_layer["outer"].len(), 1);
-    }
-
-    #[test]
-    fn what_was_seen_at_every_step_counts_rather_than_the_rows() {
-        let mut summariser = seen();
-        let peak = Peak { stress: 301e6, strain: 0.21 };
-        let compression = Some(Peak { stress: -5e6, strain: 0.3 });
-        let peaks = Peaks { tension: Some(peak), compression, drop: Some(0.25), wires: Vec::new() };
-        summariser.peaks(&peaks).unwrap();
-        let summary = summariser.summary(&spec(), 3, Closing::default());
-        close(summary.tensile_strength_mpa, 301.0);
-        close(summary.fracture_elongation_percent, 21.0);
-        close(summary.elongation_at_20_percent_drop_percent, 25.0);
-        assert_eq!(summary.compressive_peak_mpa, None, "a pulled body that springs back was not pushed");
-    }
-
-    #[test]
-    fn a_body_that_did_not_fail_has_a_greatest_stress_and_no_strength() {
-        let mut summariser = Summariser::new();
-        summariser.start(&info()).unwrap();
-        for (strain, stress) in [(0.0, 0.0), (0.1, 250e6), (0.2, 300e6), (0.21, 250e6)] {
-            summariser.sample(&row(strain, stress)).unwrap();
-        }
-        summariser.rupture(&rupture(1, 2, 1)).unwrap();
-        let summary = summariser.summary(&spec(), 3, Closing::default());
-        assert_eq!((summary.tensile_strength_mpa, summary.fracture_elongation_percent), (None, None));
-        close(summary.greatest_stress_mpa, 300.0);
-        close(summary.strain_at_greatest_stress_percent, 20.0);
-    }
-
-    #[test]
-    fn a_body_that_is_pushed_has_a_compressive_peak() {
-        let spec = crate::scene::load("single-wire", &["grip.speed=-1 m/s".into()]).unwrap().spec;
-        let mut summariser = Summariser::new();
-        summariser.start(&info()).unwrap();
-        for (strain, stress) in [(0.0, 0.0), (-0.001, -97e6), (-0.006, 18e6)] {
-            summariser.sample(&row(strain, stress)).unwrap();
-        }
-        let summary = summariser.summary(&spec, 3, Closing::default());
-        close(summary.compressive_peak_mpa, -97.0);
-        close(summary.strain_at_compressive_peak_percent, -0.1);
-        assert_eq!((summary.tensile_strength_mpa, summary.greatest_stress_mpa), (None, None));
-    }
-
-    #[test]
-    fn rounding_errors_have_no_ratio() {
-        let mut summariser = Summariser::new();
-        summariser.start(&info()).unwrap();
-        let energy = Energy { work: 1e-24, elastic_bonds: 4e-20, ..Energy::default() };
-        summariser.sample(&Sample { energy, ..Sample::default() }).unwrap();
-        assert_eq!(summariser.summary(&spec(), 3, Closing::default()).energy_residual_percent, None);
-    }
-
-    #[test]
-    fn free_bodies_have_no_strength() {
-        let mut summariser = Summariser::new();
-        summariser.start(&Arc::new(RunInfo { gauge: None, ..info().as_ref().clone() })).unwrap();
-        summariser.sample(&row(0.0, 0.0)).unwrap();
-        let summary = summariser.summary(&spec(), 3, Closing::default());
-        assert_eq!(summary.tensile_strength_mpa, None);
-        assert_eq!(summary.quasi_static, QuasiStatic::default());
-        let json: serde_json::Value = serde_json::to_value(&summary).unwrap();
-        assert!(json["tensile_strength_mpa"].is_null() && json["kinetic_over_internal_max"].is_null());
-    }
-
-    #[test]
-    fn a_failure_stands_first_among_the_warnings() {
-        let at = Instant { step: 5, time: 0.0, strain: Some(0.1) };
-        let failure = Failure::NotFinite { quantity: Quantity::Torque };
-        let mut summariser = seen();
-        for finding in [Finding::TooShort { passages: 1.0, start: 10.0 }, Finding::Failed { failure }] {
-            summariser.notice(&Notice { at, finding }).unwrap();
-        }
-        let closing = Closing { stopped: StopReason::Failed, ..Closing::default() };
-        let summary = summariser.summary(&spec(), 3, closing);
-        assert_eq!(summary.warnings[0], "stopped at step 5: the torque is not a finite number");
-        assert_eq!((summary.warnings.len(), summary.findings.len()), (2, 2));
-        assert_eq!(summary.findings[0].strain_percent, Some(10.0));
-        let json = serde_json::to_value(&summary).unwrap();
-        assert_eq!(json["findings"][1]["failure"]["quantity"]["name"], "torque");
-        assert_eq!(serde_json::from_value::<RunSummary>(json).unwrap(), summary);
-    }
-}
+mod tests;

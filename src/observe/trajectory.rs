@@ -1,14 +1,16 @@
 //! The trajectory of a run (`trajectory.bin`): everything that is needed to draw it again without simulating.
 //!
-//! Format: the magic bytes, a version (u32, little endian), then an LZ4 frame of records. A record is its length
+//! Format: the magic bytes, a version (u32, little endian), the run's [`Origin`], then an LZ4 frame of records. A record is its length
 //! (u32, little endian) and that many bytes of postcard. The first record is the [`RunInfo`], each further one a
 //! [`Record`]; a record of length 0 ends the run, so a file that was cut off is recognised.
 
+use super::origin::Origin;
 use super::peaks::Peaks;
 use super::{Observer, partial};
 use crate::base::error::{Error, Result};
 use crate::base::finding::Notice;
-use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
+use crate::base::regular;
+use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot, WireInfo};
 use lz4_flex::frame::{FrameDecoder, FrameEncoder, FrameInfo};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::fs::File;
@@ -59,12 +61,13 @@ impl TrajectoryWriter {
     ///
     /// # Errors
     /// [`Error::Io`] when the file cannot be created.
-    pub fn new(file: &Path) -> Result<Self> {
+    pub fn new(file: &Path, origin: Origin) -> Result<Self> {
         let partial = partial::name(file);
+        let mut writer = BufWriter::new(partial::create(file)?);
         let open = || {
-            let mut writer = BufWriter::new(File::create(&partial)?);
             writer.write_all(&MAGIC)?;
             writer.write_all(&VERSION.to_le_bytes())?;
+            writer.write_all(&origin.to_bytes())?;
             Ok(FrameEncoder::with_frame_info(FrameInfo::new().block_checksums(true), writer))
         };
         let encoder = open().map_err(|e| Error::io("cannot write", &partial, e))?;
@@ -126,6 +129,7 @@ impl Observer for TrajectoryWriter {
 /// An item is an error when the file is damaged or ends before the run does; it is the last item then.
 pub struct Trajectory {
     path: PathBuf,
+    origin: Origin,
     info: Arc<RunInfo>,
     decoder: FrameDecoder<BufReader<File>>,
     records: usize,
@@ -139,16 +143,22 @@ impl Trajectory {
     /// [`Error::Io`] when it cannot be read or is cut off in its head; [`Error::Input`] when it is no trajectory or
     /// one of another version.
     pub fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path).map_err(|e| Error::io("cannot read", path, e))?;
+        let file = regular::open(path)?;
         let mut reader = BufReader::new(file);
-        check_head(path, &mut reader)?;
+        let origin = head(path, &mut reader)?;
         let mut decoder = FrameDecoder::new(reader);
         let info = match next(&mut decoder) {
-            Ok(Some(info)) => Arc::new(info),
+            Ok(Some(info)) if is_whole(&info) => Arc::new(info),
+            Ok(Some(_)) => return Err(Error::io("cannot read", path, damaged("its body does not fit together"))),
             Ok(None) => return Err(Error::io("cannot read", path, damaged("it does not describe its run"))),
             Err(e) => return Err(Error::io("cannot read", path, explained(e, 0))),
         };
-        Ok(Self { path: path.to_owned(), info, decoder, records: 0, ended: false })
+        Ok(Self { path: path.to_owned(), origin, info, decoder, records: 0, ended: false })
+    }
+
+    /// Which run it is of.
+    pub fn origin(&self) -> Origin {
+        self.origin
     }
 
     /// What does not change during the run.
@@ -165,9 +175,13 @@ impl Iterator for Trajectory {
             return None;
         }
         match next(&mut self.decoder) {
-            Ok(Some(record)) => {
+            Ok(Some(record)) if fits(&record, &self.info) => {
                 self.records += 1;
                 Some(Ok(record))
+            }
+            Ok(Some(_)) => {
+                self.ended = true;
+                Some(Err(Error::io("cannot read", &self.path, damaged("a record does not fit its body"))))
             }
             Ok(None) => {
                 self.ended = true;
@@ -181,7 +195,8 @@ impl Iterator for Trajectory {
     }
 }
 
-fn check_head(path: &Path, reader: &mut impl Read) -> Result<()> {
+/// Reads what is before the records.
+fn head(path: &Path, reader: &mut impl Read) -> Result<Origin> {
     let mut head = [0; MAGIC.len() + 4];
     let complete = match reader.read_exact(&mut head) {
         Ok(()) => true,
@@ -201,7 +216,9 @@ fn check_head(path: &Path, reader: &mut impl Read) -> Result<()> {
             "run the scene again with this program",
         ));
     }
-    Ok(())
+    let mut origin = [0; Origin::LEN];
+    reader.read_exact(&mut origin).map_err(|e| Error::io("cannot read", path, explained(e, 0)))?;
+    Ok(Origin::from_bytes(&origin))
 }
 
 /// The next record, or `None` at the mark that ends the run.
@@ -215,9 +232,45 @@ fn next<T: DeserializeOwned>(reader: &mut impl Read) -> std::io::Result<Option<T
     if length > LONGEST_RECORD {
         return Err(damaged("a record has an impossible length"));
     }
-    let mut bytes = vec![0; length as usize];
-    reader.read_exact(&mut bytes)?;
+    // A length may be damage: room is made for what is there.
+    let mut bytes = Vec::new();
+    if reader.take(u64::from(length)).read_to_end(&mut bytes)? < length as usize {
+        return Err(ErrorKind::UnexpectedEof.into());
+    }
     postcard::from_bytes(&bytes).map(Some).map_err(|e| damaged(&e.to_string()))
+}
+
+/// Whether what is said of the body can be shown: every index leads somewhere.
+fn is_whole(info: &RunInfo) -> bool {
+    let n = info.particles;
+    let wire = |w: &WireInfo| {
+        let end = w.first.checked_add(w.len);
+        w.layer < info.layers.len() && w.len > 1 && end.is_some_and(|end| end <= info.wire_particles)
+    };
+    n > 0
+        && info.wire_particles <= n
+        && (info.radius.len(), info.rest_position.len()) == (n, n)
+        && info.wires.iter().all(wire)
+}
+
+/// Whether a record is one of this body's.
+fn fits(record: &Record, info: &RunInfo) -> bool {
+    let row = |s: &Sample| {
+        [0, info.layers.len()].contains(&s.layer_stress.len()) && [0, info.wires.len()].contains(&s.wire_stress.len())
+    };
+    match record {
+        Record::Sample(sample) => row(sample),
+        Record::Snapshot(s) => {
+            let lengths = [s.position.len(), s.radius.len(), s.speed.len(), s.bond_state.len(), s.bond_stress.len()];
+            let others = [s.plastic_strain.len(), s.utilisation.len(), s.contact_pressure.len()];
+            row(&s.sample) && lengths.iter().chain(&others).all(|n| *n == info.particles)
+        }
+        Record::Rupture(r) => {
+            let bond = |w: &WireInfo| r.bond_in_wire + 1 < w.len && w.first + r.bond_in_wire == r.bond;
+            r.layer < info.layers.len() && info.wires.get(r.wire).is_some_and(bond)
+        }
+        Record::Notice(_) | Record::Peaks(_) => true,
+    }
 }
 
 fn damaged(what: &str) -> std::io::Error {

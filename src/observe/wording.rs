@@ -10,6 +10,9 @@ pub fn wire_number(wire: usize) -> usize {
     wire + 1
 }
 
+/// What the first break of a run is called: another strand has another.
+pub const FIRST_BREAK: &str = "first break in this strand";
+
 /// A layer as people say it: "outer layer"; one without a name by its number.
 pub fn layer_words(info: &RunInfo, layer: usize) -> String {
     match info.layers[layer].as_str() {

@@ -6,6 +6,7 @@ use super::section::Section;
 use super::source::Source;
 use crate::base::error::Result;
 use crate::base::units::{mm, mpa};
+use crate::base::wording::counted;
 use crate::engine::view::Rupture;
 use crate::observe::summary::RunSummary;
 use crate::observe::tables::layer_name;
@@ -89,7 +90,7 @@ fn listed(source: &Source) -> Vec<(&'static str, String, String)> {
     }
     if !source.info.wires.is_empty() {
         let of = format!("{} of {}", s.wires_broken, source.info.wires.len());
-        facts.push(("Wires broken", of, format!("{} bonds", s.bonds_broken)));
+        facts.push(("Wires broken", of, counted(s.bonds_broken, "bond")));
     }
     facts
 }

@@ -33,7 +33,7 @@ fn stress(source: &Source) -> Markup {
         id: "curve-whole",
         height: 400,
         caption: html! {
-            "Nominal stress (upper grip force over the wires' cross-sections before loading) over nominal strain (grip displacement over gauge length). "
+            "Nominal stress (upper grip force over the wires' cross-sections before loading) over nominal strain (grip displacement over the free length between the particles held). "
             @if !source.ruptures.is_empty() { "Ticks: ruptures, in the colour of their layer. " }
             (rows.len()) " of " (source.samples.len()) " rows of " code { "curve.csv" } "."
         },

@@ -27,8 +27,10 @@ pub use section::Section;
 pub use source::Source;
 
 use crate::base::error::{Error, Result};
+use crate::base::regular::check_target;
 use crate::observe::files::write_whole;
 use crate::run::folder::{self, REPORT};
+use crate::run::identity;
 use std::path::{Path, PathBuf};
 
 /// The sections, in their order on the page. A new one is a file with such a function, and a row here.
@@ -58,17 +60,19 @@ pub struct Written {
 }
 
 /// Writes the page of the run in folder `run` to `out`, by default `report.html` in that folder. `study` is the folder of
-/// a study of error against run time; by default the one of its scene, if there is one.
+/// a study of error against run time; by default the one of its scene, if there is one. Files that are not of one run are an error; with `anyway` the page says so.
 ///
 /// # Errors
 /// [`Error::Input`] when a folder holds no run or no study that can be read, or the file exists and `overwrite` is not
 /// set; [`Error::Io`] when the file system refuses.
-pub fn write(run: &Path, out: Option<&Path>, study: Option<&Path>, overwrite: bool) -> Result<Written> {
+pub fn write(run: &Path, out: Option<&Path>, study: Option<&Path>, overwrite: bool, anyway: bool) -> Result<Written> {
     let path = out.map_or_else(|| run.join(REPORT), Path::to_path_buf);
     // What stands in the way is said before a long run is read.
     source::check(run)?;
-    check_target(&path, overwrite)?;
+    check_target(&path, overwrite, "--out")?;
+    let doubts = identity::check(run, anyway)?;
     let mut source = Source::read(run)?;
+    source.notes.extend(doubts.iter().map(|doubt| format!("This page is of doubtful files: {doubt}.")));
     source.accuracy = read_study(study, &source.info.name)?;
     let text = html(&source)?;
     write_whole(&path, &text)?;
@@ -94,17 +98,4 @@ fn read_study(given: Option<&Path>, scene: &str) -> Result<Option<study::Study>>
         )
     };
     study::Study::read(given)?.ok_or_else(missing).map(Some)
-}
-
-fn check_target(path: &Path, overwrite: bool) -> Result<()> {
-    if path.is_dir() {
-        return Err(Error::input(format!("{} is a folder", path.display()), "give the name of a file with --out"));
-    }
-    if path.exists() && !overwrite {
-        return Err(Error::input(
-            format!("{} exists", path.display()),
-            "give --overwrite to replace it, or another file with --out",
-        ));
-    }
-    Ok(())
 }

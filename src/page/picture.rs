@@ -1,6 +1,7 @@
 //! Frames as they stand on the page: found in the run's folder, made smaller, as JPEG in text.
 
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::run::folder::FRAMES;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -71,7 +72,7 @@ fn numbered(folder: &Path) -> Result<BTreeMap<usize, PathBuf>> {
 /// # Errors
 /// [`Error::Io`] when it cannot be read; [`Error::Input`] when it is damaged.
 pub fn embed(path: &Path) -> Result<Embedded> {
-    let bytes = std::fs::read(path).map_err(|e| Error::io("cannot read", path, e))?;
+    let bytes = regular::read(path, regular::LONGEST_TABLE)?;
     let damaged = |e: image::ImageError| {
         Error::input(format!("{} is damaged: {e}", path.display()), "draw the frames again with `strandsnap render`")
     };

@@ -33,6 +33,7 @@ fn cost(source: &Source) -> Markup {
 fn facts(source: &Source) -> Vec<(&'static str, String)> {
     let s = &source.summary;
     let mut facts = vec![
+        ("id of the run", source.origin.run.to_string()),
         ("wires", source.info.wires.len().to_string()),
         ("particles", s.particles.to_string()),
         ("bonds", s.bonds.to_string()),

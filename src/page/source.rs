@@ -4,10 +4,12 @@ use super::picture::Pictures;
 use super::select;
 use super::study::Study;
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::base::units::{mm, ms, percent};
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use crate::observe::guard::{Guard, QuasiStatic};
+use crate::observe::origin::Origin;
 use crate::observe::partial;
 use crate::observe::summary::{Closing, Cost, RunSummary, Summariser};
 use crate::observe::trajectory::{Record, Trajectory};
@@ -18,6 +20,8 @@ use std::sync::Arc;
 
 /// A run as its folder tells it.
 pub struct Source {
+    /// Which run it is.
+    pub origin: Origin,
     /// What does not change during the run.
     pub info: Arc<RunInfo>,
     /// `summary.json`, or the same made from the trajectory when the run did not write one.
@@ -104,7 +108,7 @@ impl Source {
     pub fn read(run: &Path) -> Result<Self> {
         let trajectory = trajectory_in(run)?;
         let opened = open(&trajectory)?;
-        let info = opened.info().clone();
+        let (origin, info) = (opened.origin(), opened.info().clone());
         let pass = first_pass(opened)?;
         if pass.samples.is_empty() {
             return Err(Error::input(
@@ -125,6 +129,7 @@ impl Source {
         let chosen = select::states(&pass.samples, &pass.ruptures, &pass.steps, info.is_pulled());
         let states = second_pass(open(&trajectory)?, &chosen, &pictures)?;
         Ok(Self {
+            origin,
             info,
             summary,
             finished,
@@ -245,14 +250,7 @@ fn last(pass: &Pass, info: &RunInfo) -> String {
 
 /// The text of a file; `None` when there is none.
 fn text(path: &Path) -> Result<Option<String>> {
-    match std::fs::read_to_string(path) {
-        Ok(text) => Ok(Some(text)),
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(e) if e.kind() == std::io::ErrorKind::InvalidData => {
-            Err(Error::input(format!("{} is damaged: it is not text", path.display()), "run the scene again"))
-        }
-        Err(e) => Err(Error::io("cannot read", path, e)),
-    }
+    regular::text_if_there(path, regular::LONGEST_TABLE)
 }
 
 fn read_scene(run: &Path, notes: &mut Vec<String>) -> Result<(Option<String>, Option<Spec>)> {

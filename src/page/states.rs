@@ -9,6 +9,7 @@ use super::source::State;
 use super::unrolled::Map;
 use crate::base::error::Result;
 use crate::base::units::mpa;
+use crate::base::wording::counted;
 use maud::{Markup, html};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -20,7 +21,7 @@ pub fn section(source: &Source) -> Result<Section> {
     let pictures = pictures.collect::<Result<Vec<Option<Embedded>>>>()?;
     let body = match source.states.last() {
         Some(last) if map.is_some() || pictures.iter().any(Option::is_some) => html! {
-            p.key { (counted(source)) }
+            p.key { (counts(source)) }
             (controls(source, last))
             (frame(source, &pictures))
             @if let Some(map) = &map { (map.figure().markup()) } @else { p { "There is no map: this scene has no wires." } }
@@ -33,7 +34,7 @@ pub fn section(source: &Source) -> Result<Section> {
     Ok(Section { id: "states", title: "Step by step", body })
 }
 
-fn counted(source: &Source) -> Markup {
+fn counts(source: &Source) -> Markup {
     html! {
         (source.states.len()) " of the run's " (source.snapshots) " snapshots"
         @if source.first_rupture_step().is_some() { ", dense after the first rupture" } ". "
@@ -65,7 +66,7 @@ fn told(source: &Source, state: &State) -> String {
     let broken = if source.info.wires.is_empty() {
         String::new()
     } else {
-        format!(" · {} of {} wires broken", row.wires_broken, source.info.wires.len())
+        format!(" · {} of {} broken", row.wires_broken, counted(source.info.wires.len(), "wire"))
     };
     let label = state.label.map_or(String::new(), |label| format!(" · {label}"));
     format!("{}{stress}{broken} · step {}{label}", abscissa.moment(abscissa.value(row)), row.step)

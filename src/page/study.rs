@@ -1,6 +1,7 @@
 //! A study of error against run time as the page needs it, read from its folder.
 
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::run::folder::{ACCURACY_PLOT, ACCURACY_STUDY};
 use serde::Deserialize;
 use std::path::Path;
@@ -54,9 +55,5 @@ impl Study {
 }
 
 fn read(path: &Path) -> Result<Option<String>> {
-    match std::fs::read_to_string(path) {
-        Ok(text) => Ok(Some(text)),
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(Error::io("cannot read", path, e)),
-    }
+    regular::text_if_there(path, regular::LONGEST_TABLE)
 }

@@ -1,4 +1,4 @@
-//! Floor 1: closed forms to verify against, and the numbers of the reference paper. Nothing here simulates.
+//! Floor 1: closed forms to verify against, and published results. Nothing here simulates.
 //!
 //! | module | what it answers |
 //! | --- | --- |
@@ -17,7 +17,7 @@
 //! | [`plasticity`] | section limits of a round wire, its engineering curve, Considère's strain |
 //! | [`stability`] | exact critical step of uniform chains |
 //! | [`elliptic`] | elliptic integrals for the others |
-//! | [`paper`] | what the reference paper prints |
+//! | [`published`] | published tests and simulations of strands |
 
 pub mod beam;
 pub mod capstan;
@@ -28,8 +28,8 @@ pub mod helix;
 pub mod hertz;
 pub mod mindlin;
 pub mod oblique;
-pub mod paper;
 pub mod plasticity;
+pub mod published;
 pub mod sliding;
 pub mod spring;
 pub mod stability;

@@ -12,7 +12,6 @@ use crate::observe::animation::{Animation, Format};
 use crate::observe::partial;
 use image::RgbImage;
 use image::imageops::{FilterType, resize};
-use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -44,7 +43,7 @@ pub fn write(animation: &Animation, stills: &[Still]) -> Result<u64> {
     }
     let growing = partial::name(&animation.file);
     let refuse = |e| Error::io("cannot write", &growing, e);
-    let mut out = BufWriter::new(File::create(&growing).map_err(refuse)?);
+    let mut out = BufWriter::new(partial::create(&animation.file)?);
     let pictures = Pictures { stills, width: animation.width };
     match animation.format()? {
         Format::Gif => gif::write(&pictures, &mut out, &refuse)?,

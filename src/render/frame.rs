@@ -15,6 +15,7 @@ use super::{header, marks};
 use crate::base::error::{Error, Result};
 use crate::engine::view::{RunInfo, Rupture, Snapshot};
 use crate::observe::timings::Timings;
+use crate::scene::look::FRAME_SIDE;
 use crate::scene::spec::{OutputSpec, View};
 use image::{Rgb as Pixel, RgbImage};
 use std::time::Instant;
@@ -47,9 +48,12 @@ impl Renderer {
     pub fn new(info: &RunInfo, look: &OutputSpec) -> Result<Self> {
         let views = if look.views.is_empty() { usual(info) } else { look.views.clone() };
         let [w, h] = look.frame_size;
-        if !(160..=16384).contains(&w) || !(120..=16384).contains(&h) {
+        if !FRAME_SIDE.contains(&w) || !FRAME_SIDE.contains(&h) {
             let what = format!("frames of {w} × {h} pixels cannot be drawn");
-            return Err(Error::input(what, "sizes go from 160 × 120 to 16384 × 16384 pixels"));
+            return Err(Error::input(
+                what,
+                format!("a side has {} to {} pixels", FRAME_SIDE.start(), FRAME_SIDE.end()),
+            ));
         }
         let layout = layout(look.frame_size, &views);
         Ok(Self {

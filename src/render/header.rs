@@ -5,11 +5,10 @@ use super::colour::ColourScale;
 use super::data::Data;
 use crate::base::ticks::{label, ticks};
 use crate::base::units::{mm, mpa, ms, percent};
+use crate::base::wording::counted;
 use crate::engine::view::RunInfo;
+use crate::observe::wording::FIRST_BREAK;
 use crate::scene::spec::ColourBy;
-
-/// Caption of the block on the first rupture.
-const FIRST_BREAK: &str = "first break in this strand";
 
 /// Draws the header into `area`.
 pub fn draw(canvas: &mut Canvas, area: Rect, data: &Data) {
@@ -94,11 +93,10 @@ fn name(canvas: &mut Canvas, area: Rect, data: &Data) -> f32 {
 }
 
 fn size_text(info: &RunInfo) -> String {
-    let particles = format!("{} particles", info.particles);
+    let particles = counted(info.particles, "particle");
     match info.wires.len() {
         0 => particles,
-        1 => format!("1 wire · {particles}"),
-        n => format!("{n} wires · {particles}"),
+        n => format!("{} · {particles}", counted(n, "wire")),
     }
 }
 

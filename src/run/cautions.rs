@@ -4,6 +4,7 @@ use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::scene::Scene;
 use crate::scene::caution;
+use crate::scene::plan::Plan;
 use crate::scene::spec::{BondLawSpec, DriveSpec, Spec};
 use crate::strand;
 use crate::strand::assembly::Assembly;
@@ -29,16 +30,16 @@ pub fn of_scene(scene: &Scene, assembly: &Assembly) -> Result<Vec<String>> {
 pub fn of_run(scene: &Scene, assembly: &Assembly) -> Result<Vec<String>> {
     let mut all: Vec<String> = scene.idle.iter().map(ToString::to_string).collect();
     all.extend(strand::caution::cautions(&scene.spec, assembly));
-    all.extend(stored(&scene.spec, assembly)?);
+    all.extend(stored(&scene.spec, &scene.plan, assembly)?);
     Ok(all)
 }
 
 /// Says when bodies that overlap from the start hold energy that counts beside what the load stores.
-fn stored(spec: &Spec, assembly: &Assembly) -> Result<Option<String>> {
+fn stored(spec: &Spec, plan: &Plan, assembly: &Assembly) -> Result<Option<String>> {
     if spec.contact.is_none() {
         return Ok(None);
     }
-    let engine = Engine::new(spec, assembly.clone())?;
+    let engine = Engine::new(spec, plan, assembly.clone())?;
     let energy = engine.sample().energy;
     let contacts = energy.elastic_contacts + energy.plastic_contacts;
     let strain = end_strain(spec, assembly, engine.info().strain_end);

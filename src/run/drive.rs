@@ -11,6 +11,7 @@ use crate::observe::guard::{Guard, QuasiStatic};
 use crate::observe::limits::Limits;
 use crate::observe::peaks::{Monitor, Peaks};
 use crate::observe::planned::PlannedEnd;
+use crate::scene::plan::Plan;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
 use std::sync::Arc;
@@ -41,11 +42,11 @@ pub struct Outcome {
     pub observing: Duration,
 }
 
-/// Simulates an assembly and shows it to observers; writes nothing itself.
+/// Simulates the assembly of a scene and its plan, and shows it to observers; writes nothing itself.
 ///
 /// Rows and snapshots come as the scene's `output` says, in the order in which things happen; a rupture comes
 /// before the row that follows it. What a run should not be believed without comes as a notice when it is found,
-/// the error that ends a run included. The first and the last state always come with a snapshot, and ruptures with the
+/// the error that ends a run included, and once more at the end if it became worse. The first and the last state always come with a snapshot, and ruptures with the
 /// state at the last row before them and one soon after ([`Schedule`]). Every observer
 /// that was started is finished, also after an error. Call it inside a rayon pool to choose the threads.
 ///
@@ -54,11 +55,12 @@ pub struct Outcome {
 /// observer.
 pub fn simulate(
     spec: &Spec,
+    plan: &Plan,
     assembly: Assembly,
     observers: &mut [&mut dyn Observer],
     stop: &AtomicBool,
 ) -> Result<Outcome> {
-    simulate_engine(Engine::new(spec, assembly)?, observers, stop)
+    simulate_engine(Engine::new(spec, plan, assembly)?, observers, stop)
 }
 
 /// [`simulate`] from an engine that is set up, such as one with a bond law of its own ([`Engine::with_law`]).
@@ -151,6 +153,9 @@ impl Driver<'_, '_> {
         let ended = self.run(stop);
         self.guard.finish(matches!(ended, Ok(reason) if reason != StopReason::Interrupted));
         self.notices()?;
+        // What became worse after it was told of, as it was at its worst.
+        let worse = [self.engine.take_worse(), self.guard.take_worse()];
+        worse.iter().flatten().try_for_each(|notice| self.audience.notice(notice))?;
         if let Err(Error::Simulation(stopped)) = &ended {
             let finding = Finding::Failed { failure: stopped.failure.clone() };
             self.audience.notice(&Notice { at: stopped.at, finding })?;
@@ -173,7 +178,7 @@ impl Driver<'_, '_> {
             self.engine.step()?;
             self.look()?;
         };
-        self.engine.inspect()?;
+        self.engine.check_crossings()?;
         if self.shown != Some(self.engine.steps()) {
             self.show()?;
         }
@@ -186,7 +191,7 @@ impl Driver<'_, '_> {
         let engine = &self.engine;
         let (strain, stress) = (engine.strain(), engine.stress());
         self.rule.step(engine.time(), strain, stress);
-        self.monitor.see(strain, stress, (0..engine.assembly().wires.len()).map(|w| engine.wire_stress(w)));
+        self.monitor.see(strain, stress, (0..engine.assembly().wires.len()).map(|w| engine.view().wire_stress(w)));
     }
 
     /// The guard's look at the present state; a failure is told before it is returned.

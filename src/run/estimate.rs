@@ -1,12 +1,16 @@
 //! What a run would cost: the numbers behind `strandsnap plan`.
 
+use super::size::{Output, gigabytes};
 use crate::base::error::Result;
 use crate::base::finding::StepLimit;
 use crate::base::units::ms;
+use crate::base::wording::counted;
 use crate::engine::Engine;
-use crate::engine::bytes::StageBytes;
-use crate::scene::spec::{DriveSpec, Spec};
+use crate::engine::memory::StageBytes;
+use crate::scene::plan::Plan;
+use crate::scene::spec::{BondLawSpec, BondSpec, DriveSpec, Spec};
 use crate::strand::assembly::Assembly;
+use crate::strand::size::Size;
 use std::fmt;
 use std::time::{Duration, Instant};
 
@@ -36,31 +40,32 @@ pub struct Estimate {
     pub steps: Option<f64>,
     /// Wall time of a step, measured (s).
     pub step_wall: f64,
-    /// Where it goes, by stage (s).
+    /// Wall time of a step once wires flow and touch (s) ([`under_load`]); `None` where it was not measured or they never
+    /// do.
+    pub loaded_wall: Option<f64>,
+    /// Where the time of the first steps goes, by stage (s).
     pub stage_wall: [(&'static str, f64); 5],
     /// Number of steps that it was measured over.
     pub measured: u64,
     /// Memory by stage.
     pub bytes: StageBytes,
+    /// Most contacts at a time (-), roughly.
+    pub contacts: f64,
+    /// What it may write.
+    pub output: Output,
 }
 
 /// Sets a run up, tries a few steps and extrapolates. Call it inside a rayon pool to choose the threads.
 ///
 /// # Errors
-/// What [`Engine::new`] refuses, and trouble in the first steps.
-pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
+/// What [`Engine::new`] refuses, and failure of the first steps.
+pub fn estimate(spec: &Spec, plan: &Plan, assembly: Assembly) -> Result<Estimate> {
     let (wires, particles, bonds) = (assembly.wires.len(), assembly.len(), assembly.bond_count());
-    let mut engine = Engine::new(spec, assembly)?;
+    let mut engine = Engine::new(spec, plan, assembly)?;
     let first_time_step = engine.time_step();
     let duration = duration(spec, &engine);
     let before = *engine.timings();
-    let begin = Instant::now();
-    let mut measured = 0;
-    while measured == 0 || (measured < TRIAL_STEPS && begin.elapsed() < TRIAL_TIME) {
-        engine.step()?;
-        measured += 1;
-    }
-    let step_wall = begin.elapsed().as_secs_f64() / measured as f64;
+    let (step_wall, measured) = trial(&mut engine)?;
     let time_step = engine.time_step();
     let of_time = duration.map(|seconds| (seconds / time_step).ceil());
     let of_steps = spec.stop.steps.map(|n| n as f64);
@@ -74,10 +79,46 @@ pub fn estimate(spec: &Spec, assembly: Assembly) -> Result<Estimate> {
         duration,
         steps: [of_time, of_steps].into_iter().flatten().reduce(f64::min),
         step_wall,
+        loaded_wall: None,
         stage_wall: engine.timings().since(&before).stages().map(|(name, t)| (name, t.as_secs_f64() / measured as f64)),
         measured,
         bytes: engine.bytes(),
+        contacts: Size::of(spec).contacts,
+        output: Output::of(spec, particles, wires),
     })
+}
+
+/// Strain and radial pressing of the trial under load (-): more than any wire yields at, and what a strand that is strained
+/// so presses its layers together.
+const LOADED_STRAIN: f64 = 0.01;
+const PRESSED: f64 = 0.002;
+
+/// Wall time of a step (s) of the same run where its bonds flow and its wires touch, which the first steps do not show:
+/// tried with bonds that are stretched and wires that are pressed from the start. `None` where neither can happen, and where
+/// such a state cannot be stepped.
+pub fn under_load(spec: &Spec, mut assembly: Assembly) -> Option<f64> {
+    let flows = matches!(spec.bond.law, BondLawSpec::ElastoPlastic(_)) && spec.grip.is_some();
+    let touches = spec.contact.is_some() && assembly.wires.len() > 1;
+    if !flows && !touches {
+        return None;
+    }
+    let unbroken = Spec { bond: BondSpec { rupture: None, ..spec.bond.clone() }, ..spec.clone() };
+    if flows {
+        assembly.rest_length.iter_mut().for_each(|length| *length /= 1.0 + LOADED_STRAIN);
+    }
+    assembly.radius.iter_mut().for_each(|radius| *radius *= 1.0 + PRESSED);
+    trial(&mut Engine::new(&unbroken, &Plan::new(&unbroken), assembly).ok()?).ok().map(|(wall, _)| wall)
+}
+
+/// Steps for a while: wall time of a step (s), and the number of steps that it was measured over.
+fn trial(engine: &mut Engine) -> Result<(f64, u64)> {
+    let begin = Instant::now();
+    let mut measured = 0;
+    while measured == 0 || (measured < TRIAL_STEPS && begin.elapsed() < TRIAL_TIME) {
+        engine.step()?;
+        measured += 1;
+    }
+    Ok((begin.elapsed().as_secs_f64() / measured as f64, measured))
 }
 
 /// Simulated time to the expected end (s): `stop.time`, or the expected strain at the pull's speed.
@@ -99,25 +140,34 @@ fn duration(spec: &Spec, engine: &Engine) -> Option<f64> {
 
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "size: {} wires, {} particles, {} bonds", self.wires, self.particles, self.bonds)?;
         writeln!(
             f,
-            "time step: {:.3e} s at first, {:.3e} s after {} steps, limited by {}",
-            self.first_time_step, self.time_step, self.measured, self.time_step_limit
+            "size: {}, {}, {}",
+            counted(self.wires, "wire"),
+            counted(self.particles, "particle"),
+            counted(self.bonds, "bond")
+        )?;
+        writeln!(
+            f,
+            "time step: {:.3e} s at first, {:.3e} s after {}, limited by {}",
+            self.first_time_step,
+            self.time_step,
+            counted(self.measured, "step"),
+            self.time_step_limit
         )?;
         if let Some(duration) = self.duration {
             writeln!(f, "simulated time: {duration:.3e} s")?;
         }
         match self.steps {
             Some(steps) => {
-                let wall = steps * self.step_wall;
-                writeln!(
-                    f,
-                    "steps: about {steps:.0}, {:.3} ms each over the first {}",
-                    ms(self.step_wall),
-                    self.measured
-                )?;
-                writeln!(f, "wall time: about {}, more as contacts form; output not included", span(wall))?;
+                let first = ms(self.step_wall);
+                write!(f, "steps: about {steps:.0}, {first:.3} ms each over the first {}", self.measured)?;
+                match self.loaded_wall {
+                    Some(wall) => writeln!(f, ", {:.3} ms once wires flow and touch", ms(wall))?,
+                    None => writeln!(f)?,
+                }
+                let wall = steps * self.loaded_wall.unwrap_or(self.step_wall);
+                writeln!(f, "wall time: about {}; output not included", span(wall))?;
             }
             None => writeln!(f, "steps: unknown, because the scene ends at no strain, time or number of steps")?,
         }
@@ -127,7 +177,10 @@ impl fmt::Display for Estimate {
         let each = |bytes: usize| bytes / self.particles;
         let kept = self.bytes.stages().into_iter().filter(|(_, bytes)| each(bytes.kept) > 0);
         let kept: Vec<String> = kept.map(|(name, bytes)| format!("{name} {}", each(bytes.kept))).collect();
-        write!(f, "memory: {} bytes per particle: {}", each(self.bytes.kept()), kept.join(", "))
+        let all = gigabytes(self.bytes.kept() as f64);
+        writeln!(f, "memory: {all}, {} bytes per particle: {}", each(self.bytes.kept()), kept.join(", "))?;
+        writeln!(f, "contacts: up to about {:.0}", self.contacts)?;
+        write!(f, "{}", self.output)
     }
 }
 

@@ -1,6 +1,9 @@
 //! The output folder: checked before the simulation, cleared only when nothing else can fail.
 
+use super::lock::{self, LOCK, Lock};
 use crate::base::error::{Error, Result};
+use crate::base::regular;
+use crate::observe::files::write_whole;
 use crate::observe::{partial, tables};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,6 +22,8 @@ pub const REPORT: &str = "report.html";
 pub const FRAMES: &str = "frames";
 /// Animation of them, where no other name is given.
 pub const ANIMATION: &str = "frames.gif";
+/// What a folder of pictures holds until the last of them is drawn.
+pub const UNFINISHED: &str = "UNFINISHED.txt";
 /// A study of error against run time, in a folder of its own.
 pub const ACCURACY_STUDY: &str = "accuracy.json";
 /// Its plot.
@@ -47,54 +52,106 @@ pub fn calibration(scene: &str) -> PathBuf {
     Path::new("out").join("calibration").join(scene)
 }
 
+/// Every file that a run writes into its folder.
+fn files() -> impl Iterator<Item = &'static str> {
+    tables::FILES.into_iter().chain([SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT])
+}
+
 /// An output folder that may be written.
 #[derive(Debug)]
 pub struct OutFolder {
     path: PathBuf,
+    overwrite: bool,
 }
 
 impl OutFolder {
     /// Checks that `path` may be used, without changing anything there.
     ///
     /// # Errors
-    /// [`Error::Input`] when it holds something and `overwrite` is not set, or is no folder; [`Error::Io`] when
-    /// it cannot be written.
+    /// [`Error::Input`] when it holds something and `overwrite` is not set, is no folder, another process writes into it, or
+    /// what has the name of a result is no regular file; [`Error::Io`] when it cannot be written.
     pub fn check(path: &Path, overwrite: bool) -> Result<Self> {
         if path.exists() && !path.is_dir() {
             return Err(Error::input(format!("{} is not a folder", path.display()), "give another one with --out"));
         }
-        if path.is_dir() && !overwrite && !is_empty(path)? {
+        let folder = Self { path: path.into(), overwrite };
+        if let Some(by) = lock::holder(path) {
+            return Err(lock::held(path, &by));
+        }
+        folder.check_content()?;
+        probe(path)?;
+        Ok(folder)
+    }
+
+    fn check_content(&self) -> Result<()> {
+        if !self.path.is_dir() {
+            return Ok(());
+        }
+        if !self.overwrite && !is_empty(&self.path)? {
             return Err(Error::input(
-                format!("the output folder {} exists and is not empty", path.display()),
+                format!("the output folder {} exists and is not empty", self.path.display()),
                 "give --overwrite to replace the results in it, or another folder with --out",
             ));
         }
-        probe(path)?;
-        Ok(Self { path: path.into() })
+        files().map(|name| self.path.join(name)).try_for_each(|file| {
+            regular::replaceable(&partial::name(&file))?;
+            regular::replaceable(&file)
+        })
     }
 
-    /// Creates the folder, or removes what an earlier run wrote into it and nothing else.
+    /// Checks that `input`, a file that the run is made from, is not among those that it would replace.
     ///
     /// # Errors
-    /// [`Error::Io`].
-    pub fn open(&self) -> Result<()> {
-        fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
-        let tables = tables::FILES.into_iter();
-        for name in tables.chain([SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT]) {
+    /// [`Error::Input`] when it is.
+    pub fn spare(&self, input: &Path) -> Result<()> {
+        let same = |name: &str| {
+            let both = input.canonicalize().ok().zip(self.path.join(name).canonicalize().ok());
+            both.is_some_and(|(input, result)| input == result)
+        };
+        if !files().any(same) {
+            return Ok(());
+        }
+        Err(Error::input(
+            format!("{} would be replaced by a result of its own run", input.display()),
+            "give another folder with --out, or a copy of that file elsewhere",
+        ))
+    }
+
+    /// Creates the folder, or removes what an earlier run wrote into it and nothing else. Nobody else writes into it while
+    /// the lock is kept.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Input`] when another process has been faster.
+    pub fn open(&self) -> Result<Lock> {
+        let lock = self.take()?;
+        for name in files() {
             let file = self.path.join(name);
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;
         }
-        clear_pictures(&self.path.join(FRAMES))
+        clear_pictures(&self.path.join(FRAMES))?;
+        Ok(lock)
     }
 
-    /// The same for a folder of pictures only: nothing but numbered pictures is removed.
+    /// The same for a folder of pictures only: nothing but numbered pictures is removed. It is marked as unfinished until
+    /// [`Pictures::complete`].
     ///
     /// # Errors
-    /// [`Error::Io`].
-    pub fn open_for_pictures(&self) -> Result<()> {
+    /// As for [`OutFolder::open`].
+    pub fn open_for_pictures(&self) -> Result<Pictures> {
+        let lock = self.take()?;
         clear_pictures(&self.path)?;
-        fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))
+        let mark = self.path.join(UNFINISHED);
+        write_whole(&mark, "These pictures are not all that were to be drawn: drawing goes on, or was stopped.\n")?;
+        Ok(Pictures { mark, _lock: lock })
+    }
+
+    /// Makes and locks it; what came meanwhile is looked at again.
+    fn take(&self) -> Result<Lock> {
+        fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
+        let lock = Lock::take(&self.path)?;
+        self.check_content()?;
+        Ok(lock)
     }
 
     /// The path of a file in it.
@@ -103,9 +160,27 @@ impl OutFolder {
     }
 }
 
+/// A folder that pictures are drawn into.
+#[derive(Debug)]
+pub struct Pictures {
+    mark: PathBuf,
+    _lock: Lock,
+}
+
+impl Pictures {
+    /// All are drawn.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the mark cannot be removed.
+    pub fn complete(self) -> Result<()> {
+        remove_if_there(&self.mark)
+    }
+}
+
+/// Whether nothing but a lock is in a folder.
 fn is_empty(folder: &Path) -> Result<bool> {
     let mut entries = fs::read_dir(folder).map_err(|e| Error::io("cannot read the folder", folder, e))?;
-    Ok(entries.next().is_none())
+    Ok(entries.all(|entry| entry.is_ok_and(|entry| entry.file_name() == LOCK)))
 }
 
 /// Tries to write a file that vanishes again, in the folder or in the nearest one above it that exists.
@@ -137,7 +212,7 @@ fn clear_pictures(folder: &Path) -> Result<()> {
             remove_if_there(&entry.path())?;
         }
     }
-    // Fails when the user keeps something there, which is right.
+    // Fails when the user keeps something there, or a lock is, which is right.
     let _ = fs::remove_dir(folder);
     Ok(())
 }
@@ -171,10 +246,54 @@ mod tests {
         for name in ["notes.txt", "curve.csv", "summary.json", "frames/0001.png", "frames/mine.svg"] {
             fs::write(at(name), "x").unwrap();
         }
-        OutFolder::check(folder.path(), true).unwrap().open().unwrap();
+        let _lock = OutFolder::check(folder.path(), true).unwrap().open().unwrap();
         let left = |name: &str| at(name).exists();
         assert!(left("notes.txt") && left("frames/mine.svg"));
         assert!(!left("curve.csv") && !left("summary.json") && !left("frames/0001.png"));
+    }
+
+    #[test]
+    fn a_folder_that_is_written_into_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let [first, second] = [0, 1].map(|_| OutFolder::check(folder.path(), false).unwrap());
+        let lock = first.open().unwrap();
+        let number = format!("process {} ", std::process::id());
+        for error in [second.open().unwrap_err(), OutFolder::check(folder.path(), true).unwrap_err()] {
+            assert!(error.to_string().contains(&number), "{error}");
+        }
+        fs::write(folder.path().join("curve.csv"), "found").unwrap();
+        drop(lock);
+        // Checked when it was empty: what came meanwhile stays.
+        assert!(second.open().unwrap_err().to_string().contains("not empty"));
+        assert_eq!(fs::read_to_string(folder.path().join("curve.csv")).unwrap(), "found");
+    }
+
+    #[test]
+    fn a_run_does_not_replace_what_it_is_made_from() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at(SCENE), "mine").unwrap();
+        fs::write(at("points.txt"), "mine").unwrap();
+        let out = OutFolder::check(folder.path(), true).unwrap();
+        assert!(out.spare(&at("points.txt")).is_ok() && out.spare(Path::new("ka4.toml")).is_ok());
+        assert_eq!(out.spare(&folder.path().join(".").join(SCENE)).unwrap_err().exit_code(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_among_the_results_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink("/dev/null", folder.path().join("curve.csv.partial")).unwrap();
+        assert!(OutFolder::check(folder.path(), true).unwrap_err().to_string().contains("is a link"));
+    }
+
+    #[test]
+    fn pictures_are_unfinished_until_all_are_drawn() {
+        let folder = tempfile::tempdir().unwrap();
+        let pictures = OutFolder::check(folder.path(), true).unwrap().open_for_pictures().unwrap();
+        assert!(folder.path().join(UNFINISHED).is_file());
+        pictures.complete().unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]

@@ -1,9 +1,12 @@
 //! What a run writes besides tables. The one place of this floor that knows which features were built.
 
-use super::RunOptions;
 use super::folder::{self, OutFolder};
+pub use super::options::Animation;
+use super::options::RunOptions;
 use crate::base::error::{Error, Result};
+use crate::base::regular::check_target;
 use crate::observe::Observer;
+use crate::observe::origin::Origin;
 use crate::observe::timings::Timings;
 use crate::observe::trajectory::TrajectoryWriter;
 use crate::scene::spec::Spec;
@@ -62,7 +65,7 @@ pub(super) struct Written {
 /// [`Error::Io`] when a file cannot be created, [`Error::Missing`] as in [`check`].
 pub(super) fn open(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Written> {
     let mut observers: Vec<Box<dyn Observer>> =
-        vec![Box::new(TrajectoryWriter::new(&folder.file(folder::TRAJECTORY))?)];
+        vec![Box::new(TrajectoryWriter::new(&folder.file(folder::TRAJECTORY), Origin::of(spec))?)];
     if options.recording {
         observers.push(recording(options, spec, folder)?);
     }

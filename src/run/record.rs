@@ -2,8 +2,11 @@
 //! the run was told not to write.
 
 use super::folder::{RECORDING, SCENE};
+use super::identity;
+use super::lock::Lock;
 use super::replay::{Replay, Selection};
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
+use crate::base::regular::check_target;
 use crate::observe::recording::{Recording, RecordingOptions, check_viewer};
 use crate::scene::{self, spec::ColourBy};
 use std::path::{Path, PathBuf};
@@ -20,6 +23,8 @@ pub struct RecordOptions {
     pub out: Option<PathBuf>,
     /// Replace it.
     pub overwrite: bool,
+    /// Record also what the run's files do not agree about.
+    pub anyway: bool,
     /// Address of a viewer to stream to as well.
     pub live: Option<String>,
 }
@@ -27,17 +32,13 @@ pub struct RecordOptions {
 /// Records the run in the folder `run` again. Returns the file.
 ///
 /// # Errors
-/// [`Error::Input`] when there is no trajectory, the file exists or nothing is selected; otherwise what reading the
+/// Bad input when there is no trajectory, the file exists or nothing is selected; otherwise what reading the
 /// run and writing the recording say.
 pub fn record(run: &Path, options: &RecordOptions, stop: &AtomicBool) -> Result<PathBuf> {
-    let replay = Replay::open(run, &options.selection)?;
+    let doubts = identity::check(run, options.anyway)?;
+    let replay = Replay::open(run, &options.selection)?.doubting(&doubts);
     let file = options.out.clone().unwrap_or_else(|| run.join(RECORDING));
-    if file.exists() && !options.overwrite {
-        return Err(Error::input(
-            format!("{} exists", file.display()),
-            "give --overwrite to replace it, or another file with --out",
-        ));
-    }
+    check_target(&file, options.overwrite, "--out")?;
     if let Some(viewer) = &options.live {
         check_viewer(viewer)?;
     }
@@ -45,6 +46,8 @@ pub fn record(run: &Path, options: &RecordOptions, stop: &AtomicBool) -> Result<
     if let Some(colour) = options.colour {
         scene.output.colour = colour;
     }
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let _lock = Lock::take(folder)?;
     let mut recording = Recording::new(&file, RecordingOptions { live: options.live.clone(), scene })?;
     replay.show(&mut recording, stop)?;
     Ok(file)

@@ -1,13 +1,19 @@
 //! Shows a finished run to an observer again, from its trajectory, without simulating.
 
 use super::folder::TRAJECTORY;
+use super::identity::Doubt;
 use crate::base::error::{Error, Result};
+use crate::engine::view::RunInfo;
 use crate::observe::trajectory::{Record, Trajectory};
 use crate::observe::{Observer, partial};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What the name of a run gets that was not finished, and of one whose files were changed.
+const CUT_OFF: &str = "run not finished";
+const DOUBTED: &str = "files changed since the run";
 
 /// Which snapshots of a run to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +72,8 @@ pub struct Replay {
     cut_off: Option<Error>,
     /// Where the first bond broke, as z before loading (m).
     first_break: Option<f64>,
+    /// Files of the run are not believed.
+    doubted: bool,
 }
 
 impl Replay {
@@ -103,7 +111,22 @@ impl Replay {
                 ),
             });
         }
-        Ok(Self { file, shown, records, cut_off, first_break })
+        Ok(Self { file, shown, records, cut_off, first_break, doubted: false })
+    }
+
+    /// Says with everything that is shown that files of the run are doubtful, if there are such `doubts`.
+    pub fn doubting(self, doubts: &[Doubt]) -> Self {
+        Self { doubted: !doubts.is_empty(), ..self }
+    }
+
+    /// The run as it is shown: its name says what must be known of it.
+    fn info(&self, own: &Arc<RunInfo>) -> Arc<RunInfo> {
+        let marks = [(self.cut_off.is_some(), CUT_OFF), (self.doubted, DOUBTED)];
+        let marks: Vec<&str> = marks.into_iter().filter(|(holds, _)| *holds).map(|(_, mark)| mark).collect();
+        match marks.is_empty() {
+            true => own.clone(),
+            false => Arc::new(RunInfo { name: format!("{} ({})", own.name, marks.join(", ")), ..own.as_ref().clone() }),
+        }
     }
 
     /// How many snapshots are selected.
@@ -128,7 +151,7 @@ impl Replay {
     /// What the trajectory or the observer says. The observer is finished in any case, once it was started.
     pub fn show(&self, observer: &mut dyn Observer, stop: &AtomicBool) -> Result<usize> {
         let trajectory = Trajectory::open(&self.file)?;
-        observer.start(&trajectory.info().clone())?;
+        observer.start(&self.info(trajectory.info()))?;
         let shown = self.pass_on(trajectory, observer, stop);
         observer.finish()?;
         shown

@@ -76,10 +76,15 @@ impl Ticks {
     }
 }
 
+/// Most snapshots of a run but for its first and last, where bonds can break or not.
+pub fn most_snapshots(output: &OutputSpec, breaks: bool) -> usize {
+    output.snapshots.saturating_mul(if breaks { 1 + FOR_RUPTURES } else { 1 })
+}
+
 impl Schedule {
     /// The schedule that a scene asks for.
     pub fn new(output: &OutputSpec) -> Self {
-        let budget = FOR_RUPTURES * output.snapshots;
+        let budget = output.snapshots.saturating_mul(FOR_RUPTURES);
         Self {
             rows: Ticks::new(output.samples),
             snapshots: Ticks::new(output.snapshots),

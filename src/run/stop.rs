@@ -24,10 +24,12 @@ pub struct StopRule {
     /// Greatest mean over the window.
     peak: f64,
     ruptured: bool,
-    fallen: bool,
+    /// Mean stress over its peak, where it has fallen to `stop.stress_fraction` (-).
+    fallen: Option<f64>,
     /// Strain at which stress dropped, as long as it stays down (-).
     dropped_at: Option<f64>,
-    passed: bool,
+    /// Strain since the drop, where it has gone to `stop.strain_after_drop` (-).
+    passed: Option<f64>,
 }
 
 impl StopRule {
@@ -41,9 +43,9 @@ impl StopRule {
             time: 0.0,
             peak: 0.0,
             ruptured: false,
-            fallen: false,
+            fallen: None,
             dropped_at: None,
-            passed: false,
+            passed: None,
         }
     }
 
@@ -71,10 +73,10 @@ impl StopRule {
         let mean = self.sum[1] / self.sum[0];
         self.peak = self.peak.max(mean);
         let below = |share: f64| self.ruptured && mean < share * self.peak;
-        self.fallen = self.stop.stress_fraction.is_some_and(below);
+        self.fallen = self.stop.stress_fraction.filter(|share| below(*share)).map(|_| mean / self.peak);
         self.dropped_at = if below(1.0 - DROP) { self.dropped_at.or(Some(strain)) } else { None };
         let beyond = self.dropped_at.zip(self.stop.strain_after_drop);
-        self.passed = beyond.is_some_and(|(at, beyond)| strain - at >= beyond);
+        self.passed = beyond.filter(|(at, beyond)| strain - at >= *beyond).map(|(at, _)| strain - at);
     }
 
     /// The condition that holds now, if one does.
@@ -82,25 +84,19 @@ impl StopRule {
         if let Some(end) = self.stop.strain
             && strain.abs() >= end.abs()
         {
-            return Some(StopReason::Strain(strain));
+            return Some(StopReason::Strain { limit: end, reached: strain });
         }
-        if let Some(fraction) = self.stop.stress_fraction
-            && self.fallen
-        {
-            return Some(StopReason::StressFraction(fraction));
+        if let (Some(limit), Some(reached)) = (self.stop.stress_fraction, self.fallen) {
+            return Some(StopReason::StressFraction { limit, reached });
         }
-        if let Some(beyond) = self.stop.strain_after_drop
-            && self.passed
-        {
-            return Some(StopReason::AfterDrop(beyond));
+        if let (Some(limit), Some(reached)) = (self.stop.strain_after_drop, self.passed) {
+            return Some(StopReason::AfterDrop { limit, reached });
         }
-        if self.stop.time.is_some_and(|end| time >= end) {
-            return Some(StopReason::Time(time));
+        if let Some(limit_s) = self.stop.time.filter(|end| time >= *end) {
+            return Some(StopReason::Time { limit_s, reached_s: time });
         }
-        if self.stop.steps.is_some_and(|end| steps >= end) {
-            return Some(StopReason::Steps(steps));
-        }
-        None
+        let limit = self.stop.steps.filter(|end| steps >= *end);
+        limit.map(|limit| StopReason::Steps { limit, reached: steps })
     }
 }
 
@@ -123,7 +119,11 @@ mod tests {
         steps(&mut rule, 100.0, 30);
         rule.rupture();
         steps(&mut rule, 20.0, 20);
-        assert_eq!(rule.reached(0.0, 0.0, 0), Some(StopReason::StressFraction(0.5)));
+        let Some(StopReason::StressFraction { limit, reached }) = rule.reached(0.0, 0.0, 0) else {
+            panic!("it goes on")
+        };
+        assert_eq!(limit, 0.5);
+        assert!((reached - 0.2).abs() < 1e-12, "{reached}");
     }
 
     #[test]
@@ -160,7 +160,10 @@ mod tests {
         assert_eq!(pull(&mut rule, 0.23, 0.24, 70.0), None);
         assert_eq!(pull(&mut rule, 0.24, 0.25, 95.0), None);
         assert_eq!(pull(&mut rule, 0.25, 0.265, 40.0), None);
-        assert_eq!(pull(&mut rule, 0.265, 0.28, 40.0), Some(StopReason::AfterDrop(0.02)));
+        let Some(StopReason::AfterDrop { limit, reached }) = pull(&mut rule, 0.265, 0.28, 40.0) else {
+            panic!("it goes on")
+        };
+        assert!(limit == 0.02 && (0.02..0.031).contains(&reached), "{reached}");
     }
 
     #[test]
@@ -168,8 +171,8 @@ mod tests {
         let stop = StopSpec { strain: Some(0.3), time: Some(2.0), steps: Some(7), ..StopSpec::default() };
         let rule = StopRule::new(&stop, 10.0);
         assert_eq!(rule.reached(0.29, 1.9, 6), None);
-        assert!(matches!(rule.reached(0.3, 1.9, 6), Some(StopReason::Strain(_))));
-        assert!(matches!(rule.reached(0.0, 2.0, 6), Some(StopReason::Time(_))));
-        assert!(matches!(rule.reached(0.0, 0.0, 7), Some(StopReason::Steps(7))));
+        assert!(matches!(rule.reached(0.3, 1.9, 6), Some(StopReason::Strain { limit: 0.3, reached: 0.3 })));
+        assert!(matches!(rule.reached(0.0, 2.0, 6), Some(StopReason::Time { limit_s: 2.0, reached_s: 2.0 })));
+        assert!(matches!(rule.reached(0.0, 0.0, 7), Some(StopReason::Steps { limit: 7, reached: 7 })));
     }
 }

@@ -1,10 +1,14 @@
 //! A place in a scene: reads quantities there, checks their range, and words errors with key, value and line.
 
+use super::place::Part;
 use super::raw::{Scalar, Triple};
-use super::source::{Part, SceneSource};
+use super::source::SceneSource;
 use crate::base::error::{Error, Result};
 use crate::base::units::{self, Dimension};
 use glam::DVec3;
+
+/// Longest length (m): beyond it positions have not the digits that contacts of wires need.
+const LONGEST: f64 = 1e5;
 
 /// A key path in a scene.
 #[derive(Clone)]
@@ -121,6 +125,10 @@ impl<'a> At<'a> {
     /// A quantity at exactly this place (SI).
     pub fn quantity(&self, raw: &Scalar, dimension: Dimension, range: Range) -> Result<f64> {
         let value = self.read(raw, dimension, range)?;
+        if dimension == Dimension::Length && value.is_finite() && value.abs() > LONGEST {
+            let what = format!("`{}` is {raw}, but a length is at most {} km", self.name(), LONGEST * 1e-3);
+            return Err(self.error(what, "check its unit"));
+        }
         if range.holds(value) {
             return Ok(value);
         }
@@ -189,6 +197,15 @@ impl<'a> At<'a> {
             return Ok(default);
         };
         self.key(name).count(number, least)
+    }
+
+    /// The same, of at most `most`.
+    pub fn count_within(&self, number: i64, least: u64, most: u64) -> Result<u64> {
+        let count = self.count(number, least)?;
+        if count > most {
+            return Err(self.error(format!("`{}` is {number}, but must be at most {most}", self.name()), ""));
+        }
+        Ok(count)
     }
 
     /// The whole number at exactly this place, which must be at least `least`.

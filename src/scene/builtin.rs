@@ -68,13 +68,15 @@ pub fn list() -> &'static [(&'static str, &'static str)] {
 pub fn find(name: &str) -> Result<&'static str> {
     match SCENES.iter().chain(VERIFICATION).find(|(known, _)| *known == name) {
         Some((_, text)) => Ok(text),
-        None => Err(Error::input(format!("there is no built-in scene `{name}`"), suggestion(name))),
+        None => {
+            let file = format!("{name}.toml");
+            let help = match Path::new(&file).is_file() {
+                true => format!("did you mean the file {file}?"),
+                false => suggestion(name),
+            };
+            Err(Error::input(format!("there is no built-in scene `{name}`"), help))
+        }
     }
-}
-
-/// What a built-in scene shows: its key `about`. Errors: an unknown name.
-pub fn about(name: &str) -> Result<String> {
-    Ok(super::parse(find(name)?, name, Path::new("."), &[])?.spec.about)
 }
 
 /// The error for a scene file that is not there.

@@ -7,10 +7,12 @@
 //! blanks of any kind, commas, semicolons and tabs between numbers, rows of empty cells as blank lines, a row of column
 //! names, and decimal commas where something else parts the numbers.
 
+mod number;
 mod words;
 
 use crate::base::error::{Error, Result};
 use glam::DVec3;
+use number::{from_millimetres, shifted};
 use std::fmt::Write;
 use std::path::Path;
 use words::{Commas, Row};
@@ -197,21 +199,6 @@ fn in_millimetres(metres: f64) -> String {
     match plain {
         Ok(plain) if plain.len() <= 24 && from_millimetres(&plain) == Some(metres) => plain,
         _ => format!("{digits}e{exponent}"),
-    }
-}
-
-/// Decimal text in mm as metres; `None` when it is no finite number.
-fn from_millimetres(text: &str) -> Option<f64> {
-    let (digits, exponent) = shifted(text, -3)?;
-    format!("{digits}e{exponent}").parse().ok().filter(|value: &f64| value.is_finite())
-}
-
-/// Splits decimal text into digits and exponent, the exponent shifted.
-fn shifted(text: &str, by: i32) -> Option<(&str, i32)> {
-    text.parse::<f64>().ok().filter(|value| value.is_finite())?;
-    match text.split_once(['e', 'E']) {
-        Some((digits, exponent)) => Some((digits, exponent.parse::<i32>().ok()? + by)),
-        None => Some((text, by)),
     }
 }
 

@@ -5,8 +5,7 @@
 //! of 39 mm: 5 + 11 + 17 + 23 of 0.30 mm and 4 + 10 + 16 + 22 + 29 of 0.25 mm.
 
 use super::at::{At, Range};
-use super::raw::{RawConstruction, RawStrand};
-use super::resolve_bodies::hand;
+use super::raw::{RawConstruction, RawLay, RawStrand};
 use super::spec::LayerSpec;
 use crate::base::error::Result;
 use crate::base::lay::least_radius_of_layer;
@@ -15,8 +14,8 @@ use std::f64::consts::{FRAC_PI_4, PI};
 
 /// Most wires around the axis: a sixth leaves room for a core, and is the first ring around it.
 const MOST_INNERMOST: usize = 5;
-/// Most wires of an automatic construction: a strand, not a typing error.
-const MOST_WIRES: f64 = 5000.0;
+/// Most wires of a layer, and of an automatic construction: a strand, not a typing error.
+pub(super) const MOST_WIRES: f64 = 5000.0;
 /// How much further out than the ring below leaves it a ring may lie, over the wire diameter (-): lay must not turn six
 /// around one into five, and wires flatten more than that.
 const SLACK: f64 = 0.002;
@@ -51,7 +50,7 @@ pub(super) fn layers(at: &At, raw: &RawStrand, given: &RawConstruction) -> Resul
         wire_diameter: diameter,
         lay_radius: (k == 0 && *count == 1).then_some(0.0),
         pitch,
-        lay: hand(raw.lay),
+        lay: RawLay::sign(raw.lay),
         phase: 0.0,
     };
     Ok(wires.iter().enumerate().map(layer).collect())
@@ -61,7 +60,11 @@ fn listed(at: &At, wires: &[i64]) -> Result<Vec<usize>> {
     if wires.is_empty() {
         return Err(at.error("`construction` lists no layer", "for example [5, 11, 18]"));
     }
-    wires.iter().enumerate().map(|(k, count)| at.element(k).count(*count, 1).map(|count| count as usize)).collect()
+    wires
+        .iter()
+        .enumerate()
+        .map(|(k, count)| at.element(k).count_within(*count, 1, MOST_WIRES as u64).map(|count| count as usize))
+        .collect()
 }
 
 /// Core, inner, middle, outer: what people call them; those between are numbered from the inside.

@@ -48,9 +48,9 @@ impl fmt::Display for Idle {
 ///
 /// # Errors
 /// At an option that gives such a key.
-pub(super) fn check(source: &SceneSource, raw: &RawScene, spec: &Spec) -> Result<Vec<Idle>> {
+pub(super) fn check(source: &SceneSource, raw: &RawScene, spec: &Spec, plan: &Plan) -> Result<Vec<Idle>> {
     let mut told = Vec::new();
-    for idle in keys(raw, spec) {
+    for idle in keys(raw, spec, plan) {
         let option = source.option_below(&idle.key);
         match (option, idle.as_option, idle.in_file) {
             (Some(path), AsOption::Refused, _) => {
@@ -88,13 +88,13 @@ impl Found {
 }
 
 /// Every key that is given and has no effect.
-fn keys(raw: &RawScene, spec: &Spec) -> Vec<Idle> {
+fn keys(raw: &RawScene, spec: &Spec, plan: &Plan) -> Vec<Idle> {
     let mut found = Found::default();
     if let (Some(raw), Some(strand)) = (&raw.strand, &spec.strand) {
         of_strand(&mut found, raw, strand);
     }
     of_bonds(&mut found, raw, spec);
-    of_contact(&mut found, raw, spec);
+    of_contact(&mut found, raw, plan);
     of_grip(&mut found, raw, spec);
     let rupture = spec.bond.rupture.is_some();
     let density = raw.output.rupture_density.is_some();
@@ -103,7 +103,7 @@ fn keys(raw: &RawScene, spec: &Spec) -> Vec<Idle> {
     let why = "time.step fixes the step";
     found.add(fixed && raw.time.safety.is_some(), "time.safety", why, InFile::Silent, AsOption::Told);
     found.silent(fixed && raw.time.contact_resolution.is_some(), "time.contact_resolution", why);
-    let scatter = Plan::new(spec).scatter;
+    let scatter = plan.scatter;
     let why = "nothing in this scene scatters, so that every seed gives the same run";
     found.add(raw.seed.is_some() && !scatter, "seed", why, InFile::Silent, AsOption::Told);
     found.0
@@ -148,7 +148,7 @@ fn of_bonds(found: &mut Found, raw: &RawScene, spec: &Spec) {
     found.told(no_saturation, "bond.hardening.rate", "there is no saturation that it leads to");
 }
 
-fn of_contact(found: &mut Found, raw: &RawScene, spec: &Spec) {
+fn of_contact(found: &mut Found, raw: &RawScene, plan: &Plan) {
     let Some(contact) = &raw.contact else { return };
     if contact.normal == Some(RawNormal::None) {
         let given = [
@@ -168,7 +168,7 @@ fn of_contact(found: &mut Found, raw: &RawScene, spec: &Spec) {
         }
         return;
     }
-    if Plan::new(spec).contacts == ContactPlan::Absent {
+    if plan.contacts == ContactPlan::Absent {
         found.told(true, "contact", "one straight body that never breaks touches nothing");
         return;
     }

@@ -21,6 +21,8 @@ pub struct Key {
     pub otherwise: Option<String>,
     /// Whether its table needs it always.
     pub required: bool,
+    /// When its table needs it, where that is not always or never.
+    pub required_when: Option<String>,
     /// What it means.
     pub meaning: String,
 }
@@ -56,6 +58,18 @@ pub fn keys() -> Vec<Key> {
     found
 }
 
+/// Whether `key` is one of those that somebody means by `wanted`: a part of its path, in any case, in which the number of
+/// an element, as in `--set`, or nothing at all may stand for `[]`.
+pub fn is_meant(key: &str, wanted: &str) -> bool {
+    let plain = |path: &str| {
+        let path = path.to_lowercase().replace("[]", "");
+        let names: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+        names.join(".")
+    };
+    let meant = plain(wanted);
+    (!meant.is_empty() || wanted.is_empty()) && plain(key).contains(&meant)
+}
+
 /// Adds the keys of a table.
 fn walk(table: &Value, path: &str, found: &mut Vec<Key>) {
     let properties = table["properties"].as_object().into_iter().flatten();
@@ -68,11 +82,12 @@ fn walk(table: &Value, path: &str, found: &mut Vec<Key>) {
         let extra = |name: &str| value[name].as_str().map(str::to_owned);
         found.push(Key {
             key: key.clone(),
-            kind: kind(&choices),
+            kind: with_word(kind(&choices), value["x-word"].as_str()),
             unit: extra("x-unit"),
             default: extra("x-default"),
             otherwise: extra("x-otherwise"),
             required: value["x-required"] == true,
+            required_when: extra("x-required-when"),
             meaning: meaning(value),
         });
         tables.into_iter().for_each(|(table, _)| walk(table, &key, found));
@@ -102,6 +117,17 @@ fn kind(choices: &[&Value]) -> Kind {
         [one, other, ..] => Kind::Either(Box::new([kind_of(one), kind_of(other)])),
         [] => Kind::Text,
     }
+}
+
+/// A kind of value beside which a word may stand.
+fn with_word(kind: Kind, word: Option<&str>) -> Kind {
+    let Some(word) = word else { return kind };
+    let word = Kind::Words(vec![[word.to_owned(), String::new()]]);
+    Kind::Either(Box::new(match kind {
+        // The text is the word.
+        Kind::Either(both) if both[0] == Kind::Text => [word, both[1].clone()],
+        other => [other, word],
+    }))
 }
 
 fn kind_of(value: &Value) -> Kind {
@@ -166,6 +192,56 @@ mod tests {
         assert!(of("grip.length").required && of("strand.layer[]").kind == Kind::Array(Box::new(Kind::Table)));
         let Kind::Either(damping) = &of("bond.damping").kind else { panic!("{:?}", of("bond.damping")) };
         assert_eq!(**damping, [Kind::Quantity, Kind::Table]);
+    }
+
+    #[test]
+    fn keys_are_found_as_people_write_them() {
+        let meant = |wanted: &str| keys().iter().filter(|key| is_meant(&key.key, wanted)).count();
+        for wanted in ["strand.layer.0.pitch", "layer.pitch", "Layer[].Pitch", "strand.layer[].pitch"] {
+            assert_eq!(meant(wanted), 1, "{wanted}");
+        }
+        assert_eq!((meant(""), meant("0"), meant("ptich")), (keys().len(), 0, 0));
+    }
+
+    /// What a scene is refused for not having is said to be required there.
+    #[test]
+    fn what_is_required_sometimes_is_said_with_when() {
+        let all = keys();
+        let of = |name: &str| all.iter().find(|key| key.key == name).unwrap_or_else(|| panic!("{name}"));
+        let cases: [(&str, &[&str], &str); 9] = [
+            ("single-wire", &["grip.speed="], "grip.speed"),
+            ("single-wire", &["grip.speed=", "grip.frequency=1 Hz"], "grip.displacement_amplitude"),
+            ("single-wire", &["grip.speed=", "grip.displacement_amplitude=1 mm"], "grip.frequency"),
+            ("single-wire", &["grip.kind=jaw"], "grip.clamp_pressure"),
+            ("single-wire", &["bond.hardening="], "bond.hardening"),
+            ("single-wire", &["bond.hardening={form=\"swift\"}"], "bond.hardening.strength"),
+            ("single-wire", &["bond.rupture={criterion=\"beam-stress\"}"], "bond.rupture.tensile"),
+            ("two-spheres", &["contact.normal=thornton", "contact.limiting_pressure="], "contact.limiting_pressure"),
+            ("ka4", &["strand.layer=", "strand.construction=auto"], "strand.area"),
+        ];
+        for (scene, options, key) in cases {
+            // What is not there needs not be taken away.
+            let options: Vec<String> = options.iter().map(|option| option.to_string()).collect();
+            let error = scene::load(scene, &options).or_else(|_| scene::load(scene, &options[..1])).unwrap_err();
+            let name = key.rsplit('.').next().unwrap();
+            assert!(error.to_string().contains(&format!("`{name}`")), "{key}: {error}");
+            assert!(of(key).required_when.is_some(), "{key}");
+        }
+        assert!(all.iter().filter(|key| key.key.starts_with("stop.")).all(|key| key.required_when.is_some()));
+        assert!(all.iter().all(|key| !(key.required && key.required_when.is_some())));
+    }
+
+    #[test]
+    fn words_beside_quantities_are_kinds() {
+        let all = keys();
+        let kind = |name: &str| all.iter().find(|key| key.key == name).unwrap().kind.clone();
+        let word = |word: &str| Kind::Words(vec![[word.to_owned(), String::new()]]);
+        for (key, allowed) in [("lay_radius", "auto"), ("pitch", "inf")] {
+            let both = Kind::Either(Box::new([Kind::Quantity, word(allowed)]));
+            assert_eq!(kind(&format!("strand.layer[].{key}")), both);
+        }
+        let numbers = Kind::Array(Box::new(Kind::Integer));
+        assert_eq!(kind("strand.construction"), Kind::Either(Box::new([word("auto"), numbers])));
     }
 
     /// Scenes with a default left out and written out are the same scene, for every default that can be written.

@@ -3,6 +3,12 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::ops::RangeInclusive;
+
+/// Side of a frame, least and greatest (pixels): what a picture's labels need, and what graphics adapters draw.
+pub const FRAME_SIDE: RangeInclusive<u32> = 120..=8192;
+/// Magnification, least and greatest (-).
+pub const ZOOM: RangeInclusive<f64> = 0.01..=1000.0;
 
 /// An enum whose values are words, each with its meaning, in the order in which they are listed to people.
 macro_rules! words {

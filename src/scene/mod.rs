@@ -12,6 +12,7 @@ mod idle;
 pub mod keys;
 pub mod look;
 mod overrides;
+mod place;
 pub mod plan;
 pub mod quality;
 pub mod raw;
@@ -24,13 +25,16 @@ pub mod suggest;
 pub mod write;
 
 pub use idle::Idle;
+pub use resolve::can_name_a_folder;
 pub use source::SceneSource;
 
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
+use crate::base::regular;
 use at::At;
 use overrides::Override;
+use place::{path_at, scene_error};
+use plan::Plan;
 use serde::de::DeserializeOwned;
-use source::{path_at, scene_error};
 use spec::Spec;
 use std::path::Path;
 use toml_edit::Document;
@@ -40,10 +44,14 @@ use toml_edit::Document;
 pub struct Scene {
     /// The resolved scene.
     pub spec: Spec,
+    /// What it needs: made here, once, and handed on. Whoever changes `spec` makes it anew.
+    pub plan: Plan,
     /// Its text, for errors that later floors find.
     pub source: SceneSource,
     /// Keys that it gives without effect.
     pub idle: Vec<Idle>,
+    /// Most memory that its run may take (bytes); `None`: what is free.
+    pub memory: Option<u64>,
 }
 
 /// Loads a scene by built-in name or by path, with `--set` options.
@@ -57,10 +65,7 @@ pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Scene> {
         let text = builtin::find(name_or_path)?;
         return parse(text, &format!("{name_or_path}.toml"), Path::new("."), overrides);
     }
-    let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
-        std::io::ErrorKind::NotFound => builtin::no_such_file(path),
-        _ => Error::io("cannot read", path, source),
-    })?;
+    let text = regular::text_if_there(path, regular::LONGEST_SCENE)?.ok_or_else(|| builtin::no_such_file(path))?;
     let folder = path.parent().unwrap_or(Path::new("."));
     parse(&text, name_or_path, folder, overrides)
 }
@@ -82,8 +87,9 @@ pub fn parse(text: &str, file_name: &str, folder: &Path, overrides: &[String]) -
     let raw: raw::RawScene = read_tables(&changed.to_string(), &source, "a scene")?;
     let stem = Path::new(file_name).file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
     let spec = resolve::resolve(&At::root(&source), &raw, &stem, folder)?;
-    let idle = idle::check(&source, &raw, &spec)?;
-    Ok(Scene { spec, source, idle })
+    let plan = Plan::new(&spec);
+    let idle = idle::check(&source, &raw, &spec, &plan)?;
+    Ok(Scene { spec, plan, source, idle, memory: None })
 }
 
 /// Reads tables of another kind than a scene, with errors of the same kind: `whole` says what it is, "a study".
@@ -108,7 +114,7 @@ fn read_tables<T: DeserializeOwned>(text: &str, source: &SceneSource, whole: &st
     toml::from_str(text).map_err(|error| {
         let document = Document::parse(text).expect("it was read before, or toml_edit wrote it");
         let (path, part) =
-            error.span().map_or_else(|| (Vec::new(), source::Part::Value), |span| path_at(document.as_item(), &span));
+            error.span().map_or_else(|| (Vec::new(), place::Part::Value), |span| path_at(document.as_item(), &span));
         let (what, help) = in_plain_words(error.message(), &path, whole);
         source.error_at(&path, part, what, help)
     })
@@ -128,11 +134,43 @@ fn in_plain_words(message: &str, path: &[String], whole: &str) -> (String, Strin
     if let (true, [unknown, known @ ..]) = (message.starts_with("unknown variant"), &quoted[..]) {
         return (format!("`{unknown}` is not a value of `{key}`"), did_you_mean(unknown, known, "one of"));
     }
-    let message = message
-        .replace("expected i64", "expected a whole number")
-        .replace("floating point", "number")
-        .replace("a sequence", "an array");
-    (format!("`{key}`: {message}"), String::new())
+    let place = if key.is_empty() { String::new() } else { format!("`{key}`: ") };
+    (format!("{place}{}", of_types(message, path)), String::new())
+}
+
+/// Serde's names of types as the user writes such a value; a table is named by its `path`.
+fn of_types(message: &str, path: &[String]) -> String {
+    let numbers = |part: &&String| part.parse::<usize>().is_err();
+    let name = path.iter().filter(numbers).cloned().collect::<Vec<_>>().join(".");
+    let table = match path.last() {
+        None => "the tables of a file".into(),
+        Some(last) if last.parse::<usize>().is_ok() => format!("a table, such as [[{name}]] begins"),
+        Some(_) => format!("a table, such as [{name}] begins"),
+    };
+    let mut words: Vec<&str> = message.split(' ').collect();
+    // "struct RawStrand", "enum RawLay": the kind, then a name of this program's.
+    while let Some(at) = words.windows(2).position(|pair| ["struct", "enum"].contains(&pair[0])) {
+        words[at] = if words[at] == "struct" { &table } else { "one of its words" };
+        words.remove(at + 1);
+    }
+    let message = words.join(" ");
+    [
+        ("i64", "a whole number"),
+        ("u64", "a whole number"),
+        ("usize", "a whole number"),
+        ("f64", "a number"),
+        ("floating point", "number"),
+        ("a sequence", "an array"),
+        ("sequence", "an array"),
+        ("map", "a table"),
+        ("a boolean", "true or false"),
+        ("a string", "text"),
+    ]
+    .iter()
+    .fold(message, |text, (from, to)| {
+        text.replace(&format!("expected {from}"), &format!("expected {to}"))
+            .replace(&format!("type: {from}"), &format!("type: {to}"))
+    })
 }
 
 fn did_you_mean(unknown: &str, known: &[&str], list: &str) -> String {

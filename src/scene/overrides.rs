@@ -3,9 +3,10 @@
 //! The key is a dotted path with element numbers from 0, `strand.layer.0.pitch`. The value is TOML; what is not TOML
 //! is taken as text, so that `44 mm` needs no quotes. No value at all (`bond.rupture=`) removes the key.
 
-use super::source::{Part, scene_error};
+use super::place::{Part, scene_error};
 use super::suggest::nearest;
 use crate::base::error::{Error, Result};
+use crate::base::wording::counted;
 use std::ops::Range;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
@@ -143,9 +144,10 @@ impl Override {
         match name.parse::<usize>() {
             Ok(index) if index < len => Ok(index),
             _ => {
-                let what = format!("`{parent}` has {len} elements, and `{name}` is none of them");
+                let what = format!("`{parent}` has {}, and `{name}` is none of them", counted(len, "element"));
                 let help = match len {
                     0 => format!("set the whole of `{parent}`"),
+                    1 => "the first element has number 0".into(),
                     _ => format!("elements are numbered from 0 to {}", len - 1),
                 };
                 Err(self.error(Part::Key, what, help))

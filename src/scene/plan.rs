@@ -79,6 +79,7 @@ impl Plan {
                         GripKind::Jaw { pressure } => format!("outer layer clamped at {} MPa", pressure / 1e6),
                     },
                     None if spec.holds.is_empty() => "free bodies".into(),
+                    None if spec.holds.len() == 1 => "a hold or load on a single body".into(),
                     None => format!("{} holds or loads on single bodies", spec.holds.len()),
                 },
             },
@@ -170,12 +171,14 @@ fn contact_component(spec: &Spec, contacts: &(ContactPlan, String)) -> Component
 
 fn tangential_component(spec: &Spec, contacts: ContactPlan) -> Component {
     let law = spec.contact.as_ref().and_then(|c| c.tangential);
-    let runs = contacts != ContactPlan::Absent && law.is_some();
-    let reason = match law {
+    let smooth = spec.contact.as_ref().is_some_and(|contact| contact.friction == 0.0);
+    let runs = contacts != ContactPlan::Absent && law.is_some() && !smooth;
+    let reason: String = match law {
         _ if contacts == ContactPlan::Absent => "no contacts".into(),
+        Some(_) if smooth => "the coefficient of friction is 0".into(),
         Some(TangentialSpec::Mindlin) => "mindlin".into(),
         Some(TangentialSpec::MindlinDeresiewicz) => "mindlin-deresiewicz".into(),
-        None => "frictionless".to_string(),
+        None => "frictionless".into(),
     };
     Component { name: "friction", state: on(runs), reason }
 }

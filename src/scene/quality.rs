@@ -2,10 +2,15 @@
 //! factor from what the scene says; `--set` wins over it. Draft pulls twice as fast at every strain, and so does an
 //! adaptive pull; fine half as fast, with half the time step.
 
+use super::Scene;
+use super::resolve_drive::slower_than_the_drive;
 use super::spec::{AdaptiveSpec, DriveSpec, Spec};
+use crate::base::error::Result;
+use serde::Deserialize;
 
 /// A preset.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Quality {
     /// Fast, for a first look.
     Draft,
@@ -19,15 +24,15 @@ pub enum Quality {
 /// What a preset does to a key.
 struct Entry {
     key: &'static str,
-    /// Unit in which the scene is told.
+    /// Unit in which the change is told.
     unit: &'static str,
     /// Factors on the scene's own value (-).
     draft: f64,
     fine: f64,
     /// The greatest value that the key allows.
     greatest: f64,
-    /// The scene's own value in that unit; `None` where the scene has no such key.
-    own: fn(&Spec) -> Option<f64>,
+    /// The scene's own value, SI; `None` where the scene has no such key.
+    value: fn(&mut Spec) -> Option<&mut f64>,
 }
 
 /// All keys that presets turn.
@@ -38,7 +43,7 @@ const TABLE: &[Entry] = &[
         draft: 1.25,
         fine: 0.5,
         greatest: 1.0,
-        own: |spec| spec.time.step.is_none().then_some(spec.time.safety),
+        value: |spec| spec.time.step.is_none().then_some(&mut spec.time.safety),
     },
     Entry {
         key: "grip.speed",
@@ -46,8 +51,8 @@ const TABLE: &[Entry] = &[
         draft: 2.0,
         fine: 0.5,
         greatest: f64::INFINITY,
-        own: |spec| match spec.grip.as_ref()?.drive {
-            DriveSpec::Speed(speed) if speed != 0.0 => Some(speed),
+        value: |spec| match &mut spec.grip.as_mut()?.drive {
+            DriveSpec::Speed(speed) if *speed != 0.0 => Some(speed),
             _ => None,
         },
     },
@@ -59,7 +64,7 @@ const TABLE: &[Entry] = &[
         draft: 2.0,
         fine: 0.5,
         greatest: f64::INFINITY,
-        own: |spec| adaptive(spec).map(|adaptive| adaptive.fastest),
+        value: |spec| adaptive(spec).map(|adaptive| &mut adaptive.fastest),
     },
     Entry {
         key: "grip.adaptive.kinetic",
@@ -67,7 +72,7 @@ const TABLE: &[Entry] = &[
         draft: 4.0,
         fine: 0.25,
         greatest: 1.0,
-        own: |spec| adaptive(spec).map(|adaptive| adaptive.kinetic),
+        value: |spec| adaptive(spec).map(|adaptive| &mut adaptive.kinetic),
     },
     Entry {
         key: "grip.adaptive.passages",
@@ -75,12 +80,12 @@ const TABLE: &[Entry] = &[
         draft: 0.5,
         fine: 2.0,
         greatest: f64::INFINITY,
-        own: |spec| adaptive(spec).map(|adaptive| adaptive.passages),
+        value: |spec| adaptive(spec).map(|adaptive| &mut adaptive.passages),
     },
 ];
 
-fn adaptive(spec: &Spec) -> Option<&AdaptiveSpec> {
-    spec.grip.as_ref()?.adaptive.as_ref()
+fn adaptive(spec: &mut Spec) -> Option<&mut AdaptiveSpec> {
+    spec.grip.as_mut()?.adaptive.as_mut()
 }
 
 impl Quality {
@@ -96,19 +101,33 @@ impl Quality {
         }
     }
 
-    /// The `--set` options that give `spec` this quality; keys that the scene does not have are left alone.
-    pub fn overrides(self, spec: &Spec) -> Vec<String> {
-        let factor = |entry: &Entry| match self {
-            Quality::Draft => entry.draft,
-            Quality::Standard => 1.0,
-            Quality::Fine => entry.fine,
-        };
-        let changed = TABLE.iter().filter(|entry| factor(entry) != 1.0);
-        let set = changed.filter_map(|entry| {
-            let value = ((entry.own)(spec)? * factor(entry)).min(entry.greatest);
-            Some(format!("{}={value}{}", entry.key, entry.unit))
-        });
-        set.collect()
+    /// Gives a scene this quality. Keys that a `--set` option gives, and those that the scene does not have, are left
+    /// alone. Returns what it changed, each as `key=value`.
+    ///
+    /// # Errors
+    /// At `grip.adaptive`, when an option and the preset together let the pull begin faster than its fastest.
+    pub fn apply(self, scene: &mut Scene) -> Result<Vec<String>> {
+        let mut changed = Vec::new();
+        for entry in TABLE {
+            let factor = match self {
+                Quality::Draft => entry.draft,
+                Quality::Standard => continue,
+                Quality::Fine => entry.fine,
+            };
+            if scene.source.is_set(entry.key) {
+                continue;
+            }
+            if let Some(value) = (entry.value)(&mut scene.spec) {
+                *value = (*value * factor).min(entry.greatest);
+                changed.push(format!("{}={value}{}", entry.key, entry.unit));
+            }
+        }
+        let wrong =
+            scene.spec.grip.as_ref().and_then(|grip| slower_than_the_drive(grip.adaptive.as_ref()?, grip.drive));
+        match wrong {
+            Some((what, help)) => Err(scene.source.error("grip.adaptive.fastest", what, help)),
+            None => Ok(changed),
+        }
     }
 }
 
@@ -117,9 +136,16 @@ mod tests {
     use super::*;
     use crate::scene;
 
+    /// A scene with options at a quality, and what that changed.
+    fn changed(quality: Quality, name: &str, options: &[&str]) -> Result<(Spec, Vec<String>)> {
+        let options: Vec<String> = options.iter().map(|option| option.to_string()).collect();
+        let mut scene = scene::load(name, &options)?;
+        let changed = quality.apply(&mut scene)?;
+        Ok((scene.spec, changed))
+    }
+
     fn with(quality: Quality, name: &str) -> Spec {
-        let own = scene::load(name, &[]).unwrap().spec;
-        scene::load(name, &quality.overrides(&own)).unwrap().spec
+        changed(quality, name, &[]).unwrap().0
     }
 
     fn speed(spec: &Spec) -> f64 {
@@ -140,7 +166,7 @@ mod tests {
     /// What an adaptive pull allows itself is turned with its slowest speed.
     #[test]
     fn an_adaptive_pull_is_turned_as_a_whole() {
-        let adaptive = |quality| adaptive(&with(quality, "ka4")).cloned().unwrap();
+        let adaptive = |quality| adaptive(&mut with(quality, "ka4")).cloned().unwrap();
         let [draft, own, fine] = Quality::ALL.map(adaptive);
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} is not {b}");
         for (turned, factor) in [(&draft, 2.0), (&fine, 0.5)] {
@@ -149,8 +175,8 @@ mod tests {
             close(turned.passages, own.passages / factor);
             assert_eq!(turned.from, own.from);
         }
-        let constant = scene::load("strand-1x7", &[]).unwrap().spec;
-        assert!(Quality::Fine.overrides(&constant).iter().all(|option| !option.contains("adaptive")));
+        let (_, constant) = changed(Quality::Fine, "strand-1x7", &[]).unwrap();
+        assert_eq!(constant, ["time.safety=0.4", "grip.speed=2.5 m/s"]);
     }
 
     #[test]
@@ -163,8 +189,19 @@ mod tests {
 
     #[test]
     fn a_step_that_is_fixed_stays() {
-        let fixed = scene::load("cantilever", &["time.step=10 ns".to_string()]).unwrap().spec;
-        assert!(Quality::Draft.overrides(&fixed).is_empty());
+        assert!(changed(Quality::Draft, "cantilever", &["time.step=10 ns"]).unwrap().1.is_empty());
+    }
+
+    /// An option wins over the preset, whether it gives the key or the table that holds it; together they must make sense.
+    #[test]
+    fn options_win_over_presets() {
+        let (draft, changes) = changed(Quality::Draft, "ka4", &["grip.speed=3 m/s"]).unwrap();
+        assert!(speed(&draft) == 3.0 && changes.iter().all(|change| !change.starts_with("grip.speed")), "{changes:?}");
+        let table = "grip.adaptive={ from = \"5 %\", fastest = \"21 m/s\" }";
+        let (draft, _) = changed(Quality::Draft, "ka4", &[table]).unwrap();
+        assert_eq!(draft.grip.unwrap().adaptive.unwrap().fastest, 21.0);
+        let slow = changed(Quality::Draft, "ka4", &["grip.adaptive.fastest=6 m/s"]).unwrap_err();
+        assert!(slow.to_string().contains("the pull begins at `speed`"), "{slow}");
     }
 
     /// Every scene that comes with the program loads at every quality.

@@ -41,11 +41,14 @@ pub struct RawScene {
     /// Contacts between surfaces. Absent: none at all.
     pub contact: Option<RawContact>,
     /// A strand laid up in helical layers around z.
+    #[schemars(extend("x-required-when" = "there is no other body: strand, wire or sphere"))]
     pub strand: Option<RawStrand>,
     /// `[[wire]]`: wires given one by one.
+    #[schemars(extend("x-required-when" = "there is no other body: strand, wire or sphere"))]
     #[serde(default)]
     pub wire: Vec<RawWire>,
     /// `[[sphere]]`: free spheres.
+    #[schemars(extend("x-required-when" = "there is no other body: strand, wire or sphere"))]
     #[serde(default)]
     pub sphere: Vec<RawSphere>,
     /// The two grips. Absent: free bodies.
@@ -56,7 +59,8 @@ pub struct RawScene {
     /// Time stepping.
     #[serde(default)]
     pub time: RawTime,
-    /// When to stop. At least one key is required.
+    /// When to stop: one key at least, and the first that holds ends the run.
+    #[schemars(extend("x-required" = true))]
     #[serde(default)]
     pub stop: RawStop,
     /// What to write and how often.
@@ -99,7 +103,8 @@ pub struct RawBond {
     /// Damping as a fraction of critical: one number for all modes, or `{ axial, shear, bending, torsion }`.
     #[schemars(extend("x-unit" = "-", "x-default" = "0"))]
     pub damping: Option<RawDamping>,
-    /// Hardening of the elasto-plastic law; required there and refused elsewhere.
+    /// Hardening of the elasto-plastic law; refused elsewhere.
+    #[schemars(extend("x-required-when" = "law = \"elasto-plastic\""))]
     pub hardening: Option<RawHardening>,
     /// When a bond breaks. Absent: never.
     pub rupture: Option<RawRupture>,
@@ -122,30 +127,31 @@ pub struct RawHardening {
     /// Form of the law of hardening, true stress over true plastic strain p.
     #[schemars(extend("x-required" = true))]
     pub form: Option<RawForm>,
-    /// σ₀ of voce and ludwik. Required there.
-    #[schemars(extend("x-unit" = "MPa"))]
+    /// σ₀ of voce and ludwik.
+    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "form = \"voce\" or \"ludwik\""))]
     pub yield_stress: Option<Scalar>,
     /// Q of voce.
     #[schemars(extend("x-unit" = "MPa", "x-default" = "0 MPa"))]
     pub saturation: Option<Scalar>,
-    /// b of voce. Required with a saturation.
-    #[schemars(extend("x-unit" = "-", "x-default" = "0"))]
+    /// b of voce.
+    #[schemars(extend("x-unit" = "-", "x-default" = "0", "x-required-when" = "form = \"voce\" has a saturation"))]
     pub rate: Option<Scalar>,
     /// H of voce.
     #[schemars(extend("x-unit" = "MPa", "x-default" = "0 MPa"))]
     pub linear: Option<Scalar>,
-    /// K of swift and ludwik. Required there.
-    #[schemars(extend("x-unit" = "MPa"))]
+    /// K of swift and ludwik.
+    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "form = \"swift\" or \"ludwik\""))]
     pub strength: Option<Scalar>,
-    /// ε₀ of swift. Required there.
-    #[schemars(extend("x-unit" = "-"))]
+    /// ε₀ of swift.
+    #[schemars(extend("x-unit" = "-", "x-required-when" = "form = \"swift\""))]
     pub prestrain: Option<Scalar>,
-    /// n of swift and ludwik. Required there.
-    #[schemars(extend("x-unit" = "-"))]
+    /// n of swift and ludwik.
+    #[schemars(extend("x-unit" = "-", "x-required-when" = "form = \"swift\" or \"ludwik\""))]
     pub exponent: Option<Scalar>,
     /// Points [strain, stress]. `table`: true plastic strain, from 0 on, and true stress. `engineering-curve`: the
     /// engineering curve of a single wire, straight between its points, converted with Young's modulus and A =
     /// A₀e^(−p).
+    #[schemars(extend("x-required-when" = "form = \"table\" or \"engineering-curve\""))]
     pub points: Option<Vec<[Scalar; 2]>>,
 }
 
@@ -172,20 +178,20 @@ pub struct RawRupture {
     /// What breaks a bond.
     #[schemars(extend("x-required" = true))]
     pub criterion: Option<RawCriterion>,
-    /// Rupture strain of plastic-strain and fibre-strain. Required there.
-    #[schemars(extend("x-unit" = "-"))]
+    /// Rupture strain of plastic-strain and fibre-strain.
+    #[schemars(extend("x-unit" = "-", "x-required-when" = "criterion = \"plastic-strain\" or \"fibre-strain\""))]
     pub strain: Option<Scalar>,
-    /// σ_c of beam-stress. Required there.
-    #[schemars(extend("x-unit" = "MPa"))]
+    /// σ_c of beam-stress.
+    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "criterion = \"beam-stress\""))]
     pub tensile: Option<Scalar>,
-    /// τ_c of beam-stress. Required there.
-    #[schemars(extend("x-unit" = "MPa"))]
+    /// τ_c of beam-stress.
+    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "criterion = \"beam-stress\""))]
     pub shear: Option<Scalar>,
     /// β_m of beam-stress, 0 to 1.
     #[schemars(extend("x-unit" = "-", "x-default" = "1"))]
     pub moment_share: Option<Scalar>,
     /// Weibull modulus of the scatter of the rupture value from bond to bond; "inf": no scatter.
-    #[schemars(extend("x-unit" = "-", "x-default" = "inf"))]
+    #[schemars(extend("x-unit" = "-", "x-default" = "inf", "x-word" = "inf"))]
     pub weibull_modulus: Option<Scalar>,
 }
 
@@ -224,7 +230,7 @@ pub struct RawContact {
     #[schemars(extend("x-unit" = "-", "x-default" = "0"))]
     pub hardness_strain: Option<Scalar>,
     /// Thornton: limiting contact pressure, instead of the two keys above.
-    #[schemars(extend("x-unit" = "MPa"))]
+    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "normal = \"thornton\" and bond.law = \"elastic\""))]
     pub limiting_pressure: Option<Scalar>,
     /// Viscous damping of the normal motion as a fraction of critical.
     #[schemars(extend("x-unit" = "-", "x-default" = "0"))]
@@ -276,10 +282,10 @@ pub struct RawStrand {
     #[schemars(extend("x-unit" = "mm", "x-required" = true))]
     pub length: Option<Scalar>,
     /// Wire diameter of layers that give none.
-    #[schemars(extend("x-unit" = "mm"))]
+    #[schemars(extend("x-unit" = "mm", "x-required-when" = "there is a construction, or a layer without one"))]
     pub wire_diameter: Option<Scalar>,
     /// Pitch of layers that give none, or "inf" for straight wires.
-    #[schemars(extend("x-unit" = "mm"))]
+    #[schemars(extend("x-unit" = "mm", "x-required-when" = "there is a construction, or a layer without one that is no single wire on the axis", "x-word" = "inf"))]
     pub pitch: Option<Scalar>,
     /// Lay direction of layers that give none.
     #[schemars(extend("x-default" = "right"))]
@@ -287,11 +293,13 @@ pub struct RawStrand {
     /// Instead of `[[strand.layer]]`: the wires of each layer from the inside out, such as [5, 11, 18], or `auto` for
     /// full rings of copper nearest to `area`; lay radii are least, and all layers have the strand's wire diameter,
     /// pitch and lay.
+    #[schemars(extend("x-word" = "auto"))]
     pub construction: Option<RawConstruction>,
-    /// Copper section of `construction = "auto"`. Required there.
-    #[schemars(extend("x-unit" = "mm^2"))]
+    /// Copper section of `construction = "auto"`.
+    #[schemars(extend("x-unit" = "mm^2", "x-required-when" = "construction = \"auto\""))]
     pub area: Option<Scalar>,
-    /// `[[strand.layer]]`, from the inside out. At least one, unless there is a `construction`.
+    /// `[[strand.layer]]`, from the inside out.
+    #[schemars(extend("x-required-when" = "there is no construction"))]
     #[serde(default)]
     pub layer: Vec<RawLayer>,
 }
@@ -318,13 +326,13 @@ pub struct RawLayer {
     pub wires: Option<i64>,
     /// Lay radius (axis to wire centre), or `auto`: the least radius without overlap; 0 for a single wire in the
     /// first layer.
-    #[schemars(extend("x-unit" = "mm", "x-default" = "auto"))]
+    #[schemars(extend("x-unit" = "mm", "x-default" = "auto", "x-word" = "auto"))]
     pub lay_radius: Option<Scalar>,
     /// Wire diameter.
     #[schemars(extend("x-unit" = "mm", "x-otherwise" = "strand.wire_diameter"))]
     pub wire_diameter: Option<Scalar>,
     /// Pitch, or "inf" for straight wires.
-    #[schemars(extend("x-unit" = "mm", "x-otherwise" = "strand.pitch, else inf for a single wire on the axis"))]
+    #[schemars(extend("x-unit" = "mm", "x-otherwise" = "strand.pitch, else inf for a single wire on the axis", "x-word" = "inf"))]
     pub pitch: Option<Scalar>,
     /// Lay direction.
     #[schemars(extend("x-otherwise" = "strand.lay"))]
@@ -344,25 +352,37 @@ pub enum RawLay {
     Left,
 }
 
+impl RawLay {
+    /// Sign of the lay; right where it is not given.
+    pub(super) fn sign(lay: Option<Self>) -> f64 {
+        match lay.unwrap_or(Self::Right) {
+            Self::Right => 1.0,
+            Self::Left => -1.0,
+        }
+    }
+}
+
 /// `[[wire]]`: either `from` and `to`, or `file`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RawWire {
-    /// Wire diameter. Required, unless the centreline file gives it.
-    #[schemars(extend("x-unit" = "mm"))]
+    /// Wire diameter; that of the centreline file, if it gives one, holds otherwise.
+    #[schemars(extend("x-unit" = "mm", "x-required-when" = "the centreline file does not give it"))]
     pub diameter: Option<Scalar>,
     /// Name of the layer it is counted in.
     #[schemars(extend("x-otherwise" = "the centreline file's, else wire"))]
     pub layer: Option<String>,
     /// First point of a straight wire, three lengths.
-    #[schemars(extend("x-unit" = "mm"))]
+    #[schemars(extend("x-unit" = "mm", "x-required-when" = "there is no file"))]
     pub from: Option<Triple>,
     /// Last point of a straight wire, three lengths.
-    #[schemars(extend("x-unit" = "mm"))]
+    #[schemars(extend("x-unit" = "mm", "x-required-when" = "there is no file"))]
     pub to: Option<Triple>,
     /// Centreline text file, relative to the scene's folder.
+    #[schemars(extend("x-required-when" = "there is no from and to"))]
     pub file: Option<String>,
-    /// Which wire of the file, from 0. May be left out when the file has one wire.
+    /// Which wire of the file, from 0.
+    #[schemars(extend("x-required-when" = "the file has several wires, unless all = true"))]
     pub index: Option<i64>,
     /// Take all wires of the file.
     #[schemars(extend("x-default" = "false"))]
@@ -426,19 +446,21 @@ pub struct RawTime {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RawStop {
-    /// Grip displacement over gauge length; needs a grip.
-    #[schemars(extend("x-unit" = "-"))]
+    /// Strain of the body, the grip's displacement over the free length between the particles held; needs a grip.
+    #[schemars(extend("x-unit" = "-", "x-required-when" = "no other key of stop is there"))]
     pub strain: Option<Scalar>,
-    /// Nominal stress over its peak, after a rupture; needs a grip and a rupture criterion.
-    #[schemars(extend("x-unit" = "-"))]
+    /// Nominal stress over its peak after a rupture, both as means over two passages of an elastic wave along the body;
+    /// needs a grip and a rupture criterion.
+    #[schemars(extend("x-unit" = "-", "x-required-when" = "no other key of stop is there"))]
     pub stress_fraction: Option<Scalar>,
-    /// Strain beyond the drop, at which nominal stress had fallen to 80 % of its peak after a rupture: shows what is
-    /// left. Needs a grip and a rupture criterion.
-    #[schemars(extend("x-unit" = "-"))]
+    /// Strain beyond the drop, at which nominal stress, in the mean over two passages of a wave, had fallen to 80 % of its
+    /// peak after a rupture: shows what is left. Needs a grip and a rupture criterion.
+    #[schemars(extend("x-unit" = "-", "x-required-when" = "no other key of stop is there"))]
     pub strain_after_drop: Option<Scalar>,
     /// Simulated time.
-    #[schemars(extend("x-unit" = "ms"))]
+    #[schemars(extend("x-unit" = "ms", "x-required-when" = "no other key of stop is there"))]
     pub time: Option<Scalar>,
     /// Number of steps.
+    #[schemars(extend("x-required-when" = "no other key of stop is there"))]
     pub steps: Option<i64>,
 }

@@ -2,6 +2,7 @@
 //! key that is wrong.
 
 use super::at::{At, Range};
+use super::look::{FRAME_SIDE, ZOOM};
 use super::raw::*;
 use super::spec::*;
 use super::{hardening, resolve_bodies, resolve_drive};
@@ -25,9 +26,6 @@ const SKIN: f64 = 0.15;
 const RESOLVED: f64 = 0.4;
 /// Spacing over diameter from which a wire fits between two neighbouring spheres of another (-).
 const GAP: f64 = 2.0;
-/// Side of a frame, least and greatest (pixels).
-const FRAME_SIDE: std::ops::RangeInclusive<i64> = 16..=8192;
-
 /// Evenly spread snapshots where bonds can break: what they leave of the usual number is for the ruptures.
 const SNAPSHOTS_IF_IT_BREAKS: usize = 60;
 
@@ -82,12 +80,17 @@ fn refuse_gaps(at: &At, spacing: f64, contact: Option<&ContactSpec>) -> Result<(
     Err(at.key("spacing").error(what, format!("take a spacing below {GAP}, or smooth wires: contact.shape = \"wire\"")))
 }
 
+/// Whether a scene may have this name, and its results a folder of that name.
+pub fn can_name_a_folder(name: &str) -> bool {
+    let allowed = |c: char| c.is_alphanumeric() || "-_.+".contains(c);
+    !name.is_empty() && !name.starts_with(['.', '-']) && name.chars().all(allowed)
+}
+
 fn scene_name(at: &At, raw: &RawScene, file: &str) -> Result<String> {
     let Some(name) = &raw.name else {
         return Ok(file.to_owned());
     };
-    let allowed = |c: char| c.is_alphanumeric() || "-_.+".contains(c);
-    if name.is_empty() || name.starts_with('.') || !name.chars().all(allowed) {
+    if !can_name_a_folder(name) {
         let what = format!("`name` is {name:?}, which cannot name a folder");
         return Err(at.key("name").error(what, "use letters, digits, - and _"));
     }
@@ -196,6 +199,7 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
     at.optional("hardness_factor", &raw.hardness_factor, Dimension::Ratio, Range::Positive)?;
     at.optional("hardness_strain", &raw.hardness_strain, Dimension::Ratio, Range::NotNegative)?;
     at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?;
+    let mut hardness = None;
     let normal = match raw.normal.ok_or_else(|| at.missing("normal", "\"thornton\""))? {
         RawNormal::None => return Ok(None),
         RawNormal::Hertz => {
@@ -205,10 +209,15 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
             at.refuse("limiting_pressure", &raw.limiting_pressure, why)?;
             NormalSpec::Hertz
         }
-        RawNormal::Thornton => NormalSpec::Thornton { limiting_pressure: limiting_pressure(at, raw, bond)? },
+        RawNormal::Thornton => {
+            let (limiting_pressure, rule) = limiting_pressure(at, raw, bond)?;
+            hardness = rule;
+            NormalSpec::Thornton { limiting_pressure }
+        }
     };
     Ok(Some(ContactSpec {
         normal,
+        hardness,
         tangential: match raw.tangential.unwrap_or(RawTangential::Mindlin) {
             RawTangential::Mindlin => Some(TangentialSpec::Mindlin),
             RawTangential::MindlinDeresiewicz => Some(TangentialSpec::MindlinDeresiewicz),
@@ -224,22 +233,24 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
     }))
 }
 
-/// Thornton's p_y (Pa): given, or a multiple of the bonds' yield stress.
-fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<f64> {
+/// Thornton's p_y (Pa): given, or by the rule that comes with it.
+fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<(f64, Option<Hardness>)> {
     if let Some(pressure) =
         at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?
     {
         let why = "has no effect beside limiting_pressure";
         at.refuse("hardness_factor", &raw.hardness_factor, why)?;
         at.refuse("hardness_strain", &raw.hardness_strain, why)?;
-        return Ok(pressure);
+        return Ok((pressure, None));
     }
     let BondLawSpec::ElastoPlastic(law) = &bond.law else {
         return Err(at.missing("limiting_pressure", "\"600 MPa\" (under an elastic bond law there is no yield stress)"));
     };
-    let factor = at.ratio_or("hardness_factor", &raw.hardness_factor, HARDNESS_FACTOR, Range::Positive)?;
-    let strain = at.ratio_or("hardness_strain", &raw.hardness_strain, 0.0, Range::NotNegative)?;
-    Ok(factor * law.stress(strain))
+    let hardness = Hardness {
+        factor: at.ratio_or("hardness_factor", &raw.hardness_factor, HARDNESS_FACTOR, Range::Positive)?,
+        strain: at.ratio_or("hardness_strain", &raw.hardness_strain, 0.0, Range::NotNegative)?,
+    };
+    Ok((hardness.limiting_pressure(law), Some(hardness)))
 }
 
 fn time(at: &At, raw: &RawTime) -> Result<TimeSpec> {
@@ -258,15 +269,16 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
     let usual = OutputSpec::default();
     let [width, height] = raw.frame_size.unwrap_or(usual.frame_size.map(i64::from));
     let side = |index: usize, pixels: i64| -> Result<u32> {
-        if !FRAME_SIDE.contains(&pixels) {
+        let fits = u32::try_from(pixels).ok().filter(|pixels| FRAME_SIDE.contains(pixels));
+        let Some(fits) = fits else {
             let what = format!(
                 "`frame_size` holds {pixels}, but a side must have {} to {} pixels",
                 FRAME_SIDE.start(),
                 FRAME_SIDE.end()
             );
             return Err(at.key("frame_size").element(index).error(what, "for example [1280, 720]"));
-        }
-        Ok(pixels as u32)
+        };
+        Ok(fits)
     };
     let snapshots = if breaks { SNAPSHOTS_IF_IT_BREAKS } else { usual.snapshots };
     let density = at.ratio_or("rupture_density", &raw.rupture_density, usual.rupture_density, Range::AtLeastOne)?;
@@ -284,10 +296,15 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
 
 fn camera(at: &At, raw: &RawCamera) -> Result<CameraSpec> {
     let angle = |name, raw| Ok::<f64, Error>(at.optional(name, raw, Dimension::Angle, Range::Any)?.unwrap_or(0.0));
+    let zoom = at.ratio_or("zoom", &raw.zoom, CameraSpec::default().zoom, Range::Positive)?;
+    if !ZOOM.contains(&zoom) {
+        let what = format!("`zoom` is {zoom}, but must be between {} and {}", ZOOM.start(), ZOOM.end());
+        return Err(at.key("zoom").error(what, "for example zoom = 2"));
+    }
     Ok(CameraSpec {
         azimuth: angle("azimuth", &raw.azimuth)?,
         elevation: angle("elevation", &raw.elevation)?,
-        zoom: at.ratio_or("zoom", &raw.zoom, CameraSpec::default().zoom, Range::Positive)?,
+        zoom,
         focus_z: at.optional("focus_z", &raw.focus_z, Dimension::Length, Range::Any)?,
     })
 }

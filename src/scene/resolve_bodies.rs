@@ -5,8 +5,10 @@ use super::centreline_text::{self, CentrelineWire};
 use super::construction;
 use super::raw::{RawLay, RawLayer, RawSphere, RawStrand, RawWire, Scalar};
 use super::spec::{LayerSpec, PathSpec, SphereSpec, StrandSpec, WireSpec};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::base::units::{self, Dimension};
+use crate::base::wording::counted;
 use std::path::{Path, PathBuf};
 
 /// Relative difference up to which two diameters are one, written with other units (-).
@@ -42,7 +44,7 @@ pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
 
 fn layer(at: &At, strand: &At, raw: &RawLayer, defaults: &RawStrand, index: usize) -> Result<LayerSpec> {
     let wires = raw.wires.ok_or_else(|| at.missing("wires", "6"))?;
-    let wires = at.key("wires").count(wires, 1)? as usize;
+    let wires = at.key("wires").count_within(wires, 1, construction::MOST_WIRES as u64)? as usize;
     let lay_radius = lay_radius(at, raw.lay_radius.as_ref(), wires, index)?;
     let on_axis = lay_radius == Some(0.0);
     let pitch = match layer_or_strand(at, strand, "pitch", &raw.pitch, &defaults.pitch, Range::PositiveOrInfinite)? {
@@ -58,17 +60,9 @@ fn layer(at: &At, strand: &At, raw: &RawLayer, defaults: &RawStrand, index: usiz
         wire_diameter: diameter.ok_or_else(|| at.missing("wire_diameter", "\"0.39 mm\""))?,
         lay_radius,
         pitch,
-        lay: hand(raw.lay.or(defaults.lay)),
+        lay: RawLay::sign(raw.lay.or(defaults.lay)),
         phase: at.optional("phase", &raw.phase, Dimension::Angle, Range::Any)?.unwrap_or(0.0),
     })
-}
-
-/// Sign of the lay; right where it is not given.
-pub(super) fn hand(lay: Option<RawLay>) -> f64 {
-    match lay.unwrap_or(RawLay::Right) {
-        RawLay::Right => 1.0,
-        RawLay::Left => -1.0,
-    }
 }
 
 /// A length that the layer gives, or the strand for all layers.
@@ -180,13 +174,11 @@ fn refuse_two_diameters(at: &At, scene: Option<f64>, header: Option<f64>, index:
 
 /// The file's full path, so that the resolved scene may be kept in any folder, and its wires.
 fn read_centrelines(at: &At, file: &str, folder: &Path) -> Result<(PathBuf, Vec<CentrelineWire>)> {
-    let unreadable = |path: &Path, source: std::io::Error| {
-        let what = format!("cannot read {}: {source}", path.display());
-        at.key("file").error(what, "the path is taken from the scene's folder")
-    };
+    let unreadable =
+        |error: Error| at.key("file").error(error.to_string(), "the path is taken from the scene's folder");
     let given = folder.join(file);
-    let path = std::path::absolute(&given).map_err(|source| unreadable(&given, source))?;
-    let bytes = std::fs::read(&path).map_err(|source| unreadable(&path, source))?;
+    let path = std::path::absolute(&given).map_err(|cause| unreadable(Error::io("cannot read", &given, cause)))?;
+    let bytes = regular::read(&path, regular::LONGEST_TABLE).map_err(unreadable)?;
     let text = centreline_text::decode(&bytes).ok_or_else(|| {
         let what = format!("{} is no text in UTF-8, nor in UTF-16 with its mark", path.display());
         at.key("file").error(what, "save it as plain text")
@@ -210,7 +202,7 @@ fn chosen_wires(at: &At, raw: &RawWire, len: usize) -> Result<std::ops::Range<us
             match number < len {
                 true => Ok(number..number + 1),
                 false => {
-                    let what = format!("`index` is {number}, but the file has {len} wires");
+                    let what = format!("`index` is {number}, but the file has {}", counted(len, "wire"));
                     Err(at.key("index").error(what, "they are numbered from 0"))
                 }
             }

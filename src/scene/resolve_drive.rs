@@ -7,11 +7,6 @@ use crate::base::error::Result;
 use crate::base::units::{self, Dimension};
 use glam::DVec3;
 
-/// Kinetic energy of an adaptive pull over its work, at most (-): below the limit at which a run warns.
-const KINETIC: f64 = 0.04;
-/// Passages of an elastic wave from grip to grip that an adaptive pull leaves until the next rupture, at least (-).
-const PASSAGES: f64 = 20.0;
-
 /// Resolves `[grip]`; `extent` is the length along z of what it holds (m).
 pub(super) fn grip(at: &At, raw: &RawGrip, extent: Option<f64>) -> Result<GripSpec> {
     let length = at.required("length", &raw.length, Dimension::Length, Range::Positive)?;
@@ -82,16 +77,26 @@ fn adaptive(at: &At, raw: &RawAdaptive, drive: DriveSpec) -> Result<AdaptiveSpec
         return Err(at.refused("is for a pull: `speed` must be above zero"));
     }
     let fastest = at.required("fastest", &raw.fastest, Dimension::Velocity, Range::Positive)?;
-    if fastest < slow {
-        let [fastest, slow] = [fastest, slow].map(|speed| units::format(speed, Dimension::Velocity));
-        let what = format!("`fastest` is {fastest}, but the pull begins at `speed`, {slow}");
-        return Err(at.key("fastest").error(what, "make it greater than grip.speed"));
-    }
-    Ok(AdaptiveSpec {
-        from: at.ratio_or("from", &raw.from, 0.0, Range::NotNegative)?,
+    let usual = AdaptiveSpec::new(0.0, fastest);
+    let adaptive = AdaptiveSpec {
+        from: at.ratio_or("from", &raw.from, usual.from, Range::NotNegative)?,
         fastest,
-        kinetic: at.ratio_or("kinetic", &raw.kinetic, KINETIC, Range::Fraction)?,
-        passages: at.ratio_or("passages", &raw.passages, PASSAGES, Range::Positive)?,
+        kinetic: at.ratio_or("kinetic", &raw.kinetic, usual.kinetic, Range::Fraction)?,
+        passages: at.ratio_or("passages", &raw.passages, usual.passages, Range::Positive)?,
+    };
+    match slower_than_the_drive(&adaptive, drive) {
+        Some((what, help)) => Err(at.key("fastest").error(what, help)),
+        None => Ok(adaptive),
+    }
+}
+
+/// What is wrong, and what would be right, where an adaptive pull may not even be as fast as it begins.
+pub(super) fn slower_than_the_drive(adaptive: &AdaptiveSpec, drive: DriveSpec) -> Option<(String, &'static str)> {
+    let DriveSpec::Speed(slow) = drive else { return None };
+    (adaptive.fastest < slow).then(|| {
+        let [fastest, slow] = [adaptive.fastest, slow].map(|speed| units::format(speed, Dimension::Velocity));
+        let what = format!("`fastest` is {fastest}, but the pull begins at `speed`, {slow}");
+        (what, "make it greater than grip.speed")
     })
 }
 
@@ -104,7 +109,7 @@ fn hold(at: &At, raw: &RawHold, bodies: usize) -> Result<HoldSpec> {
     let body = raw.body.ok_or_else(|| at.missing("body", "0"))?;
     let body = at.key("body").count(body, 0)? as usize;
     if body >= bodies {
-        let what = format!("there is no body {body}: the scene has {bodies}, numbered from 0");
+        let what = format!("there is no body {body}: the scene has {bodies}, numbered from 0 (from 1 in results)");
         return Err(at.key("body").error(what, "strand wires come first, inside out, then [[wire]], then [[sphere]]"));
     }
     let mut fixed = [false; 6];

@@ -129,6 +129,8 @@ pub enum RuptureCriterion {
 pub struct ContactSpec {
     /// Normal law.
     pub normal: NormalSpec,
+    /// Where the limiting pressure comes from the hardening law of the bonds: by which rule; `None` where it is given.
+    pub hardness: Option<Hardness>,
     /// Tangential law; `None` means frictionless.
     pub tangential: Option<TangentialSpec>,
     /// Coulomb friction coefficient (-).
@@ -139,6 +141,22 @@ pub struct ContactSpec {
     pub damping: f64,
     /// Skin of the neighbour list over the largest particle diameter (-).
     pub skin: f64,
+}
+
+/// Limiting contact pressure as a multiple of the flow stress (Tabor 1951).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hardness {
+    /// Pressure over flow stress (-).
+    pub factor: f64,
+    /// Plastic strain at which the flow stress is taken (-).
+    pub strain: f64,
+}
+
+impl Hardness {
+    /// The limiting pressure (Pa) under a hardening law.
+    pub fn limiting_pressure(&self, law: &HardeningSpec) -> f64 {
+        self.factor * law.stress(self.strain)
+    }
 }
 
 /// Normal contact law.
@@ -290,6 +308,13 @@ pub struct AdaptiveSpec {
     pub passages: f64,
 }
 
+impl AdaptiveSpec {
+    /// From strain `from` (-) up to `fastest` (m/s), with the usual limits: kinetic energy below that at which a run warns.
+    pub fn new(from: f64, fastest: f64) -> Self {
+        Self { from, fastest, kinetic: 0.04, passages: 20.0 }
+    }
+}
+
 /// Motion of the upper grip along z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DriveSpec {
@@ -358,7 +383,7 @@ pub struct TimeSpec {
 /// When to stop; the first that holds ends the run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StopSpec {
-    /// Grip displacement over gauge length (-).
+    /// Strain of the body, grip displacement over free length (-).
     pub strain: Option<f64>,
     /// Nominal stress has fallen to this fraction of its peak, after a rupture (-).
     pub stress_fraction: Option<f64>,

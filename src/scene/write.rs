@@ -165,7 +165,13 @@ fn contact(out: &mut Lines, contact: Option<&ContactSpec>) {
         NormalSpec::Hertz => out.entry("normal", text("hertz")),
         NormalSpec::Thornton { limiting_pressure } => {
             out.entry("normal", text("thornton"));
-            out.quantity("limiting_pressure", limiting_pressure, Dimension::Pressure);
+            match contact.hardness {
+                Some(Hardness { factor, strain }) => {
+                    out.entry("hardness_factor", number(factor));
+                    out.entry("hardness_strain", number(strain));
+                }
+                None => out.quantity("limiting_pressure", limiting_pressure, Dimension::Pressure),
+            }
         }
     }
     let tangential = match contact.tangential {

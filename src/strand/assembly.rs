@@ -91,6 +91,11 @@ impl Assembly {
         self.radius.is_empty()
     }
 
+    /// Radius of the thinnest particle (m).
+    pub fn least_radius(&self) -> f64 {
+        self.radius.iter().copied().fold(f64::MAX, f64::min)
+    }
+
     /// Number of bonds.
     pub fn bond_count(&self) -> usize {
         self.wires.iter().map(|w| w.bonds().len()).sum()

@@ -3,10 +3,11 @@
 use crate::base::units::{self, Dimension};
 use crate::scene::spec::{PathSpec, Spec};
 use crate::strand::assembly::Assembly;
+use crate::strand::discretise::build;
+use crate::strand::error::mm;
 use crate::strand::held;
 use crate::strand::overlap::{self, Body, Overlap};
 use crate::strand::resample::resample;
-use crate::strand::{build, error::mm};
 use glam::DVec3;
 
 /// Deviation of a wire from the points that a file gives, over its radius, from which it is told (-).

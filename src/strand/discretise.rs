@@ -3,11 +3,11 @@
 use crate::base::vectors::Vectors;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::{Assembly, Layer, Wire};
+use crate::strand::chain::{WireChain, chain_of_wire, lay_up};
 use crate::strand::error::{BuildError, BuildErrorKind, mm};
 use crate::strand::held;
 use crate::strand::lay_radius::GREATEST_OVERLAP;
 use crate::strand::overlap::{self, Body};
-use crate::strand::strung::{Strung, lay_up, string_wire};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -29,21 +29,21 @@ const GREATEST_TURN: f64 = FRAC_PI_4;
 /// one component, or the grips never strain the body as far as the run is to go.
 pub fn build(spec: &Spec) -> Result<Assembly, BuildError> {
     let mut layers = Vec::new();
-    let mut strung = Vec::new();
+    let mut chains = Vec::new();
     if let Some(strand) = &spec.strand {
-        lay_up(spec, strand, &mut layers, &mut strung)?;
+        lay_up(spec, strand, &mut layers, &mut chains)?;
     }
     for (i, wire) in spec.wires.iter().enumerate() {
-        strung.push(string_wire(spec, wire, i, &mut layers)?);
+        chains.push(chain_of_wire(spec, wire, i, &mut layers)?);
     }
-    if strung.is_empty() && spec.spheres.is_empty() {
+    if chains.is_empty() && spec.spheres.is_empty() {
         return Err(nothing_there());
     }
-    for (w, wire) in strung.iter().enumerate() {
+    for (w, wire) in chains.iter().enumerate() {
         check_turns(w, wire)?;
     }
-    check_overlaps(spec, &strung, &layers)?;
-    let assembly = assemble(spec, layers, &strung);
+    check_overlaps(spec, &chains, &layers)?;
+    let assembly = assemble(spec, layers, &chains);
     held::check_holds(spec, &assembly)?;
     held::check_stop(spec, &assembly)?;
     Ok(assembly)
@@ -60,7 +60,7 @@ fn nothing_there() -> BuildError {
 }
 
 /// Refuses a wire that turns too far between neighbouring bonds.
-fn check_turns(w: usize, wire: &Strung) -> Result<(), BuildError> {
+fn check_turns(w: usize, wire: &WireChain) -> Result<(), BuildError> {
     let sharpest = wire.chain.points.windows(3).map(|p| (p[1] - p[0]).angle_between(p[2] - p[1])).fold(0.0, f64::max);
     if sharpest <= GREATEST_TURN {
         return Ok(());
@@ -85,8 +85,8 @@ fn check_turns(w: usize, wire: &Strung) -> Result<(), BuildError> {
 }
 
 /// Refuses bodies that overlap by more than [`GREATEST_OVERLAP`] of a diameter.
-fn check_overlaps(spec: &Spec, strung: &[Strung], layers: &[Layer]) -> Result<(), BuildError> {
-    let wires = strung.iter().map(|wire| Body { points: &wire.chain.points, radius: 0.5 * wire.diameter });
+fn check_overlaps(spec: &Spec, chains: &[WireChain], layers: &[Layer]) -> Result<(), BuildError> {
+    let wires = chains.iter().map(|wire| Body { points: &wire.chain.points, radius: 0.5 * wire.diameter });
     let spheres = spec
         .spheres
         .iter()
@@ -95,9 +95,9 @@ fn check_overlaps(spec: &Spec, strung: &[Strung], layers: &[Layer]) -> Result<()
     let Some(worst) = overlap::deepest(&bodies, GREATEST_OVERLAP) else {
         return Ok(());
     };
-    let name = |body: usize| match strung.get(body) {
+    let name = |body: usize| match chains.get(body) {
         Some(wire) => format!("wire {} (layer \"{}\")", body + 1, layers[wire.layer].name),
-        None => format!("sphere {}", body - strung.len() + 1),
+        None => format!("sphere {}", body - chains.len() + 1),
     };
     let [first, second] = worst.bodies;
     let overlapping = if first == second {
@@ -106,9 +106,9 @@ fn check_overlaps(spec: &Spec, strung: &[Strung], layers: &[Layer]) -> Result<()
         format!("{} and {} overlap", name(first), name(second))
     };
     // The later body is the one that was put where another already is.
-    let (layer, key) = match strung.get(second) {
+    let (layer, key) = match chains.get(second) {
         Some(wire) => (wire.strand_layer, wire.key.clone()),
-        None => (None, format!("sphere.{}", second - strung.len())),
+        None => (None, format!("sphere.{}", second - chains.len())),
     };
     Err(BuildError {
         kind: BuildErrorKind::Overlap,
@@ -126,11 +126,11 @@ fn check_overlaps(spec: &Spec, strung: &[Strung], layers: &[Layer]) -> Result<()
     })
 }
 
-fn assemble(spec: &Spec, layers: Vec<Layer>, strung: &[Strung]) -> Assembly {
-    let n = strung.iter().map(|wire| wire.chain.points.len()).sum::<usize>() + spec.spheres.len();
+fn assemble(spec: &Spec, layers: Vec<Layer>, chains: &[WireChain]) -> Assembly {
+    let n = chains.iter().map(|wire| wire.chain.points.len()).sum::<usize>() + spec.spheres.len();
     let mut assembly = Assembly {
         layers,
-        wires: Vec::with_capacity(strung.len()),
+        wires: Vec::with_capacity(chains.len()),
         wire_particles: 0,
         position: Vectors::with_capacity(n),
         velocity: Vectors::with_capacity(n),
@@ -143,7 +143,7 @@ fn assemble(spec: &Spec, layers: Vec<Layer>, strung: &[Strung]) -> Assembly {
         length: 0.0,
         area: 0.0,
     };
-    strung.iter().for_each(|wire| add_wire(&mut assembly, spec, wire));
+    chains.iter().for_each(|wire| add_wire(&mut assembly, spec, wire));
     assembly.wire_particles = assembly.len();
     assembly.area = assembly.wires.iter().map(Wire::area).sum();
     assembly.length = match &spec.strand {
@@ -159,7 +159,7 @@ const WIRE_INERTIA: f64 = 0.5;
 /// The same of a solid sphere (-).
 const SPHERE_INERTIA: f64 = 0.4;
 
-fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &Strung) {
+fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &WireChain) {
     let placed =
         Wire { layer: wire.layer, first: assembly.len(), len: wire.chain.points.len(), diameter: wire.diameter };
     let (points, arcs) = (&wire.chain.points, &wire.chain.arcs);

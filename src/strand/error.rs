@@ -3,7 +3,7 @@
 use crate::base::error::Error;
 use crate::strand::lay_radius::{Clash, LayRadiusError};
 
-/// Kind of trouble.
+/// What is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BuildErrorKind {
     /// The scene has no body.
@@ -30,7 +30,7 @@ pub enum BuildErrorKind {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct BuildError {
-    /// Kind of trouble.
+    /// What is wrong.
     pub kind: BuildErrorKind,
     /// The strand's layer to blame, from 0, when it is one.
     pub layer: Option<usize>,

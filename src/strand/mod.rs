@@ -3,6 +3,7 @@
 pub mod assembly;
 pub mod caution;
 pub mod centrelines;
+mod chain;
 pub mod discretise;
 pub mod error;
 pub mod held;
@@ -10,7 +11,7 @@ pub mod helix;
 pub mod lay_radius;
 pub mod overlap;
 pub mod resample;
-mod strung;
+pub mod size;
 #[cfg(test)]
 pub(crate) mod test_specs;
 pub mod theory;

@@ -82,7 +82,7 @@ fn cell_of(segment: &Segment, size: f64) -> [i64; 3] {
 fn around(cell: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
     (0..27).map(move |k| {
         let step = [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1];
-        std::array::from_fn(|axis| cell[axis] + step[axis])
+        std::array::from_fn(|axis| cell[axis].saturating_add(step[axis]))
     })
 }
 

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 /// Why points do not make a centre line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PathTrouble {
+pub enum PathError {
     /// Fewer than two points.
     TooFewPoints,
     /// Point `0` (from 0) has a coordinate that is not finite.
@@ -52,13 +52,13 @@ pub fn pieces(arc: f64, spacing: f64) -> Option<usize> {
 ///
 /// # Errors
 /// When it is shorter than the spacing or not finite.
-pub fn straight(from: DVec3, to: DVec3, spacing: f64) -> Result<Chain, PathTrouble> {
+pub fn straight(from: DVec3, to: DVec3, spacing: f64) -> Result<Chain, PathError> {
     let not_finite = [from, to].iter().position(|p| !p.is_finite());
     if let Some(i) = not_finite {
-        return Err(PathTrouble::NotFinite(i));
+        return Err(PathError::NotFinite(i));
     }
     let length = from.distance(to);
-    let n = pieces(length, spacing).ok_or(PathTrouble::TooShort(length))?;
+    let n = pieces(length, spacing).ok_or(PathError::TooShort(length))?;
     Ok(Chain {
         points: (0..=n).map(|i| from.lerp(to, i as f64 / n as f64)).collect(),
         arcs: vec![length / n as f64; n],
@@ -73,18 +73,18 @@ pub fn straight(from: DVec3, to: DVec3, spacing: f64) -> Result<Chain, PathTroub
 /// nearer to the one before than a hundredth of the spacing repeats it and is left out.
 ///
 /// # Errors
-/// See [`PathTrouble`].
-pub fn resample(points: &[DVec3], spacing: f64) -> Result<Chain, PathTrouble> {
+/// See [`PathError`].
+pub fn resample(points: &[DVec3], spacing: f64) -> Result<Chain, PathError> {
     check(points)?;
     let given = points;
     let points = &without_repeated(given, REPEATED * spacing);
     if points.len() < 2 {
-        return Err(PathTrouble::TooShort(given[0].distance(given[given.len() - 1])));
+        return Err(PathError::TooShort(given[0].distance(given[given.len() - 1])));
     }
     let merged = given.len() - points.len();
     let spline = Spline::through(points);
     let total: f64 = spline.arcs.iter().sum();
-    let n = pieces(total, spacing).ok_or(PathTrouble::TooShort(total))?;
+    let n = pieces(total, spacing).ok_or(PathError::TooShort(total))?;
     if has_spacing(&spline.chords, spacing) {
         let deviation = farthest(given, points);
         return Ok(Chain { points: points.to_vec(), arcs: spline.arcs, deviation, merged });
@@ -148,12 +148,12 @@ fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     p.distance(a + along * t)
 }
 
-fn check(points: &[DVec3]) -> Result<(), PathTrouble> {
+fn check(points: &[DVec3]) -> Result<(), PathError> {
     if let Some(i) = points.iter().position(|p| !p.is_finite()) {
-        return Err(PathTrouble::NotFinite(i));
+        return Err(PathError::NotFinite(i));
     }
     if points.len() < 2 {
-        return Err(PathTrouble::TooFewPoints);
+        return Err(PathError::TooFewPoints);
     }
     Ok(())
 }
@@ -363,13 +363,13 @@ mod tests {
     #[test]
     fn lines_that_are_none_are_refused() {
         let (a, b) = (DVec3::ZERO, DVec3::Z);
-        assert_eq!(resample(&[a], 0.1), Err(PathTrouble::TooFewPoints));
-        assert_eq!(resample(&[a, a], 0.1), Err(PathTrouble::TooShort(0.0)));
-        assert_eq!(resample(&[a, b * f64::NAN], 0.1), Err(PathTrouble::NotFinite(1)));
+        assert_eq!(resample(&[a], 0.1), Err(PathError::TooFewPoints));
+        assert_eq!(resample(&[a, a], 0.1), Err(PathError::TooShort(0.0)));
+        assert_eq!(resample(&[a, b * f64::NAN], 0.1), Err(PathError::NotFinite(1)));
         assert!(matches!(
             resample(&[a, b], 1.1),
-            Err(PathTrouble::TooShort(length)) if (length - 1.0).abs() < 1e-12
+            Err(PathError::TooShort(length)) if (length - 1.0).abs() < 1e-12
         ));
-        assert_eq!(straight(a, a, 0.1), Err(PathTrouble::TooShort(0.0)));
+        assert_eq!(straight(a, a, 0.1), Err(PathError::TooShort(0.0)));
     }
 }

@@ -8,22 +8,17 @@
 //! One draw of the scatter is one strand, so a setting is judged by the mean over seeds. The seeds are the same at every
 //! setting (common random numbers): the same bonds stay the weak ones, and the means change smoothly with the setting.
 //! The first settings are tried with a few of the seeds, whose means lack only an offset that hardly depends on the
-//! setting; then all seeds are run where those arrived, and decide. Runs are kept ([`crate::study::cases`]), so that the
-//! same calibration goes on where it was interrupted.
+//! setting; then all seeds are run where those arrived, and decide. Runs are kept
+//! ([`CaseStore`]), so that the same calibration goes on where it was interrupted.
 
 use crate::base::error::{Error, Result};
-use crate::scene::plan::Plan;
-use crate::scene::spec::{BondLawSpec, HardeningSpec, RuptureCriterion};
-use crate::scene::{self, Scene};
-use crate::study::cases::measured::Measured;
-use crate::study::cases::record::{self, Found};
-use crate::study::cases::stat::Stat;
-use crate::study::cases::workshop::{Became, Case, Progress, Workshop};
+use crate::scene::Scene;
+use crate::scene::spec::{BondLawSpec, HardeningSpec, NormalSpec, RuptureCriterion, Spec};
+use crate::study::runner::{CaseRunner, CaseStore, all_outputs};
+use crate::study::statistics::Statistics;
+use crate::study::tensile::{TensileCase, TensileOutcome, TensileResult, count_kept};
 use glam::{DMat2, DVec2};
 use serde::Serialize;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 /// Seeds of a scene with scatter where the user says nothing: its mean is then known to 0.84 of its standard deviation
 /// (95 %), and a calibration takes about 24 runs.
@@ -50,29 +45,19 @@ pub struct Target {
 
 /// The scene that is calibrated, and how its runs are made.
 pub struct Calibration<'a> {
-    /// The scene by name or path.
-    pub scene: &'a str,
-    /// Its options.
-    pub overrides: &'a [String],
+    /// The scene to start from.
+    pub scene: &'a Scene,
     /// Seeds that means are taken over; at least one.
     pub seeds: &'a [u64],
-    /// Folder in which runs are kept.
-    pub folder: &'a Path,
-    /// Whether runs that are kept are made again.
-    pub fresh: bool,
-    /// Runs side by side, each on one thread when there are several.
-    pub jobs: usize,
-    /// Threads of the engine when runs are made one by one; `None`: one per core.
-    pub threads: Option<usize>,
-    /// Ends it early.
-    pub stop: &'a AtomicBool,
-    /// Hears of every run.
-    pub tell: &'a (dyn Fn(&Progress) + Sync),
+    /// Where runs are kept.
+    pub store: &'a CaseStore,
+    /// Runs them.
+    pub runner: &'a CaseRunner<'a>,
 }
 
 /// The seeds of a scene where the user names none: the first [`SEEDS`], or its own where its bonds do not scatter.
 pub fn default_seeds(scene: &Scene) -> Vec<u64> {
-    if Plan::new(&scene.spec).scatter { (1..=SEEDS).collect() } else { vec![scene.spec.seed] }
+    if scene.plan.scatter { (1..=SEEDS).collect() } else { vec![scene.spec.seed] }
 }
 
 /// The two numbers that are fitted.
@@ -88,24 +73,40 @@ pub struct Setting {
 
 impl Setting {
     /// The `--set` options that give a scene this setting.
-    pub fn overrides(&self) -> Vec<String> {
-        vec![
+    pub fn overrides(&self) -> [String; 3] {
+        [
             format!("bond.hardening.saturation={} MPa", self.saturation),
             format!("bond.hardening.linear={} MPa", self.linear),
             format!("bond.rupture.strain={} %", self.rupture_strain),
         ]
     }
+
+    /// Gives a scene this setting; a limiting contact pressure that follows the hardening law goes along.
+    fn apply(&self, spec: &mut Spec) {
+        let BondLawSpec::ElastoPlastic(law) = &mut spec.bond.law else { return };
+        if let HardeningSpec::Voce { saturation, linear, .. } = law {
+            [*saturation, *linear] = [1e6 * self.saturation, 1e6 * self.linear];
+        }
+        if let Some(contact) = &mut spec.contact
+            && let Some(hardness) = contact.hardness
+        {
+            contact.normal = NormalSpec::Thornton { limiting_pressure: hardness.limiting_pressure(law) };
+        }
+        if let Some(RuptureCriterion::PlasticStrain { strain }) = spec.bond.rupture.as_mut().map(|r| &mut r.criterion) {
+            *strain = 0.01 * self.rupture_strain;
+        }
+    }
 }
 
 /// One setting of a calibration, tried with one or more seeds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Trial {
+pub struct Iteration {
     /// What was set.
     pub setting: Setting,
     /// Tensile strength (MPa), over seeds.
-    pub strength: Stat,
+    pub strength: Statistics,
     /// Fracture elongation (%), over seeds.
-    pub elongation: Stat,
+    pub elongation: Statistics,
     /// Relative errors of the means of strength and elongation (-).
     pub error: [f64; 2],
     /// Runs that were there from before, and of those the ones of another build of the same physics.
@@ -114,7 +115,7 @@ pub struct Trial {
     pub other_build: usize,
 }
 
-impl Trial {
+impl Iteration {
     fn meets(&self, target: &Target) -> bool {
         self.error.iter().all(|e| e.abs() <= target.tolerance)
     }
@@ -184,29 +185,32 @@ impl Start {
     }
 }
 
-/// Fits the means of the scene to the target; `tried` hears of every setting. Returns the trial over all seeds that met
+/// Fits the means of the scene to the target; `tried` hears of every setting. Returns the iteration over all seeds that met
 /// it.
 ///
 /// # Errors
 /// A scene of another kind, a run that fails or breaks nothing, an interruption, a target out of reach, or no success
 /// within ten settings.
-pub fn calibrate(calibration: &Calibration, target: &Target, tried: &mut dyn FnMut(usize, &Trial)) -> Result<Trial> {
-    let start = Start::of(&scene::load(calibration.scene, calibration.overrides)?)?;
-    record::open(calibration.folder, calibration.fresh)?;
+pub fn calibrate(
+    calibration: &Calibration,
+    target: &Target,
+    tried: &mut dyn FnMut(usize, &Iteration),
+) -> Result<Iteration> {
+    let start = Start::of(calibration.scene)?;
     let all = calibration.seeds.len();
     let few = (all / COARSER).max(FEWEST).min(all);
     let mut x = DVec2::ONE;
     let mut last: Option<(DVec2, DVec2)> = None;
     let mut count = few;
     for number in 1..=MOST_SETTINGS {
-        let trial = calibration.try_setting(start.setting(x), &calibration.seeds[..count], target)?;
-        tried(number, &trial);
-        let met = trial.meets(target);
+        let iteration = calibration.try_setting(start.setting(x), &calibration.seeds[..count], target)?;
+        tried(number, &iteration);
+        let met = iteration.meets(target);
         if met && count == all {
-            return Ok(trial);
+            return Ok(iteration);
         }
-        let miss = trial.miss(target);
-        let wire = start.slopes(x, (0.01 * trial.elongation.mean).ln_1p());
+        let miss = iteration.miss(target);
+        let wire = start.slopes(x, (0.01 * iteration.elongation.mean).ln_1p());
         let slopes = last.map_or(wire, |(x_last, miss_last)| broyden(wire, x - x_last, miss - miss_last));
         // The other seeds are run where the few arrived, whose runs are kept; where the few miss, one step further.
         let enough = count < all && (met || number == COARSE);
@@ -252,76 +256,50 @@ fn broyden(slopes: DMat2, dx: DVec2, dy: DVec2) -> DMat2 {
 
 impl Calibration<'_> {
     /// Runs a setting with these seeds, or finds its runs.
-    fn try_setting(&self, setting: Setting, seeds: &[u64], target: &Target) -> Result<Trial> {
-        let workshop = Workshop {
-            scene: self.scene,
-            folder: self.folder,
-            jobs: self.jobs.min(seeds.len()),
-            threads: self.threads,
-            costs: false,
-            budget: None,
-            began: Instant::now(),
-            stop: self.stop,
-            tell: self.tell,
+    fn try_setting(&self, setting: Setting, seeds: &[u64], target: &Target) -> Result<Iteration> {
+        let mut scene = self.scene.clone();
+        setting.apply(&mut scene.spec);
+        let jobs = self.runner.jobs.min(seeds.len());
+        let runner = CaseRunner { jobs, ..*self.runner };
+        let case = |seed: &u64| {
+            let name = format!("p_f = {} %, seed {seed}", setting.rupture_strain);
+            TensileCase::new(name, Ok(&scene), *seed, self.store)
         };
-        let case = |seed: &u64| Case {
-            name: format!("p_f = {} %, seed {seed}", setting.rupture_strain),
-            overrides: self
-                .overrides
-                .iter()
-                .cloned()
-                .chain(setting.overrides())
-                .chain([format!("seed={seed}")])
-                .collect(),
-            work: 1.0,
-            writes: false,
-            leads: false,
-        };
-        let became = workshop.make(&seeds.iter().map(case).collect::<Vec<_>>())?;
-        let build = record::build();
-        let (mut strengths, mut elongations, mut kept, mut other_build) = (Vec::new(), Vec::new(), 0, 0);
-        for (seed, became) in seeds.iter().zip(became) {
-            let measured = self.measured(*seed, &became)?;
-            strengths.push(measured.strength_mpa);
-            elongations.push(measured.elongation_percent);
-            if let Became::Done { record, kept: true } = &became {
-                kept += 1;
-                other_build += usize::from(record.build != build);
-            }
+        let statuses = runner.run(&seeds.iter().map(case).collect::<Vec<_>>())?;
+        let [kept, other_build] = count_kept(&statuses);
+        let (mut strengths, mut elongations) = (Vec::new(), Vec::new());
+        for (seed, record) in seeds.iter().zip(all_outputs(statuses)?) {
+            let result = result(*seed, &record.result)?;
+            strengths.push(result.strength_mpa);
+            elongations.push(result.elongation_percent);
         }
-        let over = |values: &[f64]| Stat::of(values).expect("there is a seed");
+        let over = |values: &[f64]| Statistics::of(values).expect("there is a seed");
         let (strength, elongation) = (over(&strengths), over(&elongations));
         let error = [strength.mean / target.strength - 1.0, elongation.mean / target.elongation - 1.0];
-        Ok(Trial { setting, strength, elongation, error, kept, other_build })
+        Ok(Iteration { setting, strength, elongation, error, kept, other_build })
     }
+}
 
-    /// What the run of a seed gave.
-    ///
-    /// # Errors
-    /// When it gave nothing, or broke nothing: its greatest stress is then where it was stopped.
-    fn measured<'a>(&self, seed: u64, became: &'a Became) -> Result<&'a Measured> {
-        let failed = |cause: &str| {
-            let help = "`strandsnap run` with this seed shows where it stops";
-            Error::input(format!("the run with seed {seed} gives nothing to calibrate on: {cause}"), help)
-        };
-        match became {
-            Became::Done { record, .. } => match &record.found {
-                Found::Ran(measured) => Ok(measured),
-                Found::Failed(cause) => Err(failed(cause)),
-            },
-            Became::Refused(cause) => Err(failed(cause)),
-            Became::LeftOut(_) | Became::NotReached => Err(Error::input(
-                "interrupted before the calibration was done",
-                "the same command goes on with it; finished runs are kept",
-            )),
-        }
-    }
+/// What the run of a seed gave.
+///
+/// # Errors
+/// When it gave nothing, or broke nothing: its greatest stress is then where it was stopped.
+fn result(seed: u64, outcome: &TensileOutcome) -> Result<&TensileResult> {
+    outcome.result().ok_or_else(|| {
+        let cause = outcome.cause().unwrap_or_default();
+        let help = "`strandsnap run` with this seed shows where it stops";
+        Error::input(format!("the run with seed {seed} gives nothing to calibrate on: {cause}"), help)
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene;
     use crate::study::accuracy::closed_form;
+    use crate::study::tensile::with_seed;
+    use std::path::Path;
+    use std::sync::atomic::AtomicBool;
 
     #[test]
     fn broyden_explains_the_last_step_and_nothing_else() {
@@ -371,23 +349,19 @@ mod tests {
         "bond.rupture.weibull_modulus=8",
     ];
 
-    fn fit(folder: &Path, stop: bool, seeds: &[u64], target: &Target) -> (Result<Trial>, Vec<Trial>) {
-        let overrides = WIRE.map(String::from);
+    fn wire(more: &[&str]) -> Scene {
+        let options: Vec<String> = WIRE.iter().chain(more).map(|option| option.to_string()).collect();
+        scene::load("single-wire", &options).unwrap()
+    }
+
+    fn fit(folder: &Path, scene: &Scene, stop: bool, seeds: &[u64]) -> (Result<Iteration>, Vec<Iteration>) {
         let stop = AtomicBool::new(stop);
-        let calibration = Calibration {
-            scene: "single-wire",
-            overrides: &overrides,
-            seeds,
-            folder,
-            fresh: false,
-            jobs: 2,
-            threads: None,
-            stop: &stop,
-            tell: &|_| {},
-        };
-        let mut trials = Vec::new();
-        let found = calibrate(&calibration, target, &mut |_, trial| trials.push(trial.clone()));
-        (found, trials)
+        let store = CaseStore::open(folder, false).unwrap();
+        let runner = CaseRunner { jobs: 2, threads: None, budget: None, stop: &stop, tell: &|_| {} };
+        let calibration = Calibration { scene, seeds, store: &store, runner: &runner };
+        let mut iterations = Vec::new();
+        let found = calibrate(&calibration, &TARGET, &mut |_, iteration| iterations.push(iteration.clone()));
+        (found, iterations)
     }
 
     const TARGET: Target = Target { strength: 150.0, elongation: 5.0, tolerance: 0.005 };
@@ -397,22 +371,21 @@ mod tests {
     #[test]
     fn the_mean_over_seeds_is_fitted_and_the_closed_form_agrees() {
         let folder = tempfile::tempdir().unwrap();
-        let (best, trials) = fit(folder.path(), false, &EIGHT, &TARGET);
+        let (best, iterations) = fit(folder.path(), &wire(&[]), false, &EIGHT);
         let best = best.unwrap();
         assert!(best.error.iter().all(|e| e.abs() <= 0.005), "{best:?}");
-        assert_eq!((best.strength.count, trials[0].strength.count), (8, 2));
+        assert_eq!((best.strength.count, iterations[0].strength.count), (8, 2));
         let truths = EIGHT.map(|seed| {
-            let options: Vec<String> = WIRE.map(String::from).into_iter().chain(best.setting.overrides()).collect();
-            let options: Vec<String> = options.into_iter().chain([format!("seed={seed}")]).collect();
-            closed_form::truth(&scene::load("single-wire", &options).unwrap()).unwrap().elongation_percent
+            let scene = with_seed(&wire(&best.setting.overrides().each_ref().map(String::as_str)), seed);
+            closed_form::truth(&scene).unwrap().elongation_percent
         });
-        let truth = Stat::of(&truths).unwrap();
+        let truth = Statistics::of(&truths).unwrap();
         assert!((truth.mean / TARGET.elongation - 1.0).abs() < 0.01, "{truth:?}");
         // One draw says something else: the seeds differ by more than the tolerance.
         let spread = best.elongation.standard_deviation.unwrap();
         assert!((spread / truth.standard_deviation.unwrap() - 1.0).abs() < 0.1, "{spread} {truth:?}");
         assert!(spread > 0.03 * TARGET.elongation);
-        let runs: usize = trials.iter().map(|trial| trial.strength.count - trial.kept).sum();
+        let runs: usize = iterations.iter().map(|iteration| iteration.strength.count - iteration.kept).sum();
         assert!(runs <= 3 * EIGHT.len(), "{runs}");
     }
 
@@ -420,33 +393,31 @@ mod tests {
     #[test]
     fn finished_runs_are_not_made_again() {
         let folder = tempfile::tempdir().unwrap();
-        let (first, _) = fit(folder.path(), false, &EIGHT[..3], &TARGET);
-        let (second, trials) = fit(folder.path(), false, &EIGHT[..3], &TARGET);
-        assert!(trials.iter().all(|trial| trial.kept == trial.strength.count), "{trials:?}");
+        let (first, _) = fit(folder.path(), &wire(&[]), false, &EIGHT[..3]);
+        let (second, iterations) = fit(folder.path(), &wire(&[]), false, &EIGHT[..3]);
+        assert!(iterations.iter().all(|iteration| iteration.kept == iteration.strength.count), "{iterations:?}");
         let (first, second) = (first.unwrap(), second.unwrap());
         assert_eq!((first.setting, first.strength), (second.setting, second.strength));
         let other = tempfile::tempdir().unwrap();
-        let stopped = fit(other.path(), true, &EIGHT, &TARGET).0.unwrap_err().to_string();
-        assert!(stopped.contains("interrupted"), "{stopped}");
+        assert!(matches!(fit(other.path(), &wire(&[]), true, &EIGHT).0, Err(Error::Interrupted)));
     }
 
     #[test]
     fn a_run_that_breaks_nothing_says_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        let overrides = ["stop.strain=2 %".to_string()].into_iter().chain(WIRE.map(String::from)).collect::<Vec<_>>();
-        let calibration = Calibration {
-            scene: "single-wire",
-            overrides: &overrides,
-            seeds: &[7],
-            folder: folder.path(),
-            fresh: false,
-            jobs: 1,
-            threads: Some(1),
-            stop: &AtomicBool::new(false),
-            tell: &|_| {},
-        };
-        let error = calibrate(&calibration, &TARGET, &mut |_, _| {}).unwrap_err().to_string();
+        let error = fit(folder.path(), &wire(&["stop.strain=2 %"]), false, &[7]).0.unwrap_err().to_string();
         assert!(error.contains("seed 7") && error.contains("no strength"), "{error}");
+    }
+
+    /// A setting is what its options would make of the scene, the limiting pressure of contacts included.
+    #[test]
+    fn a_setting_is_what_its_options_say() {
+        let setting = Setting { saturation: 201.3, linear: 614.7, rupture_strain: 27.123 };
+        for name in ["ka4", "single-wire"] {
+            let mut spec = scene::load(name, &[]).unwrap().spec;
+            setting.apply(&mut spec);
+            assert_eq!(spec, scene::load(name, &setting.overrides()).unwrap().spec);
+        }
     }
 
     #[test]

@@ -7,12 +7,12 @@ mod painter;
 
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How an axis runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Evenly.
+    /// Equal steps of the value are equal lengths.
     Linear,
     /// Evenly in decades; values that are not positive are left out.
     Log,
@@ -214,6 +214,16 @@ pub fn write(figures: &[Figure], columns: usize, path: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
     }
     write_whole(path, &content)
+}
+
+/// Writes `figures` in rows of `columns` as `name.svg` and `name.png` into `folder`. Gives the files, SVG before PNG.
+///
+/// # Errors
+/// See [`write()`].
+pub fn write_pair(figures: &[Figure], columns: usize, folder: &Path, name: &str) -> Result<Vec<PathBuf>> {
+    let files: Vec<PathBuf> = ["svg", "png"].iter().map(|end| folder.join(format!("{name}.{end}"))).collect();
+    files.iter().try_for_each(|path| write(figures, columns, path))?;
+    Ok(files)
 }
 
 #[cfg(test)]

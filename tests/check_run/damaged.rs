@@ -7,6 +7,7 @@ use std::process::{Command, Output};
 use std::sync::{Arc, OnceLock};
 use strandsnap::engine::view::{BondState, Snapshot};
 use strandsnap::observe::Observer;
+use strandsnap::observe::origin::Origin;
 use strandsnap::observe::trajectory::{Record, Trajectory, TrajectoryWriter};
 
 /// One run for all tests here; each works on a copy.
@@ -59,7 +60,7 @@ impl Copy {
         let old = Trajectory::open(&path).unwrap();
         let info = old.info().clone();
         let records: Vec<Record> = old.map(Result::unwrap).collect();
-        let mut writer = TrajectoryWriter::new(&path).unwrap();
+        let mut writer = TrajectoryWriter::new(&path, Origin::default()).unwrap();
         writer.start(&info).unwrap();
         for record in records {
             match record {
@@ -107,6 +108,20 @@ fn one_digit_of_the_curve() {
     caught(&["curve-trajectory"], |run| run.column("curve.csv", "stress_outer_mpa", |row, cell| last_digit(row, cell)));
     let first_digit = |row: usize, cell: &str| if row == 100 { format!("1{cell}") } else { cell.to_owned() };
     caught(&["curve-trajectory", "stress-unit"], |run| run.column("curve.csv", "stress_mpa", first_digit));
+}
+
+#[test]
+fn a_file_that_is_not_the_runs_own() {
+    let edit = |run: &Copy, file: &str, from: &str, to: &str| {
+        let text = fs::read_to_string(run.run.join(file)).unwrap();
+        assert!(text.contains(from), "{text}");
+        fs::write(run.run.join(file), text.replacen(from, to, 1)).unwrap();
+    };
+    // The first digit of the seed's line only, so that all else still agrees.
+    caught(&["own-files"], |run| edit(run, "scene.toml", "seed = 1", "seed = 2"));
+    caught(&["own-files"], |run| edit(run, "summary.json", "\"wall_s\": ", "\"wall_s\": 1"));
+    caught(&["own-files"], |run| edit(run, "wires.csv", "yes", "no"));
+    caught(&["own-files"], |run| run.snapshots(|_| {}));
 }
 
 #[test]

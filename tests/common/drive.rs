@@ -7,6 +7,7 @@ use std::path::Path;
 use strandsnap::engine::Engine;
 use strandsnap::engine::state::State;
 use strandsnap::engine::view::Rupture;
+use strandsnap::scene::plan::Plan;
 use strandsnap::scene::spec::Spec;
 use strandsnap::strand::assembly::Assembly;
 
@@ -71,7 +72,7 @@ pub fn edited(text: &str, set: &[&str], edit: impl FnOnce(&mut Assembly)) -> Eng
     let spec = spec(text, set);
     let mut assembly = assembly(&spec);
     edit(&mut assembly);
-    Engine::new(&spec, assembly).unwrap_or_else(|error| panic!("{error:?}"))
+    Engine::new(&spec, &Plan::new(&spec), assembly).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 /// Steps until `done`.

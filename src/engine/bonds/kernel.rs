@@ -1,11 +1,11 @@
 //! The bonds of one chunk, as many at once as a register holds.
 
 use super::kinematics::{Acts, Node, Step};
-use super::{BondStage, CONSTANTS, SHAPE, force, shape};
+use super::layout::{CONSTANTS, Layout, SHAPE, force, shape};
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
 use crate::base::vectors::Vectors;
-use crate::engine::state::{BondActions, CHUNK, Partial};
+use crate::engine::state::{BondActions, CHUNK, ChunkSums};
 use crate::law::bond::BondLaw;
 use pulp::{Simd, WithSimd};
 
@@ -38,19 +38,19 @@ struct Sums {
 
 impl<L: BondLaw, const TURN: bool> WithSimd for Chunk<'_, L, TURN> {
     /// Energies, and whether a bond may have reached its limit.
-    type Output = (Partial, bool);
+    type Output = (ChunkSums, bool);
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
         let (mut sums, mut due) = (Sums::default(), self.limit.is_none());
-        let blocks = self.records.len() / (BLOCK * BondStage::<L, TURN>::FIELDS);
+        let blocks = self.records.len() / (BLOCK * Layout::<L, TURN>::FIELDS);
         for block in 0..blocks {
             for lane in (0..BLOCK).step_by(Lanes::<S>::LEN) {
                 due |= self.bonds(simd, block, lane, &mut sums);
             }
         }
         let sum = |lanes: [f64; BLOCK]| lanes.iter().sum();
-        (Partial { plastic: sum(sums.plastic), damping: sum(sums.damping), ..Default::default() }, due)
+        (ChunkSums { plastic: sum(sums.plastic), damping: sum(sums.damping), ..Default::default() }, due)
     }
 }
 
@@ -58,21 +58,21 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
     /// The bonds of a block from `lane` on, as many as a register holds; tells whether one may have reached its limit.
     #[inline(always)]
     fn bonds<S: Simd>(&mut self, simd: S, block: usize, lane: usize, sums: &mut Sums) -> bool {
-        let fields = BondStage::<L, TURN>::FIELDS;
+        let fields = Layout::<L, TURN>::FIELDS;
         let slot = self.first + block * BLOCK + lane;
         let ends = [self.node(simd, slot), self.node(simd, slot + 1)];
         let record = &mut self.records[block * BLOCK * fields..(block + 1) * BLOCK * fields];
         let load = |record: &[f64], field: usize| Lanes::load(simd, record, field * BLOCK + lane);
-        let live_number = load(record, BondStage::<L, TURN>::LIVE);
+        let live_number = load(record, Layout::<L, TURN>::LIVE);
         let zero = live_number.splat(0.0);
         let live = live_number.simd_gt(zero);
 
         let constants = &self.constants[self.kind[block] as usize..][..CONSTANTS * BLOCK];
         let shape = shape(|k| load(constants, k));
-        let mut state = L::history(|k| load(record, BondStage::<L, TURN>::HISTORY + k));
-        let across = |k| if TURN { load(record, BondStage::<L, TURN>::ACROSS + k) } else { zero };
-        let mut force = force(load(record, BondStage::<L, TURN>::AXIAL), across);
-        let mut dashpot = load(record, BondStage::<L, TURN>::DASHPOT);
+        let mut state = L::history(|k| load(record, Layout::<L, TURN>::HISTORY + k));
+        let across = |k| if TURN { load(record, Layout::<L, TURN>::ACROSS + k) } else { zero };
+        let mut force = force(load(record, Layout::<L, TURN>::AXIAL), across);
+        let mut dashpot = load(record, Layout::<L, TURN>::DASHPOT);
         let viscosity = self.damped.then(|| {
             [load(constants, SHAPE), load(constants, SHAPE + 1), load(constants, SHAPE + 2), load(constants, SHAPE + 3)]
         });
@@ -85,22 +85,22 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
 
         let mut step = Step { law: self.law, dt: self.dt, live, plastic: zero, damping: zero };
         let acts = if TURN {
-            let frame = |k| load(record, BondStage::<L, TURN>::FRAME + k);
+            let frame = |k| load(record, Layout::<L, TURN>::FRAME + k);
             let mut e1 = Triple { x: frame(0), y: frame(1), z: frame(2) };
             let acts = step.turning(&ends, &shape, &mut e1, &mut force, &mut state, &mut dashpot, viscosity);
-            let frame = BondStage::<L, TURN>::FRAME * BLOCK + lane;
+            let frame = Layout::<L, TURN>::FRAME * BLOCK + lane;
             e1.x.store(record, frame);
             e1.y.store(record, frame + BLOCK);
             e1.z.store(record, frame + 2 * BLOCK);
             let across = [force.shear[0], force.shear[1], force.bend[0], force.bend[1], force.twist];
-            across.into_iter().enumerate().for_each(|(k, f)| keep(record, BondStage::<L, TURN>::ACROSS + k, f));
+            across.into_iter().enumerate().for_each(|(k, f)| keep(record, Layout::<L, TURN>::ACROSS + k, f));
             acts
         } else {
             step.stretching(&ends, &shape, &mut force, &mut state, &mut dashpot, viscosity)
         };
-        keep(record, BondStage::<L, TURN>::AXIAL, force.axial);
-        keep(record, BondStage::<L, TURN>::DASHPOT, dashpot);
-        L::each_number(&state, |k, number| keep(record, BondStage::<L, TURN>::HISTORY + k, number));
+        keep(record, Layout::<L, TURN>::AXIAL, force.axial);
+        keep(record, Layout::<L, TURN>::DASHPOT, dashpot);
+        L::each_number(&state, |k, number| keep(record, Layout::<L, TURN>::HISTORY + k, number));
         let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| {
             (Lanes::load(simd, sum, lane) + Lanes::select(live, part, zero)).store(sum, lane);
         };

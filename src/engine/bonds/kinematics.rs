@@ -1,6 +1,6 @@
 //! What bonds do in a step: their motion, their law, their dashpots; for bonds one at a time or several at once.
 
-use super::MODES;
+use super::layout::MODES;
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
 use crate::law::bond::{BondForce, BondIncrement, BondLaw, BondShape};

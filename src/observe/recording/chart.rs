@@ -134,11 +134,7 @@ impl Chart {
         let [strain, stress] = mark(first);
         let [x, y] = self.place([strain, stress]);
         let colour = Color::from_u32(paint::FIRST);
-        let text = format!(
-            "1st break: wire {}, {}\n{strain:.2} %, {stress:.0} MPa",
-            wire_number(first.wire),
-            layer_words(info, first.layer)
-        );
+        let text = format!("{}\n{strain:.2} %, {stress:.0} MPa", names::first_break(info, first));
         let label = [0.65 * x, 0.72 * y];
         let leader = LineStrips2D::new([[[x, y], label], [[x, y], [x, 0.0]], [[x, y], [0.0, y]]]);
         let leader = leader.with_colors([colour]).with_radii([Radius::new_ui_points(0.75)]);

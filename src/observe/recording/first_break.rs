@@ -7,7 +7,6 @@ use crate::base::error::Result;
 use crate::base::units::mm;
 use crate::engine::view::{RunInfo, Rupture, Snapshot};
 use crate::observe::unrolled::ends;
-use crate::observe::wording::{layer_words, wire_number};
 use rerun::{Color, LineStrips3D, Points3D, Radius};
 
 /// Distance of the label from the axis in the close view, in thicknesses of the body (-).
@@ -109,16 +108,11 @@ impl FirstBreak {
         let points = Points3D::update_fields()
             .with_colors([colour])
             .with_radii([Radius::new_ui_points(4.0)])
-            .with_labels([self.label(info)])
+            .with_labels([names::first_break(info, &self.rupture)])
             .with_show_labels(true);
         stream.fixed(path, &points)?;
         let leader = LineStrips3D::update_fields().with_colors([colour]).with_radii([Radius::new_ui_points(1.0)]);
         stream.fixed(path, &leader)
-    }
-
-    fn label(&self, info: &RunInfo) -> String {
-        let r = &self.rupture;
-        format!("1st break: wire {}, {}", wire_number(r.wire), layer_words(info, r.layer))
     }
 }
 

@@ -6,6 +6,8 @@ use super::stream::{self, Stream};
 use crate::base::error::Result;
 use crate::base::finding::Notice;
 use crate::base::units::{mm, mpa, percent};
+use crate::base::wording::counted;
+use crate::base::worst::renew;
 use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::summary::RunSummary;
 use crate::observe::wording::{OneDraw, layer_words, wire_number};
@@ -38,7 +40,7 @@ impl Headline {
     /// Takes note of a notice.
     pub fn notice(&mut self, notice: &Notice) {
         self.changed = true;
-        self.notices.push(notice.clone());
+        renew(&mut self.notices, notice);
     }
 
     /// Sends the words when they have changed. They hold at all times, so that they can be read
@@ -136,8 +138,7 @@ fn result(summary: &RunSummary, warnings: usize) -> String {
     }
     match warnings {
         0 => {}
-        1 => parts.push("**1 warning, below**".into()),
-        n => parts.push(format!("**{n} warnings, below**")),
+        n => parts.push(format!("**{}, below**", counted(n, "warning"))),
     }
     let mut text = String::new();
     if !parts.is_empty() {
@@ -155,17 +156,17 @@ fn result(summary: &RunSummary, warnings: usize) -> String {
 pub(super) fn about(info: &RunInfo) -> String {
     let wires = info.layers.iter().enumerate().map(|(layer, name)| {
         let count = info.wires_of(layer).count();
-        format!("- {name}: {count} wires\n")
+        format!("- {name}: {}\n", counted(count, "wire"))
     });
     let wires: String = wires.collect();
     format!(
-        "# {}\n\n{}\n\n{wires}\n{} particles; positions in mm, stress in MPa. \
+        "# {}\n\n{}\n\n{wires}\n{}; positions in mm, stress in MPa. \
          The timeline `{}` counts strain in µm/m: 10,000 is 1 %.\n\n\
          Colours: from {:.0} to {:.0} MPa of true axial stress where stress colours; red at broken bonds.\n\n\
          strandsnap {}, Rerun {RERUN_VERSION}\n",
         info.name,
         info.about,
-        info.particles,
+        counted(info.particles, "particle"),
         stream::STRAIN,
         mpa(info.stress_range[0]),
         mpa(info.stress_range[1]),

@@ -108,8 +108,7 @@ impl Map {
                 .with_radii([Radius::new_ui_points(0.75)])
                 .with_draw_order(15.0);
         stream.row(path.clone(), first.into(), &cross)?;
-        let words =
-            format!("1st break: wire {}, {}, z = {z:.1} mm", wire_number(first.wire), layer_words(info, first.layer));
+        let words = format!("{}, z = {z:.1} mm", names::first_break(info, first));
         let label = Points2D::new([[z, -2.6 * self.row]])
             .with_labels([words])
             .with_show_labels(true)

@@ -1,7 +1,7 @@
 //! Names of entities: by layer and wire, so that either can be hidden or selected.
 
-use crate::engine::view::RunInfo;
-use crate::observe::wording::wire_number;
+use crate::engine::view::{RunInfo, Rupture};
+use crate::observe::wording::{self, wire_number};
 use rerun::EntityPath;
 use rerun::external::re_log_types::EntityPathPart;
 
@@ -63,6 +63,11 @@ fn layer_part(info: &RunInfo, layer: usize) -> String {
         "" => format!("layer_{}", layer + 1),
         name => name.to_owned(),
     }
+}
+
+/// What the label of the first break says: "first break in this strand: wire 24, outer layer".
+pub fn first_break(info: &RunInfo, first: &Rupture) -> String {
+    format!("{}: wire {}, {}", wording::FIRST_BREAK, wire_number(first.wire), layer_words(info, first.layer))
 }
 
 /// Entity of a layer below `root`.

@@ -99,7 +99,7 @@ pub struct RecordingContents {
 /// [`Error::Io`] when the file cannot be read or is not a whole recording.
 pub fn contents(path: &Path) -> Result<RecordingContents> {
     let broken = |e: &dyn std::fmt::Display| Error::io("cannot read", path, std::io::Error::other(e.to_string()));
-    let mut file = File::open(path).map_err(|e| Error::io("cannot read", path, e))?;
+    let mut file = crate::base::regular::open(path)?;
     check_end(&mut file).map_err(|e| Error::io("cannot read", path, e))?;
     let mut all = RecordingContents::default();
     for message in DecoderApp::decode_eager(BufReader::new(file)).map_err(|e| broken(&e))? {

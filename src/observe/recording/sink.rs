@@ -43,7 +43,7 @@ impl RecordingFile {
     /// [`Error::Io`] when it cannot be created.
     pub fn create(file: &Path) -> Result<Self> {
         let partial = partial::name(file);
-        let created = File::create(&partial).map_err(|e| Error::io("cannot write", &partial, e))?;
+        let created = partial::create(file)?;
         let encoder = Encoder::new_eager(
             re_build_info::CrateVersion::LOCAL,
             re_log_encoding::EncodingOptions::PROTOBUF_COMPRESSED,

@@ -1,6 +1,6 @@
 //! Lines of a centreline text as words: what parts them, and how what cannot be read is shown.
 
-use super::from_millimetres;
+use super::number::from_millimetres;
 
 /// What a comma means throughout a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Grips and holds as they are written.
 
-use super::{Scalar, Triple};
+use super::scalar::{Scalar, Triple};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -14,21 +14,21 @@ pub struct RawGrip {
     /// Length of each grip along z.
     #[schemars(extend("x-unit" = "mm", "x-required" = true))]
     pub length: Option<Scalar>,
-    /// Radial clamp pressure of a jaw. Required there and refused elsewhere.
-    #[schemars(extend("x-unit" = "MPa"))]
+    /// Radial clamp pressure of a jaw; refused elsewhere.
+    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "kind = \"jaw\""))]
     pub clamp_pressure: Option<Scalar>,
     /// Speed of the upper grip along z; positive pulls. Constant, unless `adaptive` is there.
-    #[schemars(extend("x-unit" = "m/s"))]
+    #[schemars(extend("x-unit" = "m/s", "x-required-when" = "there are no displacement_amplitude and frequency"))]
     pub speed: Option<Scalar>,
-    /// Pulls faster than `speed` between the start and the first rupture. Absent: `speed` is constant.
+    /// Pulls faster than `speed`, which must be above zero, between the start and the first rupture. Absent: `speed` is constant.
     pub adaptive: Option<RawAdaptive>,
     /// Amplitude of a sinusoidal displacement.
-    #[schemars(extend("x-unit" = "mm"))]
+    #[schemars(extend("x-unit" = "mm", "x-required-when" = "there is no speed"))]
     pub displacement_amplitude: Option<Scalar>,
     /// Frequency of that displacement.
-    #[schemars(extend("x-unit" = "Hz"))]
+    #[schemars(extend("x-unit" = "Hz", "x-required-when" = "there is no speed"))]
     pub frequency: Option<Scalar>,
-    /// Rotation rate of the upper grip about z.
+    /// Rotation rate of the upper grip about z; refused beside `free_rotation = true`.
     #[schemars(extend("x-unit" = "rad/s", "x-default" = "0 rad/s"))]
     pub rotation_rate: Option<Scalar>,
     /// The upper grip turns freely about z.
@@ -71,7 +71,8 @@ pub enum RawGripKind {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RawHold {
-    /// Body number from 0: strand wires inside out, then `[[wire]]`, then `[[sphere]]`.
+    /// Body number from 0: strand wires inside out, then `[[wire]]`, then `[[sphere]]`. Results count wires, and free
+    /// spheres among themselves, from 1.
     #[schemars(extend("x-required" = true))]
     pub body: Option<i64>,
     /// Which particles.

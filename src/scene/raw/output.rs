@@ -1,6 +1,6 @@
 //! Outputs as they are written.
 
-use super::Scalar;
+use super::scalar::Scalar;
 use crate::scene::look::{ColourBy, Theme, View};
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -12,7 +12,7 @@ use crate::scene::spec::{
     BondLawSpec, DriveSpec, GripKind, HardeningSpec, PathSpec, RuptureCriterion, RuptureSpec, Spec, WireSpec,
 };
 use crate::strand::assembly::Assembly;
-use crate::study::cases::measured::Curve;
+use crate::study::tensile::Curve;
 use glam::DVec3;
 
 /// Points of the elastic and of the plastic part of the curve.

@@ -2,60 +2,53 @@
 
 use super::Study;
 use super::columns::COLUMNS;
-use super::rows::{Outcome, Row, Run};
-use crate::base::error::{Error, Result};
-use crate::observe::files::write_whole;
+use super::errors::Errors;
+use super::rows::{Row, RowParameter, Run};
+use crate::base::error::Result;
+use crate::study::column::{Column, Value, write_csv};
 use std::path::Path;
 
-/// What stands before the numbers of a run.
-const BEFORE: [&str; 9] = ["knob", "key", "value", "number", "role", "default", "seed", "outcome", "cause"];
+/// A run and its row.
+type Line<'a> = (&'a Row, &'a Run);
 
 /// Writes the table. Cells of what is not known are empty.
 ///
 /// # Errors
 /// When the file cannot be written.
 pub fn write(study: &Study, path: &Path) -> Result<()> {
-    let layers = study.layers();
-    let refuse = |e: csv::Error| Error::io("cannot write", path, std::io::Error::other(e));
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let numbers = COLUMNS.iter().map(|column| column.name);
-    let head = BEFORE.into_iter().chain(numbers).chain(["same_first_wire", "worst_layer_error_percent"]);
-    let of_layers = layers.iter().map(|layer| format!("layer_error_percent:{layer}"));
-    writer.write_record(head.map(str::to_owned).chain(of_layers)).map_err(refuse)?;
-    for row in &study.rows {
-        for run in &row.runs {
-            writer.write_record(cells(row, run, layers.len())).map_err(refuse)?;
-        }
-    }
-    let bytes = writer.into_inner().map_err(|e| Error::io("cannot write", path, e.into_error()))?;
-    write_whole(path, &bytes)
+    let lines: Vec<Line> = study.rows.iter().flat_map(|row| row.runs.iter().map(move |run| (row, run))).collect();
+    write_csv(&columns(&study.layers()), &lines, path)
 }
 
-fn cells(row: &Row, run: &Run, layers: usize) -> Vec<String> {
-    let knob = row.knob.as_ref();
-    let text = |value: Option<&str>| value.unwrap_or("").to_string();
-    let mut cells = vec![
-        text(knob.map(|knob| knob.name)),
-        text(knob.map(|knob| knob.key)),
-        row.value.clone(),
-        knob.and_then(|knob| knob.number).map_or(String::new(), |number| number.to_string()),
-        text(knob.map(|knob| knob.role.word())),
-        if knob.is_none() { "yes" } else { "no" }.into(),
-        run.seed.to_string(),
-        run.word().into(),
-        text(run.cause().map(String::as_str)),
+fn columns<'a>(layers: &[String]) -> Vec<Column<'a, Line<'a>>> {
+    let parameter =
+        |of: fn(&RowParameter) -> Value| move |(row, _): &Line<'a>| row.parameter.as_ref().map_or(Value::Missing, of);
+    let yes = |yes: bool| if yes { "yes" } else { "no" };
+    let mut columns = vec![
+        Column::in_files("parameter", parameter(|own| own.name.into())),
+        Column::in_files("key", parameter(|own| own.key.into())),
+        Column::in_files("value", |(row, _): &Line<'a>| row.value.clone()),
+        Column::in_files("number", parameter(|own| own.number.into())),
+        Column::in_files("role", parameter(|own| own.role.word().into())),
+        Column::in_files("default", move |(row, _): &Line<'a>| yes(row.parameter.is_none())),
+        Column::in_files("seed", |(_, run): &Line<'a>| run.seed),
+        Column::in_files("outcome", |(_, run): &Line<'a>| run.word()),
+        Column::in_files("cause", |(_, run): &Line<'a>| run.cause()),
     ];
-    let Outcome::Ran { measured, errors } = &run.outcome else {
-        cells.resize(BEFORE.len() + COLUMNS.len() + 2 + layers, String::new());
-        return cells;
+    columns.extend(COLUMNS.iter().map(|one| {
+        let of = |(_, run): &Line<'a>| run.ran().map_or(Value::Missing, |run| one.column.value(run));
+        Column::in_files(one.column.name.clone(), of)
+    }));
+    let errors = |of: Box<dyn Fn(&Errors) -> Value + Send + Sync + 'a>| {
+        move |(_, run): &Line<'a>| run.ran().and_then(|run| run.errors.as_ref()).map_or(Value::Missing, &of)
     };
-    let errors = errors.as_ref();
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    cells.extend(COLUMNS.iter().map(|column| number(column.of_run(measured, errors))));
-    let same = errors.and_then(|errors| errors.same_first_wire);
-    cells.push(same.map_or(String::new(), |same| if same { "yes" } else { "no" }.into()));
-    cells.push(number(errors.and_then(|errors| errors.worst_layer()).map(|(_, error)| error)));
-    let of_layer = |k: usize| errors.and_then(|errors| errors.layers_percent.get(k).copied().flatten());
-    cells.extend((0..layers).map(|k| number(of_layer(k))));
-    cells
+    let same = move |errors: &Errors| errors.same_first_wire.map(yes).into();
+    columns.push(Column::in_files("same_first_wire", errors(Box::new(same))));
+    let worst = |errors: &Errors| errors.worst_layer().map(|(_, error)| error).into();
+    columns.push(Column::in_files("worst_layer_error_percent", errors(Box::new(worst))));
+    for (k, layer) in layers.iter().enumerate() {
+        let of_layer = move |errors: &Errors| errors.layers_percent.get(k).copied().flatten().into();
+        columns.push(Column::in_files(format!("layer_error_percent:{layer}"), errors(Box::new(of_layer))));
+    }
+    columns
 }

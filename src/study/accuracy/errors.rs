@@ -1,7 +1,7 @@
 //! How far a run is from the reference.
 
 use crate::observe::summary::Break;
-use crate::study::cases::measured::{Curve, Measured};
+use crate::study::tensile::{Curve, TensileResult};
 use serde::Serialize;
 
 /// What a run ought to have given.
@@ -42,7 +42,7 @@ pub struct Errors {
 
 impl Errors {
     /// Of `run` against `truth`.
-    pub fn new(run: &Measured, truth: &Truth) -> Self {
+    pub fn new(run: &TensileResult, truth: &Truth) -> Self {
         let (curve, right) = (&run.curve, &truth.curve);
         let end = (0.01 * run.elongation_percent.min(truth.elongation_percent)).min(curve.end()).min(right.end());
         let histories = |mine: &[f64], theirs: &[f64]| relative_l2([curve, right], [mine, theirs], end).map(percent);
@@ -138,7 +138,7 @@ mod tests {
     }
 
     /// A straight curve to 100 MPa at 10 %, and one whose every stress is `factor` times that.
-    fn pair(factor: f64) -> (Measured, Truth) {
+    fn pair(factor: f64) -> (TensileResult, Truth) {
         let strain: Vec<f64> = (0..=100).map(|i| i as f64 * 1e-3).collect();
         let curve = |slope: f64| {
             let stress: Vec<f64> = strain.iter().map(|e| slope * e).collect();
@@ -149,13 +149,13 @@ mod tests {
                 layer_stress_mpa: vec![stress.clone(), stress],
             }
         };
-        let run = Measured {
+        let run = TensileResult {
             strength_mpa: factor * 100.0,
             elongation_percent: 10.0,
             wires: 4,
             breaks: [2, 1, 3].map(broken).to_vec(),
             curve: curve(factor * 1000.0),
-            ..Measured::default()
+            ..TensileResult::default()
         };
         let truth = Truth {
             strength_mpa: 100.0,

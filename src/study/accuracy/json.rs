@@ -1,85 +1,14 @@
 //! `accuracy.json`: the study for programs, and the tables for the page.
 
-use super::columns::Means;
-use super::ensemble::{self, Quantity, Spread};
-use super::rows::{Outcome, Row};
+use super::columns::COLUMNS;
+use super::ensemble::{self, QUANTITIES};
+use super::rows::{Row, Run};
 use super::table;
 use super::{Study, reference::Along};
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::observe::files::write_whole;
-use crate::study::table::Table;
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
-
-#[derive(Serialize)]
-struct Document<'a> {
-    scene: &'a str,
-    command: &'a str,
-    version: &'static str,
-    seeds: &'a [u64],
-    /// Whether bonds scatter, so that one run is one draw.
-    scatter: bool,
-    threads: usize,
-    jobs: usize,
-    interrupted: bool,
-    reference: Reference<'a>,
-    rows: Vec<RowOut<'a>>,
-    left_out: Vec<String>,
-    absent: Vec<Absent<'a>>,
-    /// In words, for the page.
-    summary: String,
-    tables: [Table; 2],
-}
-
-#[derive(Serialize)]
-struct Reference<'a> {
-    kind: &'static str,
-    words: &'a str,
-    strength_mpa: f64,
-    elongation_percent: f64,
-    /// Of strength and elongation; 0 for a closed form.
-    uncertainty_percent: [f64; 2],
-    refinement: Vec<Refinement<'a>>,
-}
-
-#[derive(Serialize)]
-struct Refinement<'a> {
-    seed: u64,
-    #[serde(flatten)]
-    along: &'a Along,
-}
-
-#[derive(Serialize)]
-struct Absent<'a> {
-    knob: &'a str,
-    reason: &'a str,
-}
-
-/// Means over seeds.
-#[derive(Serialize)]
-struct RowOut<'a> {
-    knob: Option<&'a str>,
-    key: Option<&'a str>,
-    value: &'a str,
-    number: Option<f64>,
-    role: Option<&'a str>,
-    default: bool,
-    #[serde(flatten)]
-    means: Means<'a>,
-    /// Whether the error of the mean is told from scatter: of strength and of elongation.
-    told_from_scatter: [Option<bool>; 2],
-    /// Spread over seeds beside that of the scene as it stands: of strength and of elongation.
-    spread: [Option<Spread>; 2],
-    runs: Vec<RunOut<'a>>,
-}
-
-#[derive(Serialize)]
-struct RunOut<'a> {
-    seed: u64,
-    outcome: &'a str,
-    cause: Option<&'a str>,
-    errors: Option<&'a super::errors::Errors>,
-}
 
 /// Writes the study; `command` is what the user typed.
 ///
@@ -88,32 +17,39 @@ struct RunOut<'a> {
 pub fn write(study: &Study, command: &str, path: &Path) -> Result<()> {
     let reference = &study.reference;
     let exact = reference.closed_form;
-    let base = study.rows.iter().find(|row| row.knob.is_none());
-    let document = Document {
-        scene: &study.scene,
-        command,
-        version: env!("CARGO_PKG_VERSION"),
-        seeds: &study.seeds,
-        scatter: study.scatter,
-        threads: study.threads,
-        jobs: study.jobs,
-        interrupted: study.interrupted,
-        reference: Reference {
-            kind: if exact { "closed-form" } else { "refinement" },
-            words: &reference.words,
-            strength_mpa: reference.value[0],
-            elongation_percent: reference.value[1],
-            uncertainty_percent: if exact { [0.0; 2] } else { reference.uncertainty_percent },
-            refinement: reference.along.iter().map(|(seed, along)| Refinement { seed: *seed, along }).collect(),
-        },
-        rows: study.rows.iter().map(|one| row(one, base)).collect(),
-        left_out: table::left_out(study),
-        absent: study.absent.iter().map(|(knob, reason)| Absent { knob, reason }).collect(),
-        summary: summary(study),
-        tables: [table::costs_and_errors(study), table::histories_and_checks(study)],
+    let base = study.rows.iter().find(|row| row.parameter.is_none());
+    let refinement = |(seed, along): &(u64, Along)| {
+        let mut one = json!(along);
+        one["seed"] = json!(seed);
+        one
     };
-    let text = serde_json::to_string_pretty(&document)
-        .map_err(|e| Error::io("cannot write", path, std::io::Error::other(e)))?;
+    let document = json!({
+        "scene": study.scene,
+        "command": command,
+        "version": env!("CARGO_PKG_VERSION"),
+        "seeds": study.seeds,
+        // Whether bonds scatter, so that one run is one draw.
+        "scatter": study.scatter,
+        "threads": study.threads,
+        "jobs": study.jobs,
+        "interrupted": study.interrupted,
+        "reference": {
+            "kind": if exact { "closed-form" } else { "refinement" },
+            "words": reference.words,
+            "strength_mpa": reference.value[0],
+            "elongation_percent": reference.value[1],
+            // Of strength and elongation; 0 for a closed form.
+            "uncertainty_percent": if exact { [0.0; 2] } else { reference.uncertainty_percent },
+            "refinement": reference.along.iter().map(refinement).collect::<Vec<_>>(),
+        },
+        "rows": study.rows.iter().map(|one| row(one, base)).collect::<Vec<_>>(),
+        "left_out": table::left_out(study),
+        "absent": study.absent.iter().map(|(name, reason)| json!({ "parameter": name, "reason": reason })).collect::<Vec<_>>(),
+        // In words, for the page.
+        "summary": summary(study),
+        "tables": [table::costs_and_errors(study), table::histories_and_checks(study)],
+    });
+    let text = serde_json::to_string_pretty(&document).expect("a study holds nothing that JSON lacks");
     write_whole(path, &(text + "\n"))
 }
 
@@ -130,30 +66,28 @@ fn summary(study: &Study) -> String {
     lines.join("\n")
 }
 
-fn row<'a>(row: &'a Row, base: Option<&Row>) -> RowOut<'a> {
-    let knob = row.knob.as_ref();
-    RowOut {
-        knob: knob.map(|knob| knob.name),
-        key: knob.map(|knob| knob.key),
-        value: &row.value,
-        number: knob.and_then(|knob| knob.number),
-        role: knob.map(|knob| knob.role.word()),
-        default: knob.is_none(),
-        means: Means(row),
-        told_from_scatter: Quantity::ALL.map(|quantity| ensemble::mean_is_told(row, quantity)),
-        spread: Quantity::ALL.map(|quantity| base.and_then(|base| ensemble::spread(row, base, quantity))),
-        runs: row
-            .runs
-            .iter()
-            .map(|run| RunOut {
-                seed: run.seed,
-                outcome: run.word(),
-                cause: run.cause().map(String::as_str),
-                errors: match &run.outcome {
-                    Outcome::Ran { errors, .. } => errors.as_ref(),
-                    _ => None,
-                },
-            })
-            .collect(),
+/// Means over seeds, what scatter leaves open of them, and the runs.
+fn row(row: &Row, base: Option<&Row>) -> Value {
+    let own = row.parameter.as_ref();
+    let run = |run: &Run| {
+        let errors = run.ran().and_then(|run| run.errors.as_ref());
+        json!({ "seed": run.seed, "outcome": run.word(), "cause": run.cause(), "errors": errors })
+    };
+    let mut object = json!({
+        "parameter": own.map(|own| own.name),
+        "key": own.map(|own| own.key),
+        "value": row.value,
+        "number": own.and_then(|own| own.number),
+        "role": own.map(|own| own.role.word()),
+        "default": own.is_none(),
+        // Whether the error of the mean is told from scatter: of strength and of elongation.
+        "told_from_scatter": QUANTITIES.each_ref().map(|quantity| ensemble::mean_is_told(row, quantity)),
+        // Spread over seeds beside that of the scene as it stands: of strength and of elongation.
+        "spread": QUANTITIES.each_ref().map(|quantity| base.and_then(|base| ensemble::spread(row, base, quantity))),
+        "runs": row.runs.iter().map(run).collect::<Vec<_>>(),
+    });
+    for column in COLUMNS.iter() {
+        object[&*column.column.name] = json!(column.of_row(row));
     }
+    object
 }

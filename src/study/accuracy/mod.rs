@@ -1,69 +1,41 @@
 //! Error against run time: what each second buys.
 //!
-//! A study turns one knob at a time ([`knobs`]) away from the scene as it stands, runs every value, and
-//! measures how far each run is from a reference ([`mod@reference`], [`closed_form`]). The runs are made and kept by
-//! [`crate::study::cases`].
+//! A study varies one numerical parameter at a time ([`parameters`]) from the scene as it stands, runs every value, and
+//! measures how far each run is from a reference ([`mod@reference`], [`closed_form`]).
 
-pub mod agenda;
 pub mod closed_form;
 mod columns;
 mod csv;
 pub mod ensemble;
 pub mod errors;
 mod json;
-pub mod knobs;
+pub mod parameters;
 pub mod pareto;
 pub mod plots;
 pub mod reference;
 pub mod richardson;
 pub mod rows;
+pub mod schedule;
 pub mod table;
 pub mod verified;
 
 use crate::base::error::{Error, Result};
 use crate::run::folder::ACCURACY_STUDY;
-use crate::scene::plan::Plan;
-use crate::scene::spec::{DriveSpec, Spec};
-use crate::scene::{self, Scene};
-use crate::study::cases::measured::Measured;
-use crate::study::cases::record::{self, Found};
-use crate::study::cases::stat::Stat;
-use crate::study::cases::workshop::{Became, Case, Progress, Workshop};
-use agenda::{Item, Turned};
+use crate::scene::Scene;
+use crate::study::runner::{CaseRunner, CaseStore, Record, Status};
+use crate::study::statistics::Statistics;
+use crate::study::tensile::{TensileCase, TensileOutcome, TensileResult, count_kept, with_seed};
 use errors::{Errors, Truth};
-use knobs::{Knob, Role};
+use parameters::{Parameter, Role};
 use reference::{Along, OfSeed, Refined, Series};
-use rows::{Outcome, Row, Run};
+use rows::{Compared, Row, Run, RunStatus};
+use schedule::{PlannedRun, Varied};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 /// Seeds where bonds scatter, nothing exact is known, and the user says nothing: the interval of a mean is then 1.6
 /// standard deviations of what is compared, which the same seeds on both sides keep small.
 pub const SEEDS: u64 = 4;
-
-/// What to study and how.
-pub struct Options {
-    /// The scene by name or path.
-    pub scene: String,
-    /// Its options.
-    pub overrides: Vec<String>,
-    /// Seeds; empty for [`SEEDS`] where bonds scatter and there is no closed form, else the scene's own.
-    pub seeds: Vec<u64>,
-    /// Knobs to turn.
-    pub vary: Vec<&'static Knob>,
-    /// Wall time that it may take (s).
-    pub budget: Option<f64>,
-    /// Runs side by side.
-    pub jobs: usize,
-    /// Threads of the engine; `None`: one per core.
-    pub threads: Option<usize>,
-    /// Folder of the study.
-    pub out: PathBuf,
-    /// Make runs again that are kept.
-    pub fresh: bool,
-}
 
 /// What a study found.
 pub struct Study {
@@ -79,15 +51,15 @@ pub struct Study {
     pub jobs: usize,
     /// What the runs are compared with.
     pub reference: Reference,
-    /// The scene as it stands, then every value of every knob.
+    /// The scene as it stands, then every value of every parameter.
     pub rows: Vec<Row>,
-    /// Knobs that the scene does not have, with the reason.
+    /// Parameters that the scene does not have, with the reason.
     pub absent: Vec<(&'static str, String)>,
     /// Runs that were there from before, of all that are done.
     pub kept: usize,
     /// Runs made now.
     pub made: usize,
-    /// Kept runs of another build of the same physics.
+    /// Kept runs of another build of the same revision.
     pub other_build: usize,
     /// Whether the user stopped it.
     pub interrupted: bool,
@@ -106,37 +78,35 @@ pub struct Reference {
     /// How sure refinement is of that (%): of the limit, and with several seeds of what scatter leaves open of it (95 %).
     pub uncertainty_percent: [f64; 2],
     /// Strength (MPa) and elongation (%) over seeds: what strands of other seeds may have.
-    pub over_seeds: [Option<Stat>; 2],
-    /// What refinement along each knob adds, by seed.
+    pub over_seeds: [Option<Statistics>; 2],
+    /// What refinement along each parameter adds, by seed.
     pub along: Vec<(u64, Along)>,
 }
 
-/// The scene of a study, its seeds, and its knobs.
+/// The scene of a study, its seeds, and its parameters.
 pub struct Subject {
     /// The scene as it stands.
     pub scene: Scene,
-    /// Seeds.
+    /// Seeds that every row is run with, each once.
     pub seeds: Vec<u64>,
-    /// Knobs that it has.
-    pub turned: Vec<Turned>,
-    /// Knobs that it has not, with the reason.
+    /// Parameters that it has.
+    pub varied: Vec<Varied>,
+    /// Parameters that it has not, with the reason.
     pub absent: Vec<(&'static str, String)>,
     /// Whether bonds scatter.
     pub scatter: bool,
     /// What the user should know.
     pub notes: Vec<String>,
-    name: String,
-    overrides: Vec<String>,
 }
 
 impl Subject {
-    /// Reads the scene and sees which knobs it has.
+    /// Sees which of the parameters in `vary` the scene has. Without `seeds` it takes the first [`SEEDS`] where bonds scatter and
+    /// there is no closed form, else the scene's own.
     ///
     /// # Errors
-    /// A scene that is wrong, or that no grip pulls.
-    pub fn new(options: &Options) -> Result<Self> {
-        let scene = scene::load(&options.scene, &options.overrides)?;
-        if !is_pulled(&scene.spec) {
+    /// A scene that no grip pulls.
+    pub fn new(scene: Scene, vary: &[&'static Parameter], mut seeds: Vec<u64>) -> Result<Self> {
+        if parameters::pull_speed(&scene.spec).is_none() {
             let help = "study a scene that a grip pulls at a constant speed, such as ka4, or a verification case \
                         (`strandsnap verify --list`)";
             return Err(scene.source.error(
@@ -145,10 +115,9 @@ impl Subject {
                 help,
             ));
         }
-        let (turned, absent) = agenda::turn(&options.vary, &scene.spec);
+        let (varied, absent) = schedule::vary(vary, &scene);
         let mut notes = Vec::new();
-        let scatter = Plan::new(&scene.spec).scatter;
-        let mut seeds = options.seeds.clone();
+        let scatter = scene.plan.scatter;
         if seeds.is_empty() && scatter && closed_form::truth(&scene).is_err() {
             seeds = (1..=SEEDS).collect();
             notes.push(format!(
@@ -164,58 +133,45 @@ impl Subject {
             notes.push("every bond is as strong as the other in this scene, so one seed is enough".into());
             seeds.truncate(1);
         }
-        let (name, overrides) = (options.scene.clone(), options.overrides.clone());
-        Ok(Self { scene, seeds, turned, absent, scatter, notes, name, overrides })
+        Ok(Self { scene, seeds, varied, absent, scatter, notes })
     }
 
-    /// The exact answer to the scene with these options and this seed; `None` where there is no closed form.
-    fn truth(&self, set: &[String], seed: u64) -> Option<Truth> {
-        let seed = [format!("seed={seed}")];
-        let overrides: Vec<String> = self.overrides.iter().chain(set).chain(&seed).cloned().collect();
-        closed_form::truth(&scene::load(&self.name, &overrides).ok()?).ok()
+    /// The scene at a place: with a value of a parameter, or as it stands.
+    fn scene_at(&self, place: Option<[usize; 2]>) -> &Scene {
+        place.map_or(&self.scene, |[k, l]| &self.varied[k].variation.levels[l].scene)
+    }
+
+    /// The exact answer to the scene at a place with this seed; `None` where there is no closed form.
+    fn truth(&self, place: Option<[usize; 2]>, seed: u64) -> Option<Truth> {
+        closed_form::truth(&with_seed(self.scene_at(place), seed)).ok()
+    }
+
+    /// A run as a case that `runner` is to run.
+    fn case<'a>(&'a self, run: PlannedRun, store: &'a CaseStore, runner: &CaseRunner) -> TensileCase<'a> {
+        TensileCase {
+            work: run.work,
+            leads: run.place.is_none(),
+            writes: run.writes,
+            threads: Some(runner.threads_per_case()),
+            ..TensileCase::new(run.name, Ok(self.scene_at(run.place)), run.seed, store)
+        }
     }
 }
 
-fn is_pulled(spec: &Spec) -> bool {
-    spec.grip.as_ref().is_some_and(|grip| matches!(grip.drive, DriveSpec::Speed(speed) if speed != 0.0))
-}
-
-/// Makes the runs and compares them. `tell` hears of every run.
+/// Makes the runs and compares them.
 ///
 /// # Errors
 /// When the scene itself cannot be run to its end; when the machine refuses something.
-pub fn study(
-    options: &Options,
-    subject: &Subject,
-    stop: &AtomicBool,
-    tell: &(dyn Fn(&Progress) + Sync),
-) -> Result<Study> {
-    record::open(&options.out, options.fresh)?;
-    let items = agenda::items(&subject.turned, &subject.seeds);
-    let workshop = Workshop {
-        scene: &options.scene,
-        folder: &options.out,
-        jobs: options.jobs,
-        threads: options.threads,
-        costs: true,
-        budget: options.budget,
-        began: Instant::now(),
-        stop,
-        tell,
-    };
-    let cases: Vec<Case> = items.iter().map(|item| item.case(&options.overrides)).collect();
-    let became = workshop.make(&cases)?;
-    let done = |was_kept: bool| {
-        let is = move |one: &&Became| matches!(one, Became::Done { kept, .. } if *kept == was_kept);
-        became.iter().filter(is).count()
-    };
-    let (kept, made) = (done(true), done(false));
-    let build = record::build();
-    let other = |one: &&Became| matches!(one, Became::Done { record, .. } if record.build != build);
-    let other_build = became.iter().filter(other).count();
-    let mut runs = Runs::new(&items, became);
-    let interrupted = stop.load(Ordering::Relaxed);
-    runs.check_base(options, interrupted)?;
+pub fn study(subject: &Subject, store: &CaseStore, runner: &CaseRunner) -> Result<Study> {
+    let runs = schedule::runs(&subject.varied, &subject.seeds);
+    let places: Vec<_> = runs.iter().map(|run| (run.place, run.seed)).collect();
+    let cases: Vec<TensileCase> = runs.into_iter().map(|run| subject.case(run, store, runner)).collect();
+    let statuses = runner.run(&cases)?;
+    let [kept, other_build] = count_kept(&statuses);
+    let made = statuses.iter().filter(|status| matches!(status, Status::Run(_))).count();
+    let interrupted = statuses.iter().any(|status| matches!(status, Status::Interrupted));
+    let mut runs = Runs { by_place: places.into_iter().zip(statuses).collect() };
+    runs.check_base(&subject.scene)?;
     let references = references(subject, &runs);
     let reference = describe(subject, &references);
     let rows = rows(subject, &mut runs, &references);
@@ -223,8 +179,8 @@ pub fn study(
         scene: subject.scene.spec.name.clone(),
         seeds: subject.seeds.clone(),
         scatter: subject.scatter,
-        threads: workshop.threads_of_a_run(),
-        jobs: options.jobs,
+        threads: runner.threads_per_case(),
+        jobs: runner.jobs,
         reference,
         rows,
         absent: subject.absent.clone(),
@@ -249,49 +205,27 @@ pub fn write(study: &Study, command: &str, folder: &Path) -> Result<Vec<PathBuf>
 
 /// What became of every run, by place and seed.
 struct Runs {
-    by_place: BTreeMap<(Option<[usize; 2]>, u64), Became>,
+    by_place: BTreeMap<(Option<[usize; 2]>, u64), Status<Record<TensileOutcome>>>,
 }
 
 impl Runs {
-    fn new(items: &[Item], became: Vec<Became>) -> Self {
-        Self { by_place: items.iter().map(|item| (item.place, item.seed)).zip(became).collect() }
-    }
-
-    fn measured(&self, place: Option<[usize; 2]>, seed: u64) -> Option<&Measured> {
-        match self.by_place.get(&(place, seed)) {
-            Some(Became::Done { record, .. }) => match &record.found {
-                Found::Ran(measured) => Some(measured),
-                Found::Failed(_) => None,
-            },
-            _ => None,
-        }
+    fn result(&self, place: Option<[usize; 2]>, seed: u64) -> Option<&TensileResult> {
+        self.by_place.get(&(place, seed))?.output()?.result.result()
     }
 
     /// Without a single run of the scene itself there is nothing to compare.
-    fn check_base(&self, options: &Options, interrupted: bool) -> Result<()> {
-        let bases = || self.by_place.iter().filter(|((place, _), _)| place.is_none()).map(|(_, became)| became);
-        let ran =
-            |became: &Became| matches!(became, Became::Done { record, .. } if matches!(record.found, Found::Ran(_)));
-        if bases().any(ran) {
+    fn check_base(&self, scene: &Scene) -> Result<()> {
+        let bases = || self.by_place.iter().filter(|((place, _), _)| place.is_none()).map(|(_, status)| status);
+        let outcomes = || bases().filter_map(Status::output).map(|record| &record.result);
+        if outcomes().any(|outcome| outcome.result().is_some()) {
             return Ok(());
         }
-        let cause = bases().find_map(|became| match became {
-            Became::Done { record, .. } => match &record.found {
-                Found::Failed(cause) => Some(cause.clone()),
-                Found::Ran(_) => None,
-            },
-            Became::Refused(cause) => Some(cause.clone()),
-            _ => None,
-        });
-        Err(match cause {
+        Err(match outcomes().find_map(TensileOutcome::cause) {
             Some(cause) => Error::input(
-                format!("{} cannot be run as it stands: {cause}", options.scene),
+                format!("{} cannot be run as it stands: {cause}", scene.spec.name),
                 "study a scene that runs to its end; `strandsnap run` shows where it stops",
             ),
-            None if interrupted => Error::input(
-                "interrupted before the scene itself was run once",
-                "run it again; the runs that were finished are kept",
-            ),
+            None if bases().any(|status| matches!(status, Status::Interrupted)) => Error::Interrupted,
             None => Error::input("the scene itself was not run", "give a larger --budget"),
         })
     }
@@ -308,7 +242,7 @@ struct Against {
 fn references(subject: &Subject, runs: &Runs) -> BTreeMap<u64, Against> {
     let mut references = BTreeMap::new();
     let of_seed = |seed: &u64| {
-        let base = runs.measured(None, *seed)?;
+        let base = runs.result(None, *seed)?;
         Some((*seed, (base, series(subject, runs, *seed, base))))
     };
     let (seeds, of_seeds): (Vec<u64>, Vec<OfSeed>) = subject.seeds.iter().filter_map(of_seed).unzip();
@@ -318,44 +252,42 @@ fn references(subject: &Subject, runs: &Runs) -> BTreeMap<u64, Against> {
             Some(laws) => reference::refine_as(laws, base, series),
             None => reference::refine(base, series),
         };
-        let closed = subject.truth(&[], *seed);
+        let closed = subject.truth(None, *seed);
         references.insert(*seed, Against { refined, closed });
     }
     references
 }
 
-/// The runs of one seed along every knob.
-fn series<'a>(subject: &Subject, runs: &'a Runs, seed: u64, base: &'a Measured) -> Vec<Series<'a>> {
-    let along = |(k, turned): (usize, &Turned)| {
-        let own = turned.ladder.base.number.map(|number| (number, base));
-        let others = turned.ladder.levels.iter().enumerate();
-        let others = others.filter_map(|(l, level)| Some((level.value.number?, runs.measured(Some([k, l]), seed)?)));
-        Series { knob: turned.knob.name, role: turned.ladder.role, levels: own.into_iter().chain(others).collect() }
+/// The runs of one seed along every parameter.
+fn series<'a>(subject: &Subject, runs: &'a Runs, seed: u64, base: &'a TensileResult) -> Vec<Series<'a>> {
+    let along = |(k, Varied { parameter, variation }): (usize, &Varied)| {
+        let own = variation.base.number.map(|number| (number, base));
+        let others = variation.levels.iter().enumerate();
+        let others = others.filter_map(|(l, level)| Some((level.value.number?, runs.result(Some([k, l]), seed)?)));
+        Series { parameter: parameter.name, role: variation.role, levels: own.into_iter().chain(others).collect() }
     };
-    subject.turned.iter().enumerate().map(along).collect()
+    subject.varied.iter().enumerate().map(along).collect()
 }
 
 /// All rows with the errors of their runs.
 fn rows(subject: &Subject, runs: &mut Runs, references: &BTreeMap<u64, Against>) -> Vec<Row> {
     let mut rows = Vec::new();
-    for place in rows::places(&subject.turned) {
-        let mut row = rows::empty(&subject.turned, place);
-        let set: &[String] = place.map_or(&[], |[k, l]| &subject.turned[k].ladder.levels[l].set);
+    for place in rows::places(&subject.varied) {
+        let mut row = rows::empty(&subject.varied, place);
         for seed in &subject.seeds {
             let outcome = match runs.by_place.remove(&(place, *seed)) {
-                Some(Became::Done { record, .. }) => match record.found {
-                    Found::Ran(measured) => {
+                Some(Status::Run(record) | Status::Kept(record)) => match record.result {
+                    TensileOutcome::Ran(result) => {
                         let errors = references.get(seed).and_then(|against| match &against.closed {
-                            Some(_) => subject.truth(set, *seed).map(|truth| Errors::new(&measured, &truth)),
-                            None => Some(Errors::new(&measured, &against.refined.truth)),
+                            Some(_) => subject.truth(place, *seed).map(|truth| Errors::new(&result, &truth)),
+                            None => Some(Errors::new(&result, &against.refined.truth)),
                         });
-                        Outcome::Ran { measured, errors }
+                        RunStatus::Ran(Compared { result, errors })
                     }
-                    Found::Failed(cause) => Outcome::Failed(cause),
+                    TensileOutcome::Failed(cause) | TensileOutcome::Refused(cause) => RunStatus::Failed(cause),
                 },
-                Some(Became::Refused(cause)) => Outcome::Failed(cause),
-                Some(Became::LeftOut(seconds)) => Outcome::LeftOut(seconds),
-                Some(Became::NotReached) | None => Outcome::NotReached,
+                Some(Status::LeftOut(seconds)) => RunStatus::LeftOut(seconds),
+                Some(Status::Interrupted) | None => RunStatus::NotReached,
             };
             row.runs.push(Run { seed: *seed, outcome });
         }
@@ -387,7 +319,8 @@ fn describe(subject: &Subject, references: &BTreeMap<u64, Against>) -> Reference
             let limit = mean(&|against| against.refined.uncertainty_percent[k]);
             limit.hypot(left_open(references, k))
         }),
-        over_seeds: [0, 1].map(|k| Stat::of(&references.values().map(|against| truth(against)[k]).collect::<Vec<_>>())),
+        over_seeds: [0, 1]
+            .map(|k| Statistics::of(&references.values().map(|against| truth(against)[k]).collect::<Vec<_>>())),
         along,
     }
 }
@@ -397,30 +330,25 @@ fn describe(subject: &Subject, references: &BTreeMap<u64, Against>) -> Reference
 fn left_open(references: &BTreeMap<u64, Against>, k: usize) -> f64 {
     let added = |against: &Against| against.refined.along.iter().map(|along| along.correction_percent[k]).sum();
     let added: Vec<f64> = references.values().map(added).collect();
-    Stat::of(&added).and_then(|stat| stat.interval_95).unwrap_or(0.0)
+    Statistics::of(&added).and_then(|stat| stat.interval_95).unwrap_or(0.0)
 }
 
 /// What a reference by refinement is, in a sentence.
 fn words(subject: &Subject, along: &[(u64, Along)]) -> String {
-    let mut knobs: Vec<&str> = Vec::new();
-    for (_, along) in along {
-        if !knobs.contains(&along.knob) {
-            knobs.push(along.knob);
-        }
-    }
-    if knobs.is_empty() {
-        return "the scene as it stands: no knob that converges has two runs, so rows show differences from it, not \
+    let refined = table::refined(along);
+    if refined.is_empty() {
+        return "the scene as it stands: no parameter that converges has two runs, so rows show differences from it, not \
                 errors"
             .into();
     }
-    let fixed = subject.turned.iter().filter(|turned| turned.ladder.role == Role::Refines);
-    let fixed: Vec<&str> = fixed.map(|turned| turned.knob.name).filter(|name| !knobs.contains(name)).collect();
+    let fixed = subject.varied.iter().filter(|varied| varied.variation.role == Role::Refines);
+    let fixed: Vec<&str> = fixed.map(|varied| varied.parameter.name).filter(|name| !refined.contains(name)).collect();
     let missing = match &fixed[..] {
         [] => String::new(),
         names => format!("; {} could not be refined", names.join(", ")),
     };
     format!(
         "the limit of refinement in {} (Richardson), one at a time from the scene as it stands{missing}",
-        knobs.join(" and ")
+        refined.join(" and ")
     )
 }

@@ -1,13 +1,14 @@
-//! Error over run time, knob by knob, with the front of what cannot be had both faster and more exact.
+//! Error over run time, parameter by parameter, with the front of what cannot be had both faster and more exact.
 
 use super::Study;
 use super::errors::Errors;
-use super::knobs::Role;
+use super::parameters::Role;
 use super::pareto::staircase;
 use super::rows::Row;
 use crate::base::error::Result;
-use crate::study::cases::stat::Stat;
+use crate::base::wording::counted;
 use crate::study::plot::{self, Axis, Figure, Highlight, Legend, Limit, Mark, Series};
+use crate::study::statistics::Statistics;
 use std::path::{Path, PathBuf};
 
 /// Of each figure (px of an SVG).
@@ -22,42 +23,40 @@ pub fn write(study: &Study, folder: &Path) -> Result<Vec<PathBuf>> {
         figure(study, "strength", 0, |errors| errors.strength_percent),
         figure(study, "elongation", 1, |errors| errors.elongation_percent),
     ];
-    let files: Vec<PathBuf> = ["svg", "png"].iter().map(|end| folder.join(format!("accuracy.{end}"))).collect();
-    files.iter().try_for_each(|path| plot::write(&figures, 1, path))?;
-    Ok(files)
+    plot::write_pair(&figures, 1, folder, "accuracy")
 }
 
 /// A row as it is drawn: time (s), size of the error and half the height of its bar (%).
 fn point(study: &Study, row: &Row, error: fn(&Errors) -> f64) -> Option<([f64; 2], f64)> {
     let time = row.of_runs(|run| if on_one_core(study) { run.cpu_s } else { Some(run.wall_s) })?;
-    let Stat { mean, interval_95, .. } = row.of_errors(|errors| Some(error(errors)))?;
+    let Statistics { mean, interval_95, .. } = row.of_errors(|errors| Some(error(errors)))?;
     Some(([time.mean, mean.abs()], interval_95.unwrap_or(0.0)))
 }
 
 /// Whether processor time is shown: on one thread it is the run time on an idle machine, whatever else this one did.
 fn on_one_core(study: &Study) -> bool {
-    study.threads == 1 && study.rows.iter().all(|row| row.ran().all(|(run, _)| run.cpu_s.is_some()))
+    study.threads == 1 && study.rows.iter().all(|row| row.ran().all(|run| run.result.cpu_s.is_some()))
 }
 
 fn figure(study: &Study, quantity: &str, which: usize, error: fn(&Errors) -> f64) -> Figure {
     let time = match on_one_core(study) {
         true => "processor time on one core [s]".to_string(),
-        false => format!("run time on {} threads [s]", study.threads),
+        false => format!("run time on {} [s]", counted(study.threads, "thread")),
     };
     let title = format!("{}: error of {quantity} against run time", study.scene);
     let mut figure = Figure::new(title, Axis::log(time), Axis::log(format!("|error of {quantity}| [%]")));
     figure.size = SIZE;
     figure.legend = Legend::Beside;
-    for knob in study.knobs() {
-        let rows = study.path(knob);
+    for parameter in study.parameters() {
+        let rows = study.path(parameter);
         let points: Vec<([f64; 2], f64)> = rows.iter().filter_map(|row| point(study, row, error)).collect();
-        let joined = rows.iter().any(|row| row.knob.as_ref().is_some_and(|k| matches!(k.role, Role::Refines)));
+        let joined = rows.iter().any(|row| row.parameter.as_ref().is_some_and(|k| matches!(k.role, Role::Refines)));
         let other = rows.iter().any(|row| row.is_other_model());
-        // One without points keeps its place, so that colours stay with their knobs, but not its line in the legend.
+        // One without points keeps its place, so that colours stay with their parameters, but not its line in the legend.
         let name = match (points.is_empty(), other) {
             (true, _) => String::new(),
-            (_, true) => format!("{knob} (other model)"),
-            (_, false) => knob.to_string(),
+            (_, true) => format!("{parameter} (other model)"),
+            (_, false) => parameter.to_string(),
         };
         let mut series = Series::new(
             name,
@@ -70,7 +69,9 @@ fn figure(study: &Study, quantity: &str, which: usize, error: fn(&Errors) -> f64
         figure.series.push(series);
     }
     figure.series.extend(front_of(study, error));
-    if let Some((at, _)) = study.rows.iter().find(|row| row.knob.is_none()).and_then(|row| point(study, row, error)) {
+    if let Some((at, _)) =
+        study.rows.iter().find(|row| row.parameter.is_none()).and_then(|row| point(study, row, error))
+    {
         figure.series.push(Series::new("", Mark::Points, vec![at]));
         figure.highlights.push(Highlight { at, name: "the scene as it stands".into() });
     }
@@ -90,23 +91,24 @@ fn front_of(study: &Study, error: fn(&Errors) -> f64) -> Option<Series> {
 }
 
 impl Study {
-    /// Names of the knobs that were turned, in the order of the rows.
-    fn knobs(&self) -> Vec<&'static str> {
-        let mut names: Vec<&str> = self.rows.iter().filter_map(|row| row.knob.as_ref()).map(|knob| knob.name).collect();
+    /// Names of the parameters that were varied, in the order of the rows.
+    fn parameters(&self) -> Vec<&'static str> {
+        let mut names: Vec<&str> =
+            self.rows.iter().filter_map(|row| row.parameter.as_ref()).map(|parameter| parameter.name).collect();
         names.dedup();
         names
     }
 
-    /// The rows of a knob; where it refines, by rising value, the scene as it stands in its place among them.
-    fn path(&self, knob: &str) -> Vec<&Row> {
+    /// The rows of a parameter; where it refines, by rising value, the scene as it stands in its place among them.
+    fn path(&self, parameter: &str) -> Vec<&Row> {
         let mut rows: Vec<&Row> =
-            self.rows.iter().filter(|row| row.knob.as_ref().is_some_and(|k| k.name == knob)).collect();
-        let turn = rows.first().and_then(|row| row.knob.as_ref());
+            self.rows.iter().filter(|row| row.parameter.as_ref().is_some_and(|k| k.name == parameter)).collect();
+        let turn = rows.first().and_then(|row| row.parameter.as_ref());
         if let (Some(Role::Refines), Some(own)) =
             (turn.map(|turn| turn.role), turn.and_then(|turn| turn.default_number))
         {
-            let number = |row: &&Row| row.knob.as_ref().and_then(|k| k.number).unwrap_or(own);
-            rows.extend(self.rows.iter().filter(|row| row.knob.is_none()));
+            let number = |row: &&Row| row.parameter.as_ref().and_then(|k| k.number).unwrap_or(own);
+            rows.extend(self.rows.iter().filter(|row| row.parameter.is_none()));
             rows.sort_by(|a, b| number(a).total_cmp(&number(b)));
         }
         rows

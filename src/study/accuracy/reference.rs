@@ -1,34 +1,34 @@
 //! What runs are compared with: the closed form, or where the runs themselves go as they are refined.
 //!
-//! Refinement goes along one knob at a time from the scene as it stands. The limits add up: reference = base + Σ(limit
-//! along a knob − base). That leaves out what two refinements do together, a product of two small corrections; the
-//! uncertainty is the root of the sum of squares of those along each knob. Where bonds scatter and there are several
+//! Refinement goes along one parameter at a time from the scene as it stands. The limits add up: reference = base + Σ(limit
+//! along a parameter − base). That leaves out what two refinements do together, a product of two small corrections; the
+//! uncertainty is the root of the sum of squares of those along each parameter. Where bonds scatter and there are several
 //! seeds, it is the means over seeds that are refined. Histories are extrapolated strain by strain
 //! with the weights of strength. The order of breaks cannot be extrapolated; it is that of the finest run along the last
-//! knob.
+//! parameter.
 
 use super::errors::Truth;
-use super::knobs::Role;
+use super::parameters::Role;
 use super::richardson::{Limit, limit};
-use crate::study::cases::measured::{Curve, Measured};
+use crate::study::tensile::{Curve, TensileResult};
 use serde::Serialize;
 
-/// Runs along one knob, the scene as it stands among them.
+/// Runs along one parameter, the scene as it stands among them.
 #[derive(Clone)]
 pub struct Series<'a> {
-    /// The knob.
-    pub knob: &'static str,
+    /// The parameter.
+    pub parameter: &'static str,
     /// What its differences mean: only those that refine or have an exact value take part.
     pub role: Role,
     /// Value and run.
-    pub levels: Vec<(f64, &'a Measured)>,
+    pub levels: Vec<(f64, &'a TensileResult)>,
 }
 
-/// What refinement along one knob says about one quantity.
+/// What refinement along one parameter says about one quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Along {
-    /// The knob.
-    pub knob: &'static str,
+    /// The parameter.
+    pub parameter: &'static str,
     /// Runs that were used.
     pub levels: usize,
     /// Observed order of convergence of strength and of elongation (-).
@@ -45,26 +45,26 @@ pub struct Refined {
     pub truth: Truth,
     /// Uncertainty of strength and elongation over the reference (%).
     pub uncertainty_percent: [f64; 2],
-    /// What each knob adds.
+    /// What each parameter adds.
     pub along: Vec<Along>,
 }
 
-/// One knob's limits and the runs that histories are extrapolated from.
+/// One parameter's limits and the runs that histories are extrapolated from.
 struct Leg<'a> {
     along: Along,
     corrections: [f64; 2],
     uncertainties: [f64; 2],
     /// Limit of a history: fine + weight (fine − next).
-    fine: &'a Measured,
-    next: &'a Measured,
+    fine: &'a TensileResult,
+    next: &'a TensileResult,
     weight: f64,
 }
 
-/// How the means over seeds converge along one knob. Where bonds scatter, a finer run of one seed may break another bond
+/// How the means over seeds converge along one parameter. Where bonds scatter, a finer run of one seed may break another bond
 /// first, and the three levels of that seed alone show any order or none; their means over seeds do not.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
-    knob: &'static str,
+    parameter: &'static str,
     /// Limits of the means of strength (MPa) and elongation (%).
     limits: [Limit; 2],
     /// The two finest values.
@@ -74,16 +74,16 @@ pub struct Law {
     levels: usize,
 }
 
-/// Runs of one seed: the scene as it stands, and along every knob.
-pub type OfSeed<'a> = (&'a Measured, Vec<Series<'a>>);
+/// Runs of one seed: the scene as it stands, and along every parameter.
+pub type OfSeed<'a> = (&'a TensileResult, Vec<Series<'a>>);
 
-/// How the means over `seeds` converge along every knob that refines. A level counts by how far its runs are from those of
+/// How the means over `seeds` converge along every parameter that refines. A level counts by how far its runs are from those of
 /// the same seeds at the scene as it stands, so that seeds it lacks do not shift it.
 pub fn laws(seeds: &[OfSeed]) -> Vec<Law> {
-    let Some((_, knobs)) = seeds.first() else { return Vec::new() };
+    let Some((_, parameters)) = seeds.first() else { return Vec::new() };
     let mean_base = [0, 1].map(|k| seeds.iter().map(|(base, _)| numbers(base)[k]).sum::<f64>() / seeds.len() as f64);
     let law = |k: usize| {
-        let Series { knob, role: Role::Refines, .. } = &knobs[k] else { return None };
+        let Series { parameter, role: Role::Refines, .. } = &parameters[k] else { return None };
         let mut values: Vec<f64> = seeds.iter().flat_map(|(_, s)| s[k].levels.iter().map(|(h, _)| *h)).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
@@ -98,31 +98,31 @@ pub fn laws(seeds: &[OfSeed]) -> Vec<Law> {
         let along = |quantity: usize| limit(&values.iter().map(|h| [*h, at(*h, quantity)]).collect::<Vec<_>>());
         let limits = [along(0)?, along(1)?];
         let corrections = [0, 1].map(|k| limits[k].value - mean_base[k]);
-        Some(Law { knob, limits, values: [values[0], values[1]], corrections, levels: values.len() })
+        Some(Law { parameter, limits, values: [values[0], values[1]], corrections, levels: values.len() })
     };
-    (0..knobs.len()).filter_map(law).collect()
+    (0..parameters.len()).filter_map(law).collect()
 }
 
-fn numbers(run: &Measured) -> [f64; 2] {
+fn numbers(run: &TensileResult) -> [f64; 2] {
     [run.strength_mpa, run.elongation_percent]
 }
 
 /// The reference that follows from `base` and its refinements alone.
-pub fn refine(base: &Measured, series: &[Series]) -> Refined {
+pub fn refine(base: &TensileResult, series: &[Series]) -> Refined {
     put_together(base, series.iter().filter_map(|series| leg(base, series)).collect())
 }
 
 /// The reference of one seed where bonds scatter: its own runs, extrapolated as the means over seeds are. Its mean over
 /// seeds is then the limit of the means, and how it differs from seed to seed tells how sure that is.
-pub fn refine_as(laws: &[Law], base: &Measured, series: &[Series]) -> Refined {
+pub fn refine_as(laws: &[Law], base: &TensileResult, series: &[Series]) -> Refined {
     let legs = series.iter().filter_map(|series| match series.role {
-        Role::Refines => laws.iter().find(|law| law.knob == series.knob).map(|law| leg_as(law, base, series)),
+        Role::Refines => laws.iter().find(|law| law.parameter == series.parameter).map(|law| leg_as(law, base, series)),
         _ => leg(base, series),
     });
     put_together(base, legs.collect())
 }
 
-fn put_together(base: &Measured, legs: Vec<Leg>) -> Refined {
+fn put_together(base: &TensileResult, legs: Vec<Leg>) -> Refined {
     let sum = |k: usize| legs.iter().map(|leg| leg.corrections[k]).sum::<f64>();
     let spread = |k: usize| legs.iter().map(|leg| leg.uncertainties[k].powi(2)).sum::<f64>().sqrt();
     let value = [base.strength_mpa + sum(0), base.elongation_percent + sum(1)];
@@ -137,9 +137,9 @@ fn put_together(base: &Measured, legs: Vec<Leg>) -> Refined {
     Refined { truth, uncertainty_percent, along: legs.into_iter().map(|leg| leg.along).collect() }
 }
 
-/// What a knob adds to one seed, by how the means over seeds converge; that of the means where the seed lacks one of the
+/// What a parameter adds to one seed, by how the means over seeds converge; that of the means where the seed lacks one of the
 /// two finest runs.
-fn leg_as<'a>(law: &Law, base: &'a Measured, series: &Series<'a>) -> Leg<'a> {
+fn leg_as<'a>(law: &Law, base: &'a TensileResult, series: &Series<'a>) -> Leg<'a> {
     let run = |value: f64| series.levels.iter().find(|(h, _)| *h == value).map(|(_, run)| *run);
     let own = numbers(base);
     let (fine, next, corrections) = match law.values.map(run) {
@@ -151,7 +151,7 @@ fn leg_as<'a>(law: &Law, base: &'a Measured, series: &Series<'a>) -> Leg<'a> {
     };
     let uncertainties = law.limits.map(|limit| limit.uncertainty);
     let along = Along {
-        knob: law.knob,
+        parameter: law.parameter,
         levels: law.levels,
         order: law.limits.map(|limit| limit.order),
         correction_percent: [0, 1].map(|k| 100.0 * corrections[k] / own[k]),
@@ -160,13 +160,13 @@ fn leg_as<'a>(law: &Law, base: &'a Measured, series: &Series<'a>) -> Leg<'a> {
     Leg { along, corrections, uncertainties, fine, next, weight: law.limits[0].weight }
 }
 
-/// What one knob adds; `None` when it takes no part or has too few runs.
-fn leg<'a>(base: &'a Measured, series: &Series<'a>) -> Option<Leg<'a>> {
+/// What one parameter adds; `None` when it takes no part or has too few runs.
+fn leg<'a>(base: &'a TensileResult, series: &Series<'a>) -> Option<Leg<'a>> {
     let (limits, fine, next) = match series.role {
         Role::Refines => {
             let mut levels = series.levels.clone();
             levels.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let along = |value: fn(&Measured) -> f64| {
+            let along = |value: fn(&TensileResult) -> f64| {
                 limit(&levels.iter().map(|(h, run)| [*h, value(run)]).collect::<Vec<_>>())
             };
             let limits = [along(|run| run.strength_mpa)?, along(|run| run.elongation_percent)?];
@@ -186,7 +186,7 @@ fn leg<'a>(base: &'a Measured, series: &Series<'a>) -> Option<Leg<'a>> {
     let corrections = [0, 1].map(|k| limits[k].value - own[k]);
     let uncertainties = limits.map(|limit| limit.uncertainty);
     let along = Along {
-        knob: series.knob,
+        parameter: series.parameter,
         levels: series.levels.len(),
         order: limits.map(|limit| limit.order),
         correction_percent: [0, 1].map(|k| 100.0 * corrections[k] / own[k]),
@@ -196,7 +196,7 @@ fn leg<'a>(base: &'a Measured, series: &Series<'a>) -> Option<Leg<'a>> {
 }
 
 /// The base's histories with the corrections of all legs, up to the least fracture strain among the runs.
-fn curve(base: &Measured, legs: &[Leg]) -> Curve {
+fn curve(base: &TensileResult, legs: &[Leg]) -> Curve {
     let runs = legs.iter().flat_map(|leg| [leg.fine, leg.next]).chain([base]);
     let end = runs.map(|run| (0.01 * run.elongation_percent).min(run.curve.end())).fold(f64::INFINITY, f64::min);
     let strain: Vec<f64> = base.curve.strain.iter().copied().filter(|e| *e <= end).collect();
@@ -228,7 +228,7 @@ mod tests {
     use super::*;
 
     /// A run whose every stress is `stress` times its strain.
-    fn run(stress: f64) -> Measured {
+    fn run(stress: f64) -> TensileResult {
         let strain: Vec<f64> = (0..=10).map(|i| 0.01 * f64::from(i)).collect();
         let history: Vec<f64> = strain.iter().map(|e| stress * e).collect();
         let curve = Curve {
@@ -237,22 +237,22 @@ mod tests {
             layer_stress_mpa: vec![history],
             strain,
         };
-        Measured {
+        TensileResult {
             strength_mpa: 0.1 * stress,
             elongation_percent: 10.0,
             layers: vec!["one".into()],
             curve,
-            ..Measured::default()
+            ..TensileResult::default()
         }
     }
 
-    /// Errors of order two in one knob and of order one in another: both are taken out, of every history too.
+    /// Errors of order two in one parameter and of order one in another: both are taken out, of every history too.
     #[test]
-    fn corrections_of_two_knobs_add_up() {
+    fn corrections_of_two_parameters_add_up() {
         let at = |a: f64, b: f64| run(1000.0 + 80.0 * a * a + 50.0 * b);
         let base = at(1.0, 1.0);
         let [a2, a4, b2, b4] = [at(0.5, 1.0), at(0.25, 1.0), at(1.0, 0.5), at(1.0, 0.25)];
-        let refines = |knob, levels| Series { knob, role: Role::Refines, levels };
+        let refines = |parameter, levels| Series { parameter, role: Role::Refines, levels };
         let series = [
             refines("a", vec![(1.0, &base), (0.5, &a2), (0.25, &a4)]),
             refines("b", vec![(0.25, &b4), (1.0, &base), (0.5, &b2)]),
@@ -277,10 +277,10 @@ mod tests {
     #[test]
     fn an_exact_value_is_taken_as_it_is() {
         let (base, exact) = (run(1100.0), run(1000.0));
-        let series = [Series { knob: "mass", role: Role::Exact(1.0), levels: vec![(4.0, &base), (1.0, &exact)] }];
+        let series = [Series { parameter: "mass", role: Role::Exact(1.0), levels: vec![(4.0, &base), (1.0, &exact)] }];
         let refined = refine(&base, &series);
         assert_eq!(refined.truth.strength_mpa, exact.strength_mpa);
-        let own = [Series { knob: "mass", role: Role::Exact(4.0), levels: vec![(4.0, &base), (1.0, &exact)] }];
+        let own = [Series { parameter: "mass", role: Role::Exact(4.0), levels: vec![(4.0, &base), (1.0, &exact)] }];
         assert_eq!(refine(&base, &own).truth.strength_mpa, base.strength_mpa);
     }
 
@@ -291,9 +291,9 @@ mod tests {
         let at = |h: f64, draw: f64| run(1000.0 + 40.0 * h + draw);
         let one = [at(1.0, 30.0), at(0.5, -10.0), at(0.25, 20.0)];
         let two = [at(1.0, -30.0), at(0.5, 10.0), at(0.25, -20.0)];
-        let of = |runs: &'static [Measured; 3]| -> OfSeed<'static> {
+        let of = |runs: &'static [TensileResult; 3]| -> OfSeed<'static> {
             let levels = [1.0, 0.5, 0.25].into_iter().zip(runs).collect();
-            (&runs[0], vec![Series { knob: "speed", role: Role::Refines, levels }])
+            (&runs[0], vec![Series { parameter: "speed", role: Role::Refines, levels }])
         };
         let seeds = [of(Box::leak(Box::new(one))), of(Box::leak(Box::new(two)))];
         let alone = refine(seeds[0].0, &seeds[0].1);

@@ -1,17 +1,19 @@
 //! The study as people read it: two tables and what stands around them.
 
-use super::columns::{Column, named, signed};
-use super::ensemble::{self, Quantity};
+use super::columns::{MeanColumn, named, signed};
+use super::ensemble::{self, QUANTITIES, Quantity};
 use super::errors::Errors;
 use super::reference::Along;
-use super::rows::{Outcome, Row};
+use super::rows::{Row, RunStatus};
 use super::{Reference, Study, Subject};
-use crate::study::cases::measured::Measured;
-use crate::study::cases::stat::Stat;
+use crate::base::wording::counted;
+use crate::study::statistics::Statistics;
 use crate::study::table::Table;
+use crate::study::tensile::TensileResult;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Columns of text at the left: knob and value.
+/// Columns of text at the left: parameter and value.
 const LEFT: usize = 2;
 
 /// What was asked of each row, and what it costs.
@@ -43,10 +45,10 @@ fn note(study: &Study, row: &Row) -> String {
 }
 
 /// The spread over seeds in per cent of the mean, and how it changes against the scene as it stands.
-fn spread(study: &Study, row: &Row, quantity: Quantity) -> String {
-    let base = study.rows.iter().find(|row| row.knob.is_none());
+fn spread(study: &Study, row: &Row, quantity: &Quantity) -> String {
+    let base = study.rows.iter().find(|row| row.parameter.is_none());
     let Some(spread) = base.and_then(|base| ensemble::spread(row, base, quantity)) else { return String::new() };
-    match (row.knob.is_some().then_some(spread.change_percent).flatten(), spread.told) {
+    match (row.parameter.is_some().then_some(spread.change_percent).flatten(), spread.told) {
         (Some(change), Some(true)) => format!("{:.2} ({change:+.0} %)", spread.percent),
         (Some(change), Some(false)) => format!("{:.2} ({change:+.0} %, not told)", spread.percent),
         _ => format!("{:.2}", spread.percent),
@@ -66,19 +68,19 @@ pub fn histories_and_checks(study: &Study) -> Table {
     let layers = study.layers();
     let title = "What else differs from the reference, and whether loading was quasi-static";
     table(title, study, &heads, columns.map(named).as_slice(), None, |row| {
-        let spreads = Quantity::ALL.map(|quantity| spread(study, row, quantity));
+        let spreads = QUANTITIES.each_ref().map(|quantity| spread(study, row, quantity));
         let cells = spreads.into_iter().chain([worst_layer(row, &layers), first_break(row)]);
         (cells.collect(), String::new())
     })
 }
 
-/// A table of the rows that were run: knob and value, `heads` with the cells that `more` gives, `columns`, and the note that
+/// A table of the rows that were run: parameter and value, `heads` with the cells that `more` gives, `columns`, and the note that
 /// it gives under the head `note`.
 fn table(
     title: &str,
     study: &Study,
     heads: &[&str],
-    columns: &[&Column],
+    columns: &[&MeanColumn],
     note: Option<&str>,
     more: impl Fn(&Row) -> (Vec<String>, String),
 ) -> Table {
@@ -86,20 +88,21 @@ fn table(
     // What was not run is told below the tables.
     let shown = || study.rows.iter().filter(|row| !row.is_missing());
     let rows = shown().map(|row| {
-        let (knob, value) = match &row.knob {
+        let (parameter, value) = match &row.parameter {
             None => ("the scene as it stands".into(), String::new()),
-            Some(knob) if last == Some(knob.name) => (String::new(), row.value.clone()),
-            Some(knob) => (format!("{} ({})", knob.name, knob.default), row.value.clone()),
+            Some(parameter) if last == Some(parameter.name) => (String::new(), row.value.clone()),
+            Some(parameter) => (format!("{} ({})", parameter.name, parameter.default), row.value.clone()),
         };
-        last = row.knob.as_ref().map(|knob| knob.name);
+        last = row.parameter.as_ref().map(|parameter| parameter.name);
         let (cells, said) = more(row);
         let numbers = columns.iter().map(|column| column.cell(row));
-        [knob, value].into_iter().chain(cells).chain(numbers).chain(note.map(|_| said)).collect()
+        [parameter, value].into_iter().chain(cells).chain(numbers).chain(note.map(|_| said)).collect()
     });
-    let default = shown().position(|row| row.knob.is_none());
-    let of_columns = columns.iter().map(|column| column.head);
-    let heads = ["knob (scene has)", "value"].into_iter().chain(heads.iter().copied()).chain(of_columns).chain(note);
-    Table { title: title.into(), heads: heads.map(str::to_owned).collect(), rows: rows.collect(), default, left: LEFT }
+    let default = shown().position(|row| row.parameter.is_none());
+    let of_columns = columns.iter().map(|one| one.column.label());
+    let heads = ["parameter (scene has)", "value"].iter().chain(heads).map(|head| head.to_string());
+    let heads = heads.chain(of_columns).chain(note.map(str::to_owned));
+    Table { title: title.into(), heads: heads.collect(), rows: rows.collect(), default, left: LEFT }
 }
 
 /// The layer whose mean error over seeds is greatest.
@@ -112,7 +115,7 @@ fn worst_layer(row: &Row, layers: &[String]) -> String {
 
 fn first_break(row: &Row) -> String {
     let known: Vec<&Errors> =
-        row.ran().filter_map(|(_, errors)| errors).filter(|errors| errors.same_first_wire.is_some()).collect();
+        row.ran().filter_map(|run| run.errors.as_ref()).filter(|errors| errors.same_first_wire.is_some()).collect();
     match &known[..] {
         [] => String::new(),
         [one] => {
@@ -130,18 +133,19 @@ fn first_break(row: &Row) -> String {
     }
 }
 
-/// The knobs of a scene, what each trades and its values, and the knobs that it has not.
+/// The parameters of a scene, what each trades and its values, and the parameters that it has not.
 pub fn list(subject: &Subject) -> String {
     let mut text = String::new();
-    for turned in &subject.turned {
-        let ladder = &turned.ladder;
-        let values: Vec<&str> = ladder.levels.iter().map(|level| level.value.shown.as_str()).collect();
-        let _ = writeln!(text, "{:16}{}", turned.knob.name, turned.knob.trades);
-        let _ = writeln!(text, "{:16}{}: {}", "", turned.knob.key, ladder.role.word());
-        let _ = writeln!(text, "{:16}{} as the scene stands; would try {}", "", ladder.base.shown, values.join(" | "));
+    for varied in &subject.varied {
+        let variation = &varied.variation;
+        let values: Vec<&str> = variation.levels.iter().map(|level| level.value.shown.as_str()).collect();
+        let _ = writeln!(text, "{:16}{}", varied.parameter.name, varied.parameter.trades);
+        let _ = writeln!(text, "{:16}{}: {}", "", varied.parameter.key, variation.role.word());
+        let _ =
+            writeln!(text, "{:16}{} as the scene stands; would try {}", "", variation.base.shown, values.join(" | "));
     }
-    for (knob, reason) in &subject.absent {
-        let _ = writeln!(text, "{knob:16}not here: {reason}");
+    for (parameter, reason) in &subject.absent {
+        let _ = writeln!(text, "{parameter:16}not here: {reason}");
     }
     text
 }
@@ -158,7 +162,7 @@ pub fn scatter(study: &Study) -> Option<String> {
         ));
     }
     let [strength, elongation] = study.reference.over_seeds;
-    let words = |stat: Option<Stat>| {
+    let words = |stat: Option<Statistics>| {
         let (half, deviation) = stat.and_then(|stat| stat.interval_95.zip(stat.standard_deviation))?;
         let mean = stat?.mean;
         Some(format!("{:.2} % (standard deviation {:.2} %)", 100.0 * half / mean, 100.0 * deviation / mean))
@@ -201,22 +205,25 @@ pub fn reference(reference: &Reference, seeds: usize) -> String {
     text
 }
 
-/// What refinement along each knob adds, mean over seeds.
+/// Names of the parameters that were refined along, each once.
+pub fn refined(along: &[(u64, Along)]) -> Vec<&'static str> {
+    let mut seen = BTreeSet::new();
+    along.iter().map(|(_, along)| along.parameter).filter(|name| seen.insert(*name)).collect()
+}
+
+/// What refinement along each parameter adds, mean over seeds.
 fn along(all: &[(u64, Along)]) -> Vec<String> {
-    let mut knobs: Vec<&str> = Vec::new();
-    for (_, along) in all {
-        if !knobs.contains(&along.knob) {
-            knobs.push(along.knob);
-        }
-    }
-    let line = |knob: &&str| {
-        let here = || all.iter().map(|(_, along)| along).filter(|along| along.knob == *knob);
-        let stat = |value: &dyn Fn(&Along) -> f64| Stat::of(&here().map(value).collect::<Vec<_>>());
+    let parameters = refined(all);
+    let line = |parameter: &&str| {
+        let here = || all.iter().map(|(_, along)| along).filter(|along| along.parameter == *parameter);
+        let stat = |value: &dyn Fn(&Along) -> f64| Statistics::of(&here().map(value).collect::<Vec<_>>());
         let orders = |k: usize| {
             let known: Vec<f64> = here().filter_map(|along| along.order[k]).collect();
-            match Stat::of(&known) {
+            match Statistics::of(&known) {
                 Some(order) if known.len() == here().count() => format!("order {:.2}", order.mean),
-                Some(order) => format!("order {:.2} in {} of {} seeds", order.mean, known.len(), here().count()),
+                Some(order) => {
+                    format!("order {:.2} in {} of {}", order.mean, known.len(), counted(here().count(), "seed"))
+                }
                 None => "no order observed".into(),
             }
         };
@@ -232,50 +239,52 @@ fn along(all: &[(u64, Along)]) -> Vec<String> {
             let sure = format!("{sure:.3}");
             format!("{name} {correction} % (uncertain by {sure} %, {})", orders(k))
         };
-        format!("towards the limit in {knob}: {}, {}", quantity("strength", 0), quantity("elongation", 1))
+        format!("towards the limit in {parameter}: {}, {}", quantity("strength", 0), quantity("elongation", 1))
     };
-    knobs.iter().map(line).collect()
+    parameters.iter().map(line).collect()
 }
 
-/// What was not run because the budget had no room for it, knob by knob, with what it would have taken.
+/// What was not run because the budget had no room for it, parameter by parameter, with what it would have taken.
 pub fn left_out(study: &Study) -> Vec<String> {
-    let mut by_knob: Vec<(&str, Vec<String>, f64)> = Vec::new();
+    let mut by_parameter: Vec<(&str, Vec<String>, f64)> = Vec::new();
     for row in &study.rows {
-        let knob = row.knob.as_ref().map_or("", |knob| knob.name);
+        let parameter = row.parameter.as_ref().map_or("", |parameter| parameter.name);
         for run in &row.runs {
-            let Outcome::LeftOut(seconds) = run.outcome else { continue };
+            let RunStatus::LeftOut(seconds) = run.outcome else { continue };
             let seed = if study.seeds.len() > 1 { format!(" (seed {})", run.seed) } else { String::new() };
             let value = format!("{}{seed}", row.value);
-            match by_knob.last_mut().filter(|(last, ..)| *last == knob) {
+            match by_parameter.last_mut().filter(|(last, ..)| *last == parameter) {
                 Some((_, values, sum)) => {
                     values.push(value);
                     *sum += seconds;
                 }
-                None => by_knob.push((knob, vec![value], seconds)),
+                None => by_parameter.push((parameter, vec![value], seconds)),
             }
         }
     }
-    let line =
-        |(knob, values, sum): (&str, Vec<String>, f64)| format!("{knob}: {} (about {sum:.0} s)", values.join(" | "));
-    by_knob.into_iter().map(line).collect()
+    let line = |(parameter, values, sum): (&str, Vec<String>, f64)| {
+        format!("{parameter}: {} (about {sum:.0} s)", values.join(" | "))
+    };
+    by_parameter.into_iter().map(line).collect()
 }
 
 /// What failed, with its cause.
 pub fn failed(study: &Study) -> Vec<String> {
     let of_row = |row: &Row| {
-        let knob = row.knob.as_ref().map_or("the scene as it stands", |knob| knob.name).to_string();
+        let parameter = row.parameter.as_ref().map_or("the scene as it stands", |parameter| parameter.name).to_string();
         let value = row.value.clone();
         let failed: Vec<(u64, String)> =
-            row.runs.iter().filter_map(|run| Some((run.seed, run.cause()?.clone()))).collect();
-        failed.into_iter().map(move |(seed, cause)| format!("{knob} {value} failed: {cause} (seed {seed})"))
+            row.runs.iter().filter_map(|run| Some((run.seed, run.cause()?.to_owned()))).collect();
+        failed.into_iter().map(move |(seed, cause)| format!("{parameter} {value} failed: {cause} (seed {seed})"))
     };
     study.rows.iter().flat_map(of_row).collect()
 }
 
 /// What must be known of the run times; `None` when there is nothing.
 pub fn caution(study: &Study) -> Option<String> {
-    let starved = |run: &Measured| study.threads == 1 && run.cpu_s.is_some_and(|cpu| cpu < LEAST_SHARE * run.wall_s);
-    let runs = || study.rows.iter().flat_map(|row| row.ran().map(|(run, _)| run));
+    let starved =
+        |run: &TensileResult| study.threads == 1 && run.cpu_s.is_some_and(|cpu| cpu < LEAST_SHARE * run.wall_s);
+    let runs = || study.rows.iter().flat_map(|row| row.ran().map(|run| &*run.result));
     let count = runs().filter(|run| starved(run)).count();
     (count > 0).then(|| {
         format!(
@@ -293,7 +302,7 @@ const LEAST_SHARE: f64 = 0.9;
 impl Study {
     /// Names of the layers, inside out.
     pub fn layers(&self) -> Vec<String> {
-        let first: Option<&Measured> = self.rows.iter().flat_map(|row| row.ran().map(|(run, _)| run)).next();
+        let first: Option<&TensileResult> = self.rows.iter().flat_map(|row| row.ran().map(|run| &*run.result)).next();
         first.map_or(Vec::new(), |run| run.layers.clone())
     }
 }

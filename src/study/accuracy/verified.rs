@@ -1,29 +1,29 @@
 //! Scenes with a closed form of their own: the verification cases. What they vary, how fast their error falls, and what
 //! each level takes.
 
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::engine::REVISION;
 use crate::observe::files::write_whole;
-use crate::run::in_pool;
+use crate::study::column::{self, Column};
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series, Slope};
+use crate::study::runner::store::build;
+use crate::study::runner::{Case, CaseRunner, CaseStore, Identity, Status};
 use crate::study::table::Table;
-use crate::study::verify::finding::{Convergence, Finding};
-use crate::study::verify::{CASES, Case, Effort, run_one};
+use crate::study::verify::comparison::{Comparison, Convergence};
+use crate::study::verify::{self, CASES, Effort, run_one};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-/// Folder of the records within that of the study.
-const FOLDER: &str = "cases";
 /// Width and height of each figure (px of an SVG).
 const SIZE: [u32; 2] = [760, 480];
 
 /// The verification cases that a name means: `hertz`, `verify/hertz`, or the beginning of several, `cantilever`.
-pub fn select(name: &str) -> Vec<&'static Case> {
+pub fn select(name: &str) -> Vec<&'static verify::VerificationCase> {
     let name = name.strip_prefix("verify/").unwrap_or(name);
     let exact = CASES.iter().filter(|case| case.name == name);
     let family = format!("{name}-");
-    let mut cases: Vec<&Case> = exact.collect();
+    let mut cases: Vec<&verify::VerificationCase> = exact.collect();
     if cases.is_empty() {
         cases = CASES.iter().filter(|case| case.name.starts_with(&family)).collect();
     }
@@ -47,19 +47,15 @@ pub struct Level {
     pub order: Option<f64>,
     /// The one that theory knows (-).
     pub order_theory: Option<f64>,
-    /// Steps.
+    /// Steps of all runs behind the level.
     pub steps: u64,
     /// Wall time (s).
     pub wall_s: f64,
 }
 
-/// What became of a case, as it is kept.
+/// What a verification case gave, level by level.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CaseRecord {
-    /// Version of the program.
-    physics: u32,
-    /// Whether fewer levels were run.
-    quick: bool,
+pub struct CaseLevels {
     /// The case.
     pub case: String,
     /// What it claims.
@@ -72,73 +68,77 @@ pub struct CaseRecord {
     pub failed: Option<String>,
 }
 
+/// A verification case whose levels are kept.
+struct KeptCase<'a> {
+    case: &'static verify::VerificationCase,
+    effort: Effort,
+    store: &'a CaseStore,
+    identity: Identity,
+}
+
+impl Case for KeptCase<'_> {
+    type Output = CaseLevels;
+
+    fn name(&self) -> String {
+        self.case.name.into()
+    }
+
+    fn kept(&self) -> Option<CaseLevels> {
+        self.store.find(&self.identity).map(|record| record.result)
+    }
+
+    fn run(&self, stop: &AtomicBool) -> Result<CaseLevels> {
+        let verify::VerificationCase { name, about, source, .. } = self.case;
+        let (levels, failed) = match run_one(self.case, self.effort, stop)?.result {
+            Ok(comparisons) => (comparisons.iter().flat_map(|found| levels(self.case, found)).collect(), None),
+            Err(error) => (Vec::new(), Some(error.to_string())),
+        };
+        let [case, about, source] = [name, about, source].map(|text| text.to_string());
+        let result = CaseLevels { case, about, source, levels, failed };
+        self.store.keep(&self.identity, "case.txt", result).map(|record| record.result)
+    }
+}
+
 /// What a study of verification cases found.
 pub struct Verified {
     /// What the user called it.
     pub name: String,
     /// Case by case.
-    pub records: Vec<CaseRecord>,
+    pub cases: Vec<CaseLevels>,
     /// Cases that were there from before.
     pub kept: usize,
-    /// Cases run now.
-    pub made: usize,
     /// Whether the user stopped it.
     pub interrupted: bool,
 }
 
-/// Runs `cases` one by one, each on one thread; those with a record in `folder` are not run again unless `fresh`. `tell`
-/// hears the name of each before it begins.
+/// Runs `cases`; those that are kept in `store` are not run again.
 ///
 /// # Errors
 /// When the folder cannot be written.
 pub fn study(
     name: &str,
-    cases: &[&'static Case],
-    quick: bool,
-    folder: &Path,
-    fresh: bool,
-    stop: &AtomicBool,
-    tell: &dyn Fn(&str),
+    cases: &[&'static verify::VerificationCase],
+    effort: Effort,
+    store: &CaseStore,
+    runner: &CaseRunner,
 ) -> Result<Verified> {
-    let kept_in = folder.join(FOLDER);
-    std::fs::create_dir_all(&kept_in).map_err(|e| Error::io("cannot make the folder", &kept_in, e))?;
-    let mut found = Verified { name: name.into(), records: Vec::new(), kept: 0, made: 0, interrupted: false };
-    for case in cases {
-        tell(case.name);
-        let path = kept_in.join(format!("verify-{}{}.json", case.name, if quick { "-quick" } else { "" }));
-        if let Some(record) = kept(&path, case, quick).filter(|_| !fresh) {
-            found.records.push(record);
-            found.kept += 1;
-            continue;
-        }
-        let effort = if quick { Effort::Quick } else { Effort::Full };
-        let report = in_pool(Some(1), || run_one(case, effort, stop))?;
-        if stop.load(Ordering::Relaxed) {
-            found.interrupted = true;
-            break;
-        }
-        let (levels, failed) = match &report.result {
-            Ok(findings) => (findings.iter().flat_map(|finding| levels(case, finding)).collect(), None),
-            Err(error) => (Vec::new(), Some(error.to_string())),
-        };
-        let (about, source) = (case.about.into(), case.source.into());
-        let record = CaseRecord { physics: REVISION, quick, case: case.name.into(), about, source, levels, failed };
-        let text = serde_json::to_string_pretty(&record).expect("a record holds nothing that JSON lacks");
-        write_whole(&path, &text)?;
-        found.records.push(kept(&path, case, quick).unwrap_or(record));
-        found.made += 1;
-    }
-    Ok(found)
-}
-
-/// The record of a case; one that is damaged, or of another revision of the physics, is none.
-fn kept(path: &Path, case: &Case, quick: bool) -> Option<CaseRecord> {
-    let record: CaseRecord = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
-    (record.physics == REVISION && record.case == case.name && record.quick == quick).then_some(record)
+    let build = build();
+    let kept_case = |case: &&'static verify::VerificationCase| {
+        // A case is code, scenes and options included, so another build may be another case.
+        let definition = format!("verification case {}, {effort:?}, build {build}", case.name);
+        KeptCase { case, effort, store, identity: Identity::new(definition, Some(1), false) }
+    };
+    let statuses = runner.run(&cases.iter().map(kept_case).collect::<Vec<_>>())?;
+    Ok(Verified {
+        name: name.into(),
+        cases: statuses.iter().filter_map(Status::output).cloned().collect(),
+        kept: statuses.iter().filter(|status| matches!(status, Status::Kept(_))).count(),
+        interrupted: statuses.iter().any(|status| matches!(status, Status::Interrupted)),
+    })
 }
 
 /// The levels of a finding: one for each resolution, or one alone.
-fn levels(case: &Case, finding: &Finding) -> Vec<Level> {
+fn levels(case: &verify::VerificationCase, finding: &Comparison) -> Vec<Level> {
     let finite = |value: f64| value.is_finite().then_some(value);
     let level = |axis: Option<&str>, resolution, error: f64, order, steps, wall_s| Level {
         case: case.name.into(),
@@ -162,54 +162,25 @@ fn levels(case: &Case, finding: &Finding) -> Vec<Level> {
 
 impl Verified {
     fn levels(&self) -> impl Iterator<Item = &Level> {
-        self.records.iter().flat_map(|record| &record.levels)
+        self.cases.iter().flat_map(|case| &case.levels)
     }
 
     /// The levels for people.
     pub fn table(&self) -> Table {
-        let heads = [
-            "case",
-            "quantity",
-            "resolution",
-            "run time [s]",
-            "steps",
-            "ms/step",
-            "error [%]",
-            "order [-]",
-            "theory [-]",
-        ];
-        let mut last = [String::new(), String::new()];
-        let rows = self.levels().map(|level| {
-            let names = [level.case.clone(), level.quantity.clone()];
-            let shown = if names == last { [String::new(), String::new()] } else { names.clone() };
-            last = names;
-            let number = |value: Option<f64>, decimals: usize| {
-                value.map_or(String::new(), |value| format!("{value:.decimals$}"))
-            };
-            let resolution =
-                level.resolution.zip(level.axis.as_ref()).map_or(String::new(), |(r, axis)| format!("{axis} = {r:.4}"));
-            let ms = (level.steps > 0).then(|| 1e3 * level.wall_s / level.steps as f64);
-            shown
-                .into_iter()
-                .chain([
-                    resolution,
-                    format!("{:.3}", level.wall_s),
-                    level.steps.to_string(),
-                    number(ms, 4),
-                    level.error_percent.map_or("not a number".into(), percent),
-                    number(level.order, 2),
-                    number(level.order_theory, 2),
-                ])
-                .collect()
-        });
-        let rows = rows.collect();
-        Table {
-            title: format!("{}: error against run time, closed forms as references", self.name),
-            heads: heads.iter().map(|head| head.to_string()).collect(),
-            rows,
-            default: None,
-            left: 2,
+        let levels: Vec<&Level> = self.levels().collect();
+        let mut table = column::table(
+            format!("{}: error against run time, closed forms as references", self.name),
+            &columns(),
+            &levels,
+            2,
+        );
+        // Case and quantity stand in the first of their rows.
+        for (k, pair) in levels.windows(2).enumerate().rev() {
+            if (&pair[0].case, &pair[0].quantity) == (&pair[1].case, &pair[1].quantity) {
+                table.rows[k + 1][..2].fill(String::new());
+            }
         }
+        table
     }
 
     /// Writes `accuracy.csv`, `accuracy.json` and, where something was varied, `accuracy.svg` and `accuracy.png`. Gives
@@ -219,18 +190,14 @@ impl Verified {
     /// When the folder cannot be written.
     pub fn write(&self, command: &str, folder: &Path) -> Result<Vec<PathBuf>> {
         let mut files = vec![folder.join("accuracy.csv"), folder.join("accuracy.json")];
-        let refuse = |e: csv::Error| Error::io("cannot write", folder, std::io::Error::other(e));
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        self.levels().try_for_each(|level| writer.serialize(level)).map_err(refuse)?;
-        let bytes = writer.into_inner().map_err(|e| Error::io("cannot write", folder, e.into_error()))?;
-        write_whole(&files[0], &bytes)?;
+        column::write_csv(&columns(), &self.levels().collect::<Vec<_>>(), &files[0])?;
         let document = serde_json::json!({
             "scene": self.name,
             "command": command,
             "physics": REVISION,
             "interrupted": self.interrupted,
             "reference": { "kind": "closed-form" },
-            "cases": self.records,
+            "cases": self.cases,
             "summary": self.summary(),
             "tables": [self.table()],
         });
@@ -238,10 +205,7 @@ impl Verified {
         write_whole(&files[1], &(text + "\n"))?;
         let figures = self.figures();
         if !figures.is_empty() {
-            for extension in ["svg", "png"] {
-                files.push(folder.join(format!("accuracy.{extension}")));
-                plot::write(&figures, 1, &folder.join(format!("accuracy.{extension}")))?;
-            }
+            files.extend(plot::write_pair(&figures, 1, folder, "accuracy")?);
         }
         Ok(files)
     }
@@ -249,7 +213,7 @@ impl Verified {
     /// What the cases are compared with, and what failed.
     pub fn summary(&self) -> String {
         let mut text = String::new();
-        for record in &self.records {
+        for record in &self.cases {
             text += &format!("{}: {}.\n  Reference: closed form, {}.\n", record.case, record.about, record.source);
             if let Some(cause) = &record.failed {
                 text += &format!("  FAILED: {cause}\n");
@@ -265,7 +229,7 @@ impl Verified {
             Figure::new(format!("{}: error against run time", self.name), Axis::log("run time [s]"), error());
         let title = format!("{}: order of convergence", self.name);
         let mut by_resolution = Figure::new(title, Axis::log("resolution [-]"), error());
-        for record in &self.records {
+        for record in &self.cases {
             let mut quantities: Vec<&str> = record.levels.iter().map(|level| level.quantity.as_str()).collect();
             quantities.dedup();
             for quantity in quantities {
@@ -295,6 +259,29 @@ impl Verified {
     }
 }
 
+/// The columns of a level, in files and for people.
+fn columns<'a>() -> Vec<Column<'static, &'a Level>> {
+    let resolution = |level: &&Level| match (level.resolution, &level.axis) {
+        (Some(resolution), Some(axis)) => format!("{axis} = {resolution:.4}"),
+        _ => String::new(),
+    };
+    vec![
+        Column::new("case", "case", "", 0, |level: &&'a Level| &*level.case),
+        Column::new("quantity", "quantity", "", 0, |level: &&'a Level| &*level.quantity),
+        Column::in_files("axis", |level: &&'a Level| level.axis.as_deref()),
+        Column::new("resolution", "resolution", "", 4, |level: &&'a Level| level.resolution).shown_as(resolution),
+        Column::new("wall_s", "run time", "s", 3, |level: &&'a Level| level.wall_s),
+        Column::new("steps", "steps", "", 0, |level: &&'a Level| level.steps),
+        Column::new("ms_per_step", "ms/step", "", 4, |level: &&'a Level| {
+            (level.steps > 0).then(|| 1e3 * level.wall_s / level.steps as f64)
+        }),
+        Column::new("error_percent", "error", "%", 4, |level: &&'a Level| level.error_percent)
+            .shown_as(|level: &&Level| level.error_percent.map_or("not a number".into(), percent)),
+        Column::new("order", "order", "-", 2, |level: &&'a Level| level.order),
+        Column::new("order_theory", "theory", "-", 2, |level: &&'a Level| level.order_theory),
+    ]
+}
+
 fn percent(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -319,16 +306,16 @@ mod tests {
     #[test]
     fn levels_show_the_order_of_convergence_and_are_kept() {
         let folder = tempfile::tempdir().unwrap();
-        let run = || {
-            let stop = AtomicBool::new(false);
-            study("cantilever-shared", &select("cantilever-shared"), true, folder.path(), false, &stop, &|_| {})
-                .unwrap()
-        };
+        let store = CaseStore::open(folder.path(), false).unwrap();
+        let stop = AtomicBool::new(false);
+        let runner = CaseRunner { jobs: 1, threads: Some(1), budget: None, stop: &stop, tell: &|_| {} };
+        let cases = select("cantilever-shared");
+        let run = || study("cantilever-shared", &cases, Effort::Quick, &store, &runner).unwrap();
         let first = run();
         let orders: Vec<f64> = first.levels().filter_map(|level| level.order).collect();
         assert!(orders.len() >= 2 && orders.iter().all(|order| (order - 1.0).abs() < 0.1), "{orders:?}");
         let second = run();
-        assert_eq!((first.made, second.made, second.kept), (1, 0, 1));
-        assert_eq!(first.records, second.records);
+        assert_eq!((first.kept, second.kept), (0, 1));
+        assert_eq!(first.cases, second.cases);
     }
 }

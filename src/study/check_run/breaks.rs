@@ -1,7 +1,7 @@
 //! What must hold of broken wires and bonds.
 
 use super::Invariant;
-use super::finding::{Outcome, Search};
+use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,7 +26,7 @@ pub const SILENT_WIRES: Invariant = Invariant {
     check: silent_wires,
 };
 
-fn counts(run: &Folder) -> Outcome {
+fn counts(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     let told = &run.trajectory.ruptures;
     let broken: BTreeSet<usize> = told.iter().map(|r| r.wire).collect();
@@ -47,7 +47,7 @@ fn counts(run: &Folder) -> Outcome {
     search.end(0.0, "-", "")
 }
 
-fn rows(run: &Folder) -> Outcome {
+fn rows(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     for row in 0..run.curve.rows.len() {
         let step = run.curve.number(row, "step");
@@ -61,7 +61,7 @@ fn rows(run: &Folder) -> Outcome {
     search.end(0.0, "-", "there are no rows")
 }
 
-fn silent_wires(run: &Folder) -> Outcome {
+fn silent_wires(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     let broken: BTreeMap<usize, u64> = run.trajectory.ruptures.iter().rev().map(|r| (r.bond, r.step)).collect();
     for w in 0..run.trajectory.info.wires.len() {

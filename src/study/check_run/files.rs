@@ -1,13 +1,24 @@
 //! What must be the same in several files.
 
 use super::Invariant;
-use super::finding::{Outcome, Search};
+use super::finding::{InvariantOutcome, Search};
 use super::folder::{CURVE as COLUMNS, Folder};
 use super::rows::layer_heads;
 use crate::engine::view::{Energy, Sample};
+use crate::run::identity;
 
 /// Numbers have nine digits.
 const DIGITS: f64 = 1e-8;
+
+pub const OWN: Invariant = Invariant {
+    name: "own-files",
+    about: "scene, summary, tables and trajectory are of one run, and as it wrote them",
+    check: |run| {
+        let mut search = Search::new();
+        search.add(run.doubts.len() as f64, || identity::list(&run.doubts));
+        search.end(0.0, "files", "")
+    },
+};
 
 pub const CURVE: Invariant = Invariant {
     name: "curve-trajectory",
@@ -83,7 +94,7 @@ fn values(row: &Sample) -> [f64; COLUMNS.len()] {
     ]
 }
 
-fn curve(run: &Folder) -> Outcome {
+fn curve(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     let samples = &run.trajectory.samples;
     search.same(run.curve.rows.len(), samples.len(), || "rows of curve.csv".into());
@@ -103,7 +114,7 @@ fn curve(run: &Folder) -> Outcome {
     search.end(0.0, "-", "")
 }
 
-fn layers(run: &Folder) -> Outcome {
+fn layers(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     let info = &run.trajectory.info;
     for sample in &run.trajectory.samples {
@@ -118,7 +129,7 @@ fn layers(run: &Folder) -> Outcome {
     search.end(1e-12, "-", "no stress of layers is measured")
 }
 
-fn wires(run: &Folder) -> Outcome {
+fn wires(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     let info = &run.trajectory.info;
     for row in 0..run.wires.rows.len().min(info.wires.len()) {
@@ -158,11 +169,11 @@ fn wires(run: &Folder) -> Outcome {
     search.end(DIGITS, "-", "there are no wires")
 }
 
-fn ruptures(run: &Folder) -> Outcome {
+fn ruptures(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     let told = &run.trajectory.ruptures;
     if told.is_empty() && run.ruptures.rows.is_empty() {
-        return Outcome::NotApplicable("nothing broke".into());
+        return InvariantOutcome::NotApplicable("nothing broke".into());
     }
     let info = &run.trajectory.info;
     search.same(run.ruptures.rows.len(), told.len(), || "rows of ruptures.csv".into());
@@ -188,7 +199,7 @@ fn ruptures(run: &Folder) -> Outcome {
     search.end(0.0, "-", "")
 }
 
-fn summary(run: &Folder) -> Outcome {
+fn summary(run: &Folder) -> InvariantOutcome {
     let (s, last) = (&run.summary, run.curve.rows.len() - usize::from(!run.curve.rows.is_empty()));
     let number = |head: &str| run.curve.number(last, head);
     let mut search = Search::new();
@@ -231,10 +242,10 @@ fn summary(run: &Folder) -> Outcome {
     search.end(0.0, "-", "")
 }
 
-fn strength(run: &Folder) -> Outcome {
+fn strength(run: &Folder) -> InvariantOutcome {
     let s = &run.summary;
     let Some(strength) = s.greatest_stress_mpa else {
-        return Outcome::NotApplicable("the summary gives no greatest stress".into());
+        return InvariantOutcome::NotApplicable("the summary gives no greatest stress".into());
     };
     let mut search = Search::new();
     for row in 0..run.curve.rows.len() {
@@ -257,11 +268,11 @@ fn strength(run: &Folder) -> Outcome {
 }
 
 #[cfg(feature = "record")]
-fn recording(run: &Folder) -> Outcome {
+fn recording(run: &Folder) -> InvariantOutcome {
     super::recording::check(run)
 }
 
 #[cfg(not(feature = "record"))]
-fn recording(_run: &Folder) -> Outcome {
-    Outcome::NotApplicable("this program was built without recordings".into())
+fn recording(_run: &Folder) -> InvariantOutcome {
+    InvariantOutcome::NotApplicable("this program was built without recordings".into())
 }

@@ -2,18 +2,18 @@
 
 /// Whether an invariant holds.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum InvariantOutcome {
     /// It holds for everything that was looked at.
-    Passed(Seen),
+    Passed(Deviation),
     /// It does not.
-    Failed(Seen),
+    Failed(Deviation),
     /// The run has nothing that it speaks of; why.
     NotApplicable(String),
 }
 
 /// What was looked at.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct Deviation {
     /// How many values.
     pub values: usize,
     /// The one that is furthest off, in `unit`; NaN when one is not a number.
@@ -72,13 +72,13 @@ impl Search {
 
     /// Passed when nothing is further off than `allowed`, in `unit`; not applicable, for the reason `nothing`, when nothing
     /// was seen.
-    pub fn end(self, allowed: f64, unit: &'static str, nothing: &str) -> Outcome {
+    pub fn end(self, allowed: f64, unit: &'static str, nothing: &str) -> InvariantOutcome {
         if self.values == 0 {
-            return Outcome::NotApplicable(nothing.into());
+            return InvariantOutcome::NotApplicable(nothing.into());
         }
         let holds = self.worst <= allowed;
-        let seen = Seen { values: self.values, worst: self.worst, allowed, unit, place: self.place };
-        if holds { Outcome::Passed(seen) } else { Outcome::Failed(seen) }
+        let seen = Deviation { values: self.values, worst: self.worst, allowed, unit, place: self.place };
+        if holds { InvariantOutcome::Passed(seen) } else { InvariantOutcome::Failed(seen) }
     }
 }
 
@@ -86,7 +86,7 @@ impl Search {
 mod tests {
     use super::*;
 
-    fn end(values: &[f64]) -> Outcome {
+    fn end(values: &[f64]) -> InvariantOutcome {
         let mut search = Search::new();
         values.iter().for_each(|v| search.add(*v, || format!("at {v}")));
         search.end(1.0, "-", "nothing")
@@ -94,21 +94,21 @@ mod tests {
 
     #[test]
     fn the_furthest_decides_and_a_nan_is_furthest() {
-        assert!(matches!(end(&[0.5, 1.0, 0.2]), Outcome::Passed(Seen { values: 3, .. })));
-        let Outcome::Failed(seen) = end(&[0.5, 1.5, 0.2]) else { panic!() };
+        assert!(matches!(end(&[0.5, 1.0, 0.2]), InvariantOutcome::Passed(Deviation { values: 3, .. })));
+        let InvariantOutcome::Failed(seen) = end(&[0.5, 1.5, 0.2]) else { panic!() };
         assert_eq!((seen.worst, seen.place.as_str()), (1.5, "at 1.5"));
-        let Outcome::Failed(seen) = end(&[0.5, f64::NAN, 7.0]) else { panic!() };
+        let InvariantOutcome::Failed(seen) = end(&[0.5, f64::NAN, 7.0]) else { panic!() };
         assert!(seen.worst.is_nan() && seen.place == "at NaN");
-        assert_eq!(end(&[]), Outcome::NotApplicable("nothing".into()));
+        assert_eq!(end(&[]), InvariantOutcome::NotApplicable("nothing".into()));
     }
 
     #[test]
     fn equal_infinities_and_zeros_need_no_scale() {
         let mut search = Search::new();
         search.compare(0.0, 0.0, 0.0, String::new);
-        assert!(matches!(search.end(0.0, "-", ""), Outcome::Passed(_)));
+        assert!(matches!(search.end(0.0, "-", ""), InvariantOutcome::Passed(_)));
         let mut search = Search::new();
         search.compare(f64::NAN, 1.0, 1.0, String::new);
-        assert!(matches!(search.end(1.0, "-", ""), Outcome::Failed(_)));
+        assert!(matches!(search.end(1.0, "-", ""), InvariantOutcome::Failed(_)));
     }
 }

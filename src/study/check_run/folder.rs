@@ -5,11 +5,13 @@ use super::law::Limits;
 use super::tables::Table;
 use crate::base::error::{Error, Result};
 use crate::base::finding::Notice;
+use crate::base::regular;
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::trajectory::{Record, Trajectory};
 use crate::observe::{partial, tables};
 use crate::run::RunSummary;
 use crate::run::folder::{SCENE, SUMMARY, TRAJECTORY};
+use crate::run::identity::{self, Doubt};
 use crate::scene::spec::Spec;
 use crate::strand::theory::Theory;
 use std::collections::{BTreeMap, BTreeSet};
@@ -72,6 +74,8 @@ const RUPTURES: [&str; 12] = [
 pub struct Folder {
     /// The folder.
     pub path: PathBuf,
+    /// What says that its files are not of one run.
+    pub doubts: Vec<Doubt>,
     /// The scene.
     pub spec: Spec,
     /// Strand theory of its bodies, whatever loads them.
@@ -124,7 +128,7 @@ impl Folder {
     /// run; [`Error::Io`] when the file system refuses.
     pub fn read(run: &Path) -> Result<Self> {
         check_files(run)?;
-        let text = |name: &str| read_text(&run.join(name));
+        let text = |name: &str| regular::text(&run.join(name), regular::LONGEST_TABLE);
         let spec = crate::scene::parse(&text(SCENE)?, SCENE, run, &[])?.spec;
         let summary: RunSummary = serde_json::from_str(&text(SUMMARY)?).map_err(|e| {
             Error::input(
@@ -136,6 +140,7 @@ impl Folder {
         let (trajectory, snapshots) = told(&run.join(TRAJECTORY), &spec)?;
         Ok(Self {
             path: run.into(),
+            doubts: identity::doubts(run)?,
             theory: Theory::of(&spec),
             summary,
             curve: Table::read(run, curve, &CURVE)?,
@@ -201,15 +206,6 @@ fn check_files(run: &Path) -> Result<()> {
         return Ok(());
     }
     Err(Error::input(format!("{} holds no {}", run.display(), missing.join(", no ")), give))
-}
-
-fn read_text(path: &Path) -> Result<String> {
-    match std::fs::read_to_string(path) {
-        Err(e) if e.kind() == std::io::ErrorKind::InvalidData => {
-            Err(Error::input(format!("{} is damaged: it is not text", path.display()), "run the scene again"))
-        }
-        other => other.map_err(|e| Error::io("cannot read", path, e)),
-    }
 }
 
 fn told(path: &Path, spec: &Spec) -> Result<(Told, Snapshots)> {

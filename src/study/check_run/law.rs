@@ -1,6 +1,6 @@
 //! No bond above its law.
 
-use super::finding::{Outcome, Search};
+use super::finding::{InvariantOutcome, Search};
 use super::folder::{Folder, bond};
 use super::{Invariant, rows};
 use crate::base::random::uniform;
@@ -132,10 +132,10 @@ impl Limits {
     }
 }
 
-fn wires(run: &Folder) -> Outcome {
+fn wires(run: &Folder) -> InvariantOutcome {
     let info = &run.trajectory.info;
     let Some(limit) = Limits::new(&run.spec, info).wire(info.wire_particles) else {
-        return Outcome::NotApplicable("bonds of this scene have no limit".into());
+        return InvariantOutcome::NotApplicable("bonds of this scene have no limit".into());
     };
     let mut search = Search::new();
     let mut add = |stress: f64, place: &dyn Fn() -> String| {
@@ -164,7 +164,7 @@ fn wires(run: &Folder) -> Outcome {
     search.end(1e-3, "-", "no stress of wires is measured")
 }
 
-fn ruptures(run: &Folder) -> Outcome {
+fn ruptures(run: &Folder) -> InvariantOutcome {
     let info = &run.trajectory.info;
     let limits = Limits::new(&run.spec, info);
     let mut search = run.snapshots.rupture.clone();

@@ -1,7 +1,7 @@
 //! What physics asks of a run.
 
 use super::Invariant;
-use super::finding::{Outcome, Search};
+use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use super::rows::free_length;
 use crate::base::finding::FindingKind;
@@ -42,8 +42,8 @@ const SMOOTHED: f64 = 0.3;
 /// Σ N cos β′ over the wires against the mean of the two grips' forces, β′ the lay angle of a strand that keeps its volume.
 /// Wires are measured at mid-gauge and grips at the ends, through a filter of a fraction of a wave's passage, so a force may
 /// be what it changes by in one passage beside.
-fn grips(run: &Folder) -> Outcome {
-    let not = |why: &str| Outcome::NotApplicable(why.into());
+fn grips(run: &Folder) -> InvariantOutcome {
+    let not = |why: &str| InvariantOutcome::NotApplicable(why.into());
     let Some(grip) = run.spec.grip.as_ref().filter(|grip| grip.kind == GripKind::All) else {
         return not("no grips hold every wire");
     };
@@ -100,8 +100,8 @@ fn grips(run: &Folder) -> Outcome {
 /// ∫ F du + ∫ M dφ of the driven grip by the trapezoid rule on all rows; the rule on every other row tells how well that
 /// can be known. Forces of rows are smoothed over a quarter of a wave's passage, so what the greatest force does in
 /// [`SMOOTHED`] may be missing.
-fn work(run: &Folder) -> Outcome {
-    let not = |why: &str| Outcome::NotApplicable(why.into());
+fn work(run: &Folder) -> InvariantOutcome {
+    let not = |why: &str| InvariantOutcome::NotApplicable(why.into());
     let Some(grip) = run.spec.grip.as_ref().filter(|grip| grip.kind == GripKind::All) else {
         return not("no grips hold every wire, or clamps do work too");
     };
@@ -161,7 +161,7 @@ fn negligible(run: &Folder) -> f64 {
     0.5 * run.spec.material.young * 1e-18 * volume
 }
 
-fn ledger(run: &Folder) -> Outcome {
+fn ledger(run: &Folder) -> InvariantOutcome {
     let terms = [
         "kinetic_j",
         "elastic_bonds_j",
@@ -208,7 +208,7 @@ fn measured(run: &Folder) -> Option<Stiffness> {
     stiffness::measure(&rows, &run.spec)
 }
 
-fn initial_stiffness(run: &Folder) -> Outcome {
+fn initial_stiffness(run: &Folder) -> InvariantOutcome {
     let (Some(found), Some(told)) = (measured(run), &run.summary.stiffness) else {
         let both = measured(run).is_some() == run.summary.stiffness.is_some();
         let mut search = Search::new();
@@ -229,19 +229,19 @@ fn initial_stiffness(run: &Folder) -> Outcome {
     search.end(1e-5, "-", "")
 }
 
-fn strand_theory(run: &Folder) -> Outcome {
+fn strand_theory(run: &Folder) -> InvariantOutcome {
     let Some(found) = measured(run) else {
-        return Outcome::NotApplicable("this is no pull that strand theory speaks of".into());
+        return InvariantOutcome::NotApplicable("this is no pull that strand theory speaks of".into());
     };
     let [from, to] = found.window_percent;
     let Some(deviation) = found.deviation_percent else {
         let why = found.not_measured.map_or("", |why| why.word());
-        return Outcome::NotApplicable(format!("{why} (window {from:.3} to {to:.3} %)"));
+        return InvariantOutcome::NotApplicable(format!("{why} (window {from:.3} to {to:.3} %)"));
     };
     let said = run.summary.findings.iter().any(|found| found.finding.kind() == FindingKind::Stiffness);
     let spheres = run.spec.contact.as_ref().is_some_and(|c| c.shape == Shape::Sphere);
     if spheres && said && deviation < 0.0 {
-        return Outcome::NotApplicable(format!(
+        return InvariantOutcome::NotApplicable(format!(
             "touching spheres are softer than smooth wires: {deviation:.1} %, which the summary says"
         ));
     }

@@ -16,7 +16,7 @@ pub mod report;
 mod rows;
 mod tables;
 
-pub use finding::{Outcome, Seen};
+pub use finding::{Deviation, InvariantOutcome};
 pub use folder::Folder;
 
 use crate::base::error::Result;
@@ -29,7 +29,7 @@ pub struct Invariant {
     /// What it says, in one line.
     pub about: &'static str,
     /// Looks whether it does.
-    pub check: fn(&Folder) -> Outcome,
+    pub check: fn(&Folder) -> InvariantOutcome,
 }
 
 /// All invariants, by kind.
@@ -42,6 +42,7 @@ pub const INVARIANTS: &[Invariant] = &[
     rows::PULL,
     rows::FORCE,
     // One file against another
+    files::OWN,
     files::CURVE,
     files::SNAPSHOTS,
     files::LAYERS,
@@ -68,18 +69,18 @@ pub const INVARIANTS: &[Invariant] = &[
 ];
 
 /// An invariant, and what became of it.
-pub struct Finding {
+pub struct InvariantCheck {
     /// The invariant.
     pub invariant: &'static Invariant,
     /// Whether it holds.
-    pub outcome: Outcome,
+    pub outcome: InvariantOutcome,
 }
 
 /// Checks the run in the folder `run`.
 ///
 /// # Errors
 /// [`crate::base::error::Error::Input`] when it is no folder of a whole run, or a file in it cannot be understood.
-pub fn check(run: &Path) -> Result<Vec<Finding>> {
+pub fn check(run: &Path) -> Result<Vec<InvariantCheck>> {
     let folder = Folder::read(run)?;
-    Ok(INVARIANTS.iter().map(|invariant| Finding { invariant, outcome: (invariant.check)(&folder) }).collect())
+    Ok(INVARIANTS.iter().map(|invariant| InvariantCheck { invariant, outcome: (invariant.check)(&folder) }).collect())
 }

@@ -1,8 +1,9 @@
 //! The page of a run, if there is one: its charts against the trajectory.
 
 use super::Invariant;
-use super::finding::{Outcome, Search};
+use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
+use crate::base::regular;
 use crate::engine::view::Sample;
 use crate::run::folder::REPORT;
 use base64::Engine;
@@ -16,17 +17,17 @@ pub const PAGE: Invariant = Invariant {
     check: page,
 };
 
-fn page(run: &Folder) -> Outcome {
+fn page(run: &Folder) -> InvariantOutcome {
     let path = run.path.join(REPORT);
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-            return Outcome::NotApplicable(format!("there is no {REPORT}; `strandsnap report` makes it"));
+    let text = match regular::text_if_there(&path, regular::LONGEST_TABLE) {
+        Ok(Some(text)) => text,
+        Ok(None) => {
+            return InvariantOutcome::NotApplicable(format!("there is no {REPORT}; `strandsnap report` makes it"));
         }
-        Err(e) => return failed(format!("{REPORT} cannot be read: {e}")),
+        Err(e) => return failed(e.to_string()),
     };
     if !run.trajectory.info.is_pulled() {
-        return Outcome::NotApplicable("the body is not pulled".into());
+        return InvariantOutcome::NotApplicable("the body is not pulled".into());
     }
     let mut search = Search::new();
     let rows = Rows::new(&run.trajectory.samples);
@@ -36,7 +37,7 @@ fn page(run: &Folder) -> Outcome {
     search.end(0.0, "-", "the page has no charts")
 }
 
-fn failed(what: String) -> Outcome {
+fn failed(what: String) -> InvariantOutcome {
     let mut search = Search::new();
     search.add(f64::NAN, || what);
     search.end(0.0, "-", "")

@@ -1,6 +1,6 @@
 //! The recording of a run, if there is one, against its trajectory.
 
-use super::finding::{Outcome, Search};
+use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use crate::engine::view::{BondState, Sample, WireInfo};
 use crate::observe::recording::STRESS;
@@ -8,10 +8,10 @@ use crate::observe::recording::read::{RecordingContents, contents, paths};
 use crate::run::folder::RECORDING;
 
 /// See [`super::files::RECORDING`].
-pub fn check(run: &Folder) -> Outcome {
+pub fn check(run: &Folder) -> InvariantOutcome {
     let path = run.path.join(RECORDING);
     if !path.exists() {
-        return Outcome::NotApplicable(format!("there is no {RECORDING}"));
+        return InvariantOutcome::NotApplicable(format!("there is no {RECORDING}"));
     }
     let mut search = Search::new();
     match contents(&path) {

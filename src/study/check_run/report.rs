@@ -1,95 +1,74 @@
 //! What a check of a run found, as a table for people and as JSON for programs.
 
-use super::{Finding, Outcome, Seen};
-use crate::study::table::Table;
-use serde::Serialize;
+use super::{Deviation, InvariantCheck, InvariantOutcome};
+use crate::study::column::{self, Column, Value};
 
-/// One finding in JSON. Numbers that are not finite are null.
-#[derive(Serialize)]
-struct Row<'a> {
-    invariant: &'a str,
-    about: &'a str,
-    /// `passed`, `failed` or `not-applicable`.
-    outcome: &'a str,
-    values: Option<usize>,
-    worst: Option<f64>,
-    allowed: Option<f64>,
-    unit: Option<&'a str>,
-    place: Option<&'a str>,
-    why: Option<&'a str>,
-}
-
-impl Finding {
+impl InvariantCheck {
     /// Whether it speaks against the run.
     pub fn failed(&self) -> bool {
-        matches!(self.outcome, Outcome::Failed(_))
+        matches!(self.outcome, InvariantOutcome::Failed(_))
     }
 
     fn word(&self) -> &'static str {
         match self.outcome {
-            Outcome::Passed(_) => "passed",
-            Outcome::Failed(_) => "failed",
-            Outcome::NotApplicable(_) => "not-applicable",
+            InvariantOutcome::Passed(_) => "passed",
+            InvariantOutcome::Failed(_) => "failed",
+            InvariantOutcome::NotApplicable(_) => "not-applicable",
         }
     }
 
-    fn row(&self) -> Row<'_> {
-        let (seen, why) = match &self.outcome {
-            Outcome::Passed(seen) | Outcome::Failed(seen) => (Some(seen), None),
-            Outcome::NotApplicable(why) => (None, Some(why.as_str())),
-        };
-        let finite = |value: f64| value.is_finite().then_some(value);
-        Row {
-            invariant: self.invariant.name,
-            about: self.invariant.about,
-            outcome: self.word(),
-            values: seen.map(|s| s.values),
-            worst: seen.and_then(|s| finite(s.worst)),
-            allowed: seen.and_then(|s| finite(s.allowed)),
-            unit: seen.map(|s| s.unit),
-            place: seen.map(|s| s.place.as_str()),
-            why,
+    fn deviation(&self) -> Option<&Deviation> {
+        match &self.outcome {
+            InvariantOutcome::Passed(seen) | InvariantOutcome::Failed(seen) => Some(seen),
+            InvariantOutcome::NotApplicable(_) => None,
         }
     }
+
+    fn why(&self) -> Option<String> {
+        match &self.outcome {
+            InvariantOutcome::NotApplicable(why) => Some(why.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// The columns of a check, in JSON and for people. Numbers that are not finite are null.
+fn columns() -> [Column<'static, InvariantCheck>; 9] {
+    fn of<V: Into<Value> + 'static>(of: fn(&Deviation) -> V) -> impl Fn(&InvariantCheck) -> Value {
+        move |check: &InvariantCheck| check.deviation().map_or(Value::Missing, |seen| of(seen).into())
+    }
+    [
+        Column::new("invariant", "invariant", "", 0, |check: &InvariantCheck| check.invariant.name),
+        Column::in_files("about", |check: &InvariantCheck| check.invariant.about),
+        Column::new("outcome", "outcome", "", 0, |check: &InvariantCheck| check.word()),
+        Column::new("values", "values", "", 0, of(|seen| seen.values)),
+        Column::new("worst", "furthest off", "", 0, of(|seen| seen.worst))
+            .shown_as(|check| check.deviation().map_or(String::new(), |seen| number(seen.worst, seen))),
+        Column::new("allowed", "allowed", "", 0, of(|seen| seen.allowed))
+            .shown_as(|check| check.deviation().map_or(String::new(), |seen| number(seen.allowed, seen))),
+        Column::in_files("unit", of(|seen| seen.unit)),
+        Column::in_files("place", of(|seen| seen.place.clone())),
+        Column::new("why", "note", "", 0, InvariantCheck::why),
+    ]
 }
 
 /// The findings as a list of JSON objects.
-///
-/// # Panics
-/// Never: the rows hold nothing that JSON lacks.
-pub fn json(findings: &[Finding]) -> String {
-    let rows: Vec<Row> = findings.iter().map(Finding::row).collect();
-    serde_json::to_string_pretty(&rows).expect("plain rows") + "\n"
+pub fn json(findings: &[InvariantCheck]) -> String {
+    column::json(&columns(), findings)
 }
 
 /// The findings for people; below them, what failed in full.
-pub fn text(findings: &[Finding]) -> String {
-    let cells = |finding: &Finding| {
-        let numbers = match &finding.outcome {
-            Outcome::Passed(seen) | Outcome::Failed(seen) => {
-                [seen.values.to_string(), number(seen.worst, seen), number(seen.allowed, seen), String::new()]
-            }
-            Outcome::NotApplicable(why) => [String::new(), String::new(), String::new(), why.clone()],
-        };
-        [vec![finding.invariant.name.to_owned(), finding.word().to_owned()], numbers.to_vec()].concat()
-    };
-    let table = Table {
-        title: "Invariants of the run".into(),
-        heads: ["invariant", "outcome", "values", "furthest off", "allowed", "note"].map(String::from).to_vec(),
-        rows: findings.iter().map(cells).collect(),
-        default: None,
-        left: 2,
-    };
-    let mut text = table.to_text();
+pub fn text(findings: &[InvariantCheck]) -> String {
+    let mut text = column::table("Invariants of the run".into(), &columns(), findings, 2).to_text();
     for finding in findings {
-        if let Outcome::Failed(seen) = &finding.outcome {
+        if let InvariantOutcome::Failed(seen) = &finding.outcome {
             text += &format!("\nFAILED {}: {}\n  {}\n", finding.invariant.name, finding.invariant.about, seen.place);
         }
     }
     text
 }
 
-fn number(value: f64, seen: &Seen) -> String {
+fn number(value: f64, seen: &Deviation) -> String {
     let unit = if seen.unit == "-" { String::new() } else { format!(" {}", seen.unit) };
     if value == 0.0 { format!("0{unit}") } else { format!("{value:.2e}{unit}") }
 }

@@ -1,7 +1,7 @@
 //! What must hold of the rows of the tables by themselves.
 
 use super::Invariant;
-use super::finding::{Outcome, Search};
+use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use crate::engine::measure::MEAN_LAG;
 use crate::scene::spec::DriveSpec;
@@ -23,7 +23,7 @@ pub const STRAIN: Invariant =
 
 pub const PULL: Invariant = Invariant {
     name: "strain-unit",
-    about: "strain in per cent is the grip's way over the gauge length, before the pull gets faster",
+    about: "strain in per cent is the grip's way over the free length, the gauge but for a particle, before the pull gets faster",
     check: pull,
 };
 
@@ -38,7 +38,7 @@ pub fn layer_heads(run: &Folder) -> Vec<String> {
     run.trajectory.info.layers.iter().map(|name| format!("stress_{}_mpa", name.replace(' ', "_"))).collect()
 }
 
-fn finite(run: &Folder) -> Outcome {
+fn finite(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     for table in [&run.curve, &run.wires, &run.ruptures] {
         for (value, line, head) in table.numbers() {
@@ -49,7 +49,7 @@ fn finite(run: &Folder) -> Outcome {
     search.end(0.0, "-", "the tables are empty")
 }
 
-fn time(run: &Folder) -> Outcome {
+fn time(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
     let mut rising = |table: &super::tables::Table, head: &str, strictly: bool| {
         for row in 1..table.rows.len() {
@@ -68,7 +68,7 @@ fn time(run: &Folder) -> Outcome {
     search.end(0.0, "-", "there is one row")
 }
 
-fn time_step(run: &Folder) -> Outcome {
+fn time_step(run: &Folder) -> InvariantOutcome {
     let limits = &run.summary.limits;
     let (least, greatest) = (limits.least_time_step.seconds, limits.greatest_time_step.seconds);
     let mut search = Search::new();
@@ -93,9 +93,9 @@ fn speed(run: &Folder) -> Option<f64> {
     }
 }
 
-fn strain(run: &Folder) -> Outcome {
+fn strain(run: &Folder) -> InvariantOutcome {
     let Some(speed) = speed(run) else {
-        return Outcome::NotApplicable("no grip moves one way".into());
+        return InvariantOutcome::NotApplicable("no grip moves one way".into());
     };
     let mut search = Search::new();
     for row in 1..run.curve.rows.len() {
@@ -120,9 +120,9 @@ pub fn free_length(run: &Folder) -> Option<f64> {
     (strain != 0.0).then(|| speed * (time - lag) / strain)
 }
 
-fn pull(run: &Folder) -> Outcome {
+fn pull(run: &Folder) -> InvariantOutcome {
     let (Some(free), Some([low, high])) = (free_length(run), run.trajectory.info.gauge) else {
-        return Outcome::NotApplicable("no grip moves at a constant speed".into());
+        return InvariantOutcome::NotApplicable("no grip moves at a constant speed".into());
     };
     let gauge = high - low;
     // Grips hold whole particles: the free length ends at the first and last free bond.
@@ -134,10 +134,10 @@ fn pull(run: &Folder) -> Outcome {
     search.end(2e3 * spacing, "mm", "")
 }
 
-fn force(run: &Folder) -> Outcome {
+fn force(run: &Folder) -> InvariantOutcome {
     let area = run.area();
     if !run.is_gripped() || area == 0.0 {
-        return Outcome::NotApplicable("no grips hold this body".into());
+        return InvariantOutcome::NotApplicable("no grips hold this body".into());
     }
     let mut search = Search::new();
     for row in 0..run.curve.rows.len() {

@@ -1,6 +1,7 @@
 //! The three tables of a run as numbers and words.
 
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use std::path::Path;
 
 /// A table with named columns.
@@ -21,7 +22,7 @@ impl Table {
     /// [`Error::Input`] when it is no table, or lacks one of the columns `needed`; [`Error::Io`] when it cannot be read.
     pub fn read(folder: &Path, name: &'static str, needed: &[&str]) -> Result<Self> {
         let path = folder.join(name);
-        let text = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
+        let text = regular::read(&path, regular::LONGEST_TABLE)?;
         let damaged = |what: String| {
             Error::input(format!("{} is damaged: {what}", path.display()), "run the scene again into an empty folder")
         };

@@ -15,7 +15,7 @@ pub struct CrossValidation {
 /// A model through the points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Compared {
-    /// Which.
+    /// The formula that was fitted.
     pub model: Model,
     /// Its curve, or why there is none.
     pub fit: Result<Fit, FitError>,
@@ -25,7 +25,7 @@ pub struct Compared {
 
 /// All models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct ModelComparison {
     /// The points (x, y).
     pub points: Vec<[f64; 2]>,
     /// Each model, the simplest first.
@@ -34,7 +34,7 @@ pub struct Comparison {
     pub best: Option<Model>,
 }
 
-impl Comparison {
+impl ModelComparison {
     /// A model of it.
     pub fn model(&self, model: Model) -> &Compared {
         self.models.iter().find(|compared| compared.model == model).expect("all models are compared")
@@ -42,11 +42,11 @@ impl Comparison {
 }
 
 /// Fits all models to points (x, y) and cross-validates them.
-pub fn compare(points: &[[f64; 2]]) -> Comparison {
+pub fn compare(points: &[[f64; 2]]) -> ModelComparison {
     let one = |model| Compared { model, fit: fit(model, points), cross_validation: cross_validate(model, points) };
     let models: Vec<Compared> = Model::ALL.into_iter().map(one).collect();
     let best = best(models.iter().filter_map(|one| Some((one.model, one.cross_validation.as_ref().ok()?.mean))));
-    Comparison { points: points.to_vec(), best, models }
+    ModelComparison { points: points.to_vec(), best, models }
 }
 
 /// The model of least mean squared error, the first one of equals; one whose error is no number is not in the running.

@@ -5,9 +5,9 @@ mod comparison;
 mod exponential;
 mod polynomial;
 
-pub use comparison::{Compared, Comparison, CrossValidation, compare};
+pub use comparison::{Compared, CrossValidation, ModelComparison, compare};
 
-use crate::study::cases::stat::t_95;
+use crate::study::statistics::t_95;
 use nalgebra::{DMatrix, DVector};
 use serde::{Serialize, Serializer};
 
@@ -120,7 +120,7 @@ impl Serialize for FitError {
 /// A curve through points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
-    /// Which.
+    /// The formula that was fitted.
     pub model: Model,
     /// Its parameters, in the units of y and of 1 over x.
     pub parameters: Vec<f64>,

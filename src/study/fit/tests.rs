@@ -1,5 +1,5 @@
 use super::*;
-use crate::reference::paper::paper;
+use crate::reference::published::{CALIBRATED_ON, ExponentialFit, Published, find};
 
 fn on_curve(parameters: [f64; 3], xs: &[f64]) -> Vec<[f64; 2]> {
     xs.iter().map(|x| [*x, Model::Exponential.value(&parameters, *x)]).collect()
@@ -11,6 +11,14 @@ fn even(from: f64, to: f64, count: usize) -> Vec<f64> {
 
 fn squares(points: &[[f64; 2]], value: impl Fn(f64) -> f64) -> f64 {
     points.iter().map(|[x, y]| (y - value(*x)).powi(2)).sum()
+}
+
+fn paper() -> &'static Published {
+    find(CALIBRATED_ON).unwrap()
+}
+
+fn printed(key: &str) -> &'static ExponentialFit {
+    paper().fit_over(key, "mm", "elongation").unwrap()
 }
 
 /// The paper's simulations over pitch, at wires of 0.39 mm.
@@ -47,7 +55,7 @@ fn points_of_a_known_curve_come_back() {
 /// one does; and at them the two cannot be further apart than both residuals together.
 #[test]
 fn the_papers_points_over_pitch_land_on_its_curve() {
-    let (points, printed) = (over_pitch(), paper().fit.elongation_over_pitch);
+    let (points, printed) = (over_pitch(), printed("strand.pitch"));
     assert_eq!(points.len(), 4);
     let found = fit(Model::Exponential, &points).unwrap();
     let [ours, theirs] = [squares(&points, |x| found.value(x)), squares(&points, |x| printed.value(x))];
@@ -72,7 +80,7 @@ fn three_points_are_met_exactly_and_have_no_errors() {
     let compared = compare(&over_diameter());
     assert_eq!(compared.model(Model::Exponential).cross_validation, Err(FitError::TooFew { have: 2, need: 3 }));
     // The printed curve was fitted to four points more: its rate is of the same size and sign.
-    let printed = paper().fit.elongation_over_diameter;
+    let printed = printed("strand.wire_diameter");
     assert!(found.parameters[1] > 0.0 && (found.parameters[1] / printed.b - 1.0).abs() < 0.5, "{found:?}");
 }
 

@@ -2,7 +2,7 @@
 //! variance (Montgomery, *Design and Analysis of Experiments*, 8th ed. 2013, chapters 3, 5 and 10).
 
 use super::model::Model;
-use crate::study::cases::stat::t_95;
+use crate::study::statistics::t_95;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
@@ -49,7 +49,7 @@ impl Estimate {
 /// A level, averaged over all levels of the other factors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LevelMean {
-    /// Which.
+    /// Number of the level whose mean this is.
     pub level: usize,
     /// Mean over the grid.
     pub mean: Estimate,
@@ -60,7 +60,7 @@ pub struct LevelMean {
 /// What a factor does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Factor {
-    /// Which.
+    /// Number of the factor in the design.
     pub factor: usize,
     /// Its levels.
     pub levels: Vec<LevelMean>,

@@ -30,7 +30,7 @@ pub enum Expect {
 /// How a case is run.
 #[derive(Debug, Clone)]
 pub enum Kind {
-    /// Once, to its end.
+    /// One run to its end.
     Run,
     /// Many times with fixed steps, to find the greatest one that holds.
     Critical(Critical),
@@ -38,7 +38,7 @@ pub enum Kind {
 
 /// One row of the matrix.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct StabilityCase {
     /// Name, by which it can be asked for.
     pub name: String,
     /// What is extreme about it, in a few words.
@@ -70,7 +70,7 @@ const RESIDUAL: f64 = 0.01;
 /// Wall time after which a run counts as hung (s); the longest case takes about a minute on a core of its own.
 const PATIENCE: f64 = 400.0;
 
-impl Case {
+impl StabilityCase {
     /// A run of `base` that must be stable.
     pub fn new(name: impl Into<String>, about: impl Into<String>, base: Base) -> Self {
         Self {
@@ -143,16 +143,15 @@ impl Case {
         self
     }
 
-    /// Reads the scene with the case's options and `more`.
+    /// Reads the scene with the case's options.
     ///
     /// # Errors
     /// What [`scene::load`] refuses.
-    pub fn scene(&self, quick: bool, more: &[String]) -> Result<Scene> {
+    pub fn scene(&self, quick: bool) -> Result<Scene> {
         let mut options = self.set.clone();
         if quick {
             options.extend_from_slice(&self.quick);
         }
-        options.extend_from_slice(more);
         match self.base {
             Base::Builtin(name) => scene::load(name, &options),
             Base::Text(text) => scene::parse(text, &format!("{}.toml", self.name), Path::new("."), &options),

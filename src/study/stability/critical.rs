@@ -4,10 +4,10 @@
 //! bound: a run may be unstable without exploding, because plastic flow, friction and damping swallow what a wrong step
 //! feeds in. The prediction is the least bound that the engine gives during a run that follows it.
 
-use super::case::Case;
-use super::measure::{Accept, Answer, Seen};
+use super::case::StabilityCase;
+use super::measure::{Accept, Answer, CompletedRun};
 use super::outcome::Ended;
-use super::run::{Leash, watch};
+use super::run::{RunControl, watch};
 use crate::base::error::{Error, Result};
 use crate::engine::view::Sample;
 
@@ -36,11 +36,12 @@ impl Critical {
 ///
 /// # Errors
 /// What the scene or the engine refuse; a run at half of the bound that does not hold.
-pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> Result<Ended> {
-    let bound = least_bound(case, quick, leash)?;
+pub fn search(case: &StabilityCase, critical: &Critical, quick: bool, control: &RunControl) -> Result<Ended> {
+    let bound = least_bound(case, quick, control)?;
     let run = |step: f64| -> Result<f64> {
-        let scene = case.scene(quick, &[format!("time.step={step:e} s")])?;
-        watch(&scene, leash).map(|seen| energy(&seen))
+        let mut scene = case.scene(quick)?;
+        scene.spec.time.step = Some(step);
+        watch(&scene, control).map(|seen| energy(&seen))
     };
     let reference = run(0.5 * bound)?;
     let holds = |step: f64| -> Result<bool> {
@@ -80,12 +81,12 @@ pub fn search(case: &Case, critical: &Critical, quick: bool, leash: &Leash) -> R
 }
 
 /// The least bound on the step during a run that follows it (s).
-fn least_bound(case: &Case, quick: bool, leash: &Leash) -> Result<f64> {
-    watch(&case.scene(quick, &[])?, leash).map(|seen| seen.least_bound)
+fn least_bound(case: &StabilityCase, quick: bool, control: &RunControl) -> Result<f64> {
+    watch(&case.scene(quick)?, control).map(|seen| seen.least_bound)
 }
 
 /// Greatest energy stored, moving or swallowed over the run (J).
-fn energy(seen: &Seen) -> f64 {
+fn energy(seen: &CompletedRun) -> f64 {
     let of = |row: &Sample| row.energy.internal().abs().max(row.energy.kinetic.abs());
     seen.rows.iter().map(of).fold(0.0, f64::max)
 }

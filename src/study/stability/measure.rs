@@ -19,7 +19,7 @@ use std::ops::Range;
 const TRACKED: usize = 32;
 
 /// A number that a case must give.
-pub type Check = fn(&Seen) -> Answer;
+pub type Check = fn(&CompletedRun) -> Answer;
 
 /// How near a number must come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,7 +75,7 @@ impl Answer {
 }
 
 /// A run that came to its end.
-pub struct Seen {
+pub struct CompletedRun {
     /// Its scene.
     pub spec: Spec,
     /// What it started from.
@@ -98,7 +98,7 @@ pub struct Seen {
     pub radius: Vec<f64>,
 }
 
-impl Seen {
+impl CompletedRun {
     /// Before the first step.
     pub fn start(spec: Spec, engine: &Engine) -> Self {
         let assembly = engine.assembly().clone();
@@ -108,7 +108,7 @@ impl Seen {
             rows: Vec::new(),
             ruptures: Vec::new(),
             notices: Vec::new(),
-            negligible: engine.negligible_energy(),
+            negligible: engine.info().negligible_energy,
             track: Vec::new(),
             least_bound: f64::INFINITY,
             end: Default::default(),
@@ -189,7 +189,7 @@ impl Seen {
 
 /// Nominal stress of a strand or wire at `strain`, ends not turning (Pa): every wire at the strain that its helix gives
 /// it, with the lay radius that its layer has at the end (Costello 1997, chapter 3, at finite strain).
-fn nominal_stress(seen: &Seen, strain: f64) -> f64 {
+fn nominal_stress(seen: &CompletedRun, strain: f64) -> f64 {
     let (mut force, mut area) = (0.0, 0.0);
     for (index, layer) in seen.assembly.layers.iter().enumerate() {
         let angle = lay_angle(layer.lay_radius, layer.pitch);
@@ -205,7 +205,7 @@ fn nominal_stress(seen: &Seen, strain: f64) -> f64 {
 }
 
 /// Mean distance of a layer's particles from the axis at the end, between the grips (m).
-fn lay_radius_now(seen: &Seen, layer: usize) -> f64 {
+fn lay_radius_now(seen: &CompletedRun, layer: usize) -> f64 {
     let grip = seen.spec.grip.as_ref().map_or(0.0, |grip| grip.length);
     let gauge = grip..seen.assembly.length - grip;
     let wires = seen.assembly.wires.iter().filter(|wire| wire.layer == layer);
@@ -216,7 +216,7 @@ fn lay_radius_now(seen: &Seen, layer: usize) -> f64 {
 
 /// Stress of the axial dashpots in a steady pull (Pa): 2ξ√(k m*) × strain rate × length of a bond with k = EA/a and
 /// m* = ρAa/2, over A: √2 ξ ρ c a ε̇.
-fn viscous_stress(seen: &Seen) -> f64 {
+fn viscous_stress(seen: &CompletedRun) -> f64 {
     let material = &seen.spec.material;
     let wave = (material.young / material.density).sqrt();
     let rate = seen.last().strain / seen.last().time;
@@ -224,7 +224,7 @@ fn viscous_stress(seen: &Seen) -> f64 {
 }
 
 /// Nominal stress at the end against strand theory; `within` covers clamped ends, gaps and interlocking spheres.
-fn pulled_within(seen: &Seen, within: f64) -> Answer {
+fn pulled_within(seen: &CompletedRun, within: f64) -> Answer {
     // The end's own ringing is taken out by the mean of the last twentieth of the curve, at the mean strain.
     let rows = &seen.rows[seen.rows.len() - (seen.rows.len() / 20).max(1)..];
     let mean = |of: fn(&Sample) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
@@ -238,23 +238,23 @@ fn pulled_within(seen: &Seen, within: f64) -> Answer {
 }
 
 /// A strand's stress against strand theory.
-pub fn pulled_strand(seen: &Seen) -> Answer {
+pub fn pulled_strand(seen: &CompletedRun) -> Answer {
     pulled_within(seen, 0.02)
 }
 
 /// The same for many layers in a short specimen: each has its own contraction from the grips on, and one mean radius per
 /// layer is no exact measure of it.
-pub fn pulled_layers(seen: &Seen) -> Answer {
+pub fn pulled_layers(seen: &CompletedRun) -> Answer {
     pulled_within(seen, 0.03)
 }
 
 /// A single wire's stress against its hardening law.
-pub fn pulled_wire(seen: &Seen) -> Answer {
+pub fn pulled_wire(seen: &CompletedRun) -> Answer {
     pulled_within(seen, 0.005)
 }
 
 /// Peak stress against the yield stress, for wires that do not harden.
-pub fn peak_is_yield(seen: &Seen) -> Answer {
+pub fn peak_is_yield(seen: &CompletedRun) -> Answer {
     Answer {
         what: "peak stress",
         unit: "MPa",
@@ -265,14 +265,14 @@ pub fn peak_is_yield(seen: &Seen) -> Answer {
 }
 
 /// Friction does no work.
-pub fn no_friction(seen: &Seen) -> Answer {
+pub fn no_friction(seen: &CompletedRun) -> Answer {
     let energy = seen.last().energy;
     Answer { what: "work of friction", unit: "J", computed: energy.friction, exact: 0.0, accept: Accept::Absolute(0.0) }
 }
 
 /// Torque after the last turn, T_p at the hardening that the turning has brought: dp = dW/(σ_y A l) with W = ∫T dθ
 /// gives p = 2 r θ/(3√3 L).
-pub fn turned(seen: &Seen) -> Answer {
+pub fn turned(seen: &CompletedRun) -> Answer {
     let wire = &seen.assembly.wires[0];
     let radius = 0.5 * wire.diameter;
     let length: f64 = seen.assembly.rest_length[wire.bonds()].iter().sum();
@@ -292,7 +292,7 @@ pub fn turned(seen: &Seen) -> Answer {
 }
 
 /// Plastic work of the last half of all cycles against that of a perfectly plastic wire, 4 σ_y A (a − σ_y L/E) a cycle.
-pub fn cycled_plastic(seen: &Seen) -> Answer {
+pub fn cycled_plastic(seen: &CompletedRun) -> Answer {
     let Some(DriveSpec::Cyclic { amplitude, frequency }) = seen.spec.grip.as_ref().map(|grip| grip.drive) else {
         unreachable!("the case has a cyclic grip")
     };
@@ -317,7 +317,7 @@ pub fn cycled_plastic(seen: &Seen) -> Answer {
 }
 
 /// Greatest stress in the last tenth of the cycles against that in the fifth.
-pub fn cycled_alike(seen: &Seen) -> Answer {
+pub fn cycled_alike(seen: &CompletedRun) -> Answer {
     let tenth = seen.rows.len() / 10;
     let greatest = |rows: &[Sample]| rows.iter().map(|row| row.stress.abs()).fold(0.0, f64::max) * 1e-6;
     Answer {
@@ -331,7 +331,7 @@ pub fn cycled_alike(seen: &Seen) -> Answer {
 
 /// Mean position in the last tenth of a rest against that in the fifth tenth, over the diameter. A hundred-millionth of
 /// a diameter is less than an atom; what is left of the ringing of the start is of that size.
-pub fn no_drift(seen: &Seen) -> Answer {
+pub fn no_drift(seen: &CompletedRun) -> Answer {
     let tenth = seen.track.len() / 10;
     let mean = |rows: &[Vec<DVec3>], p: usize| rows.iter().map(|x| x[p]).sum::<DVec3>() / rows.len() as f64;
     let drift = |p: usize| mean(&seen.track[9 * tenth..], p).distance(mean(&seen.track[4 * tenth..5 * tenth], p));
@@ -346,7 +346,7 @@ pub fn no_drift(seen: &Seen) -> Answer {
 
 /// Mean stress behind the wave of a wire that is stopped at one end, ρ c v (Timoshenko & Goodier, *Theory of
 /// Elasticity*, chapter 15); the wave has passed the middle after L/2c and is back after 3L/2c.
-pub fn stopped_wave(seen: &Seen) -> Answer {
+pub fn stopped_wave(seen: &CompletedRun) -> Answer {
     let material = &seen.spec.material;
     let wave = (material.young / material.density).sqrt();
     let passage = seen.assembly.length / wave;
@@ -362,7 +362,7 @@ pub fn stopped_wave(seen: &Seen) -> Answer {
 }
 
 /// Sideways deflection of a buckled column's tip against the elastica.
-pub fn buckled(seen: &Seen) -> Answer {
+pub fn buckled(seen: &CompletedRun) -> Answer {
     let wire = &seen.assembly.wires[0];
     let length: f64 = seen.assembly.rest_length[wire.bonds()].iter().sum();
     let tip = seen.end[0][wire.particles().end - 1];
@@ -376,7 +376,7 @@ pub fn buckled(seen: &Seen) -> Answer {
 }
 
 /// Speed at which two spheres part that overlapped from the start, of all the energy that they held (Hertz).
-pub fn thrown_apart(seen: &Seen) -> Answer {
+pub fn thrown_apart(seen: &CompletedRun) -> Answer {
     let material = &seen.spec.material;
     let [a, b] = [0, 1].map(|p| seen.assembly.position.get(p));
     let radius = seen.assembly.radius[0];

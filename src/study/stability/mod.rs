@@ -24,49 +24,37 @@ pub mod report;
 pub mod run;
 
 use crate::base::error::Result;
+use crate::study::runner::{CaseRunner, Named, Status};
 use crate::study::select;
-use case::Case;
+use case::StabilityCase;
 use outcome::Report;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::AtomicBool;
 
 /// The cases of these names, all when there is none; a name that ends in `*` takes all that begin so.
 ///
 /// # Errors
 /// A name that no case has; the nearest is suggested.
-pub fn select(names: &[String]) -> Result<Vec<Case>> {
+pub fn select(names: &[String]) -> Result<Vec<StabilityCase>> {
     let all = matrix::cases();
     let chosen = select::select(names, &all, |case| &case.name, "stability case", "strandsnap stability --list")?;
     Ok(chosen.into_iter().cloned().collect())
 }
 
-/// Runs cases, `threads` at a time and each on one thread, the long ones first; calls `done` after each. Reports come in
-/// the order of `cases`; those that `stop` cut short are left out.
-pub fn run_all(
-    cases: &[Case],
-    quick: bool,
-    threads: usize,
-    stop: &AtomicBool,
-    done: &(dyn Fn(&Report) + Sync),
-) -> Vec<Report> {
+/// Runs cases, the long ones first. The statuses come in the order of `cases`.
+///
+/// # Errors
+/// When a thread cannot be started.
+pub fn run_all(cases: &[StabilityCase], quick: bool, runner: &CaseRunner) -> Result<Vec<Status<Report>>> {
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by_key(|index| !cases[*index].long);
-    let next = AtomicUsize::new(0);
-    let reports = Mutex::new(Vec::new());
-    std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, cases.len().max(1)) {
-            scope.spawn(|| {
-                while let Some(index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let Some(report) = run::run_case(&cases[*index], quick, stop) else { break };
-                    done(&report);
-                    reports.lock().unwrap_or_else(PoisonError::into_inner).push((*index, report));
-                }
-            });
-        }
-    });
-    let mut reports = reports.into_inner().unwrap_or_else(PoisonError::into_inner);
-    reports.sort_by_key(|(index, _)| *index);
-    reports.into_iter().map(|(_, report)| report).collect()
+    let named = |index: &usize| {
+        let case = &cases[*index];
+        Named(case.name.clone(), move |stop: &AtomicBool| run::run_case(case, quick, stop))
+    };
+    let statuses = runner.run(&order.iter().map(named).collect::<Vec<_>>())?;
+    let mut placed: Vec<_> = order.into_iter().zip(statuses).collect();
+    placed.sort_by_key(|(index, _)| *index);
+    Ok(placed.into_iter().map(|(_, status)| status).collect())
 }
 
 #[cfg(test)]

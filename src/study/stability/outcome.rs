@@ -1,14 +1,12 @@
 //! How a case ended. Outcomes are worked out from what happened; nobody writes one by hand.
 
-use super::case::{Case, Expect};
+use super::case::{Expect, StabilityCase};
 use super::measure::Answer;
 use crate::base::finding::{Failure, FindingKind, Notice, Stopped};
-use serde::Serialize;
 use std::fmt;
 
 /// How a case ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// Ran to its end: every value finite, ledger closed, the known number met.
     Stable,
@@ -20,14 +18,21 @@ pub enum Outcome {
     Failed,
 }
 
-impl fmt::Display for Outcome {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
+impl Outcome {
+    /// In a word, for programs.
+    pub fn word(self) -> &'static str {
+        match self {
             Self::Stable => "stable",
             Self::Refused => "refused",
             Self::Stopped => "stopped",
-            Self::Failed => "FAILED",
-        })
+            Self::Failed => "failed",
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(if *self == Self::Failed { "FAILED" } else { self.word() })
     }
 }
 
@@ -35,7 +40,7 @@ impl fmt::Display for Outcome {
 #[derive(Debug, Clone)]
 pub struct Report {
     /// The case.
-    pub case: Case,
+    pub case: StabilityCase,
     /// How it ended.
     pub outcome: Outcome,
     /// The number asked of it, when one is known.
@@ -78,7 +83,7 @@ pub enum Ended {
 }
 
 /// Judges what happened by what the case expects.
-pub fn judge(case: &Case, ended: Ended, steps: u64, wall_s: f64) -> Report {
+pub fn judge(case: &StabilityCase, ended: Ended, steps: u64, wall_s: f64) -> Report {
     let report =
         |outcome, message| Report { case: case.clone(), outcome, answer: None, residual: None, steps, wall_s, message };
     match ended {
@@ -104,7 +109,7 @@ pub fn judge(case: &Case, ended: Ended, steps: u64, wall_s: f64) -> Report {
             match case.expect {
                 Expect::Stable => {}
                 Expect::Refused => wrong.push("it ran, and should have been refused".into()),
-                Expect::PassesThrough => wrong.push("it ran, and wires should have passed through each other".into()),
+                Expect::PassesThrough => wrong.push("it ran, and bodies should have passed through each other".into()),
             }
             if let Some(residual) = residual.filter(|r| r.is_nan() || *r > case.residual.0) {
                 wrong.push(format!("the energy ledger is open by {:.2} %", 100.0 * residual));
@@ -139,8 +144,8 @@ mod tests {
     use crate::base::finding::{Body, Finding, Instant, Member, Relief};
     use crate::study::stability::case::Base;
 
-    fn case() -> Case {
-        Case::new("x", "a test", Base::Text(""))
+    fn case() -> StabilityCase {
+        StabilityCase::new("x", "a test", Base::Text(""))
     }
 
     fn ran(residual: f64, wrong: Vec<String>) -> Ended {
@@ -159,7 +164,7 @@ mod tests {
     fn a_refusal_counts_when_it_is_expected_and_names_a_remedy() {
         let refused =
             |help: Option<&str>| Ended::Refused { what: "spheres 1 and 2 overlap".into(), help: help.map(Into::into) };
-        let outcome = |case: &Case, ended| judge(case, ended, 0, 0.0).outcome;
+        let outcome = |case: &StabilityCase, ended| judge(case, ended, 0, 0.0).outcome;
         let expected = case().refused();
         assert_eq!(outcome(&expected, refused(Some("move them apart"))), Outcome::Refused);
         assert_eq!(outcome(&expected, refused(None)), Outcome::Failed);
@@ -173,8 +178,8 @@ mod tests {
         let at = Instant { step: 5, time: 1e-6, strain: None };
         let stopped = |failure| Ended::Stopped(Box::new(Stopped { at, failure, kept: None }));
         let bond = Member { number: Some(2), body: Body::Wire { wire: 1, layer: "core".into() } };
-        let through = Failure::PassedThrough { bonds: [bond.clone(), bond], z_m: 0.0, relief: Relief::Speed };
-        let outcome = |case: &Case, ended| judge(case, ended, 0, 0.0).outcome;
+        let through = Failure::PassedThrough { between: [bond.clone(), bond], z_m: 0.0, relief: Relief::Speed };
+        let outcome = |case: &StabilityCase, ended| judge(case, ended, 0, 0.0).outcome;
         let expected = case().passes_through();
         assert_eq!(outcome(&expected, stopped(through.clone())), Outcome::Stopped);
         assert_eq!(outcome(&expected, stopped(Failure::UnstableMotion)), Outcome::Failed);

@@ -15,9 +15,7 @@ pub fn write(reports: &[Report], folder: &Path) -> Result<Vec<PathBuf>> {
     if figures.is_empty() {
         return Ok(Vec::new());
     }
-    let files: Vec<PathBuf> = ["svg", "png"].map(|kind| folder.join(format!("stability.{kind}"))).to_vec();
-    files.iter().try_for_each(|file| plot::write(&figures, 1, file))?;
-    Ok(files)
+    plot::write_pair(&figures, 1, folder, "stability")
 }
 
 /// Predicted over empirical critical step.

@@ -1,35 +1,50 @@
 //! The results as a table for people and as JSON for programs.
 
-use super::case::Case;
+use super::case::StabilityCase;
 use super::measure::Answer;
 use super::outcome::{Outcome, Report};
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
+use crate::base::wording::counted;
 use crate::observe::files::write_whole;
-use serde::Serialize;
+use crate::study::column::{self, Column, Value};
 use std::path::Path;
 
 /// Names and claims of cases, one to a line.
-pub fn list(cases: &[Case]) -> String {
+pub fn list(cases: &[StabilityCase]) -> String {
     let width = cases.iter().map(|case| case.name.len()).max().unwrap_or(0);
     cases.iter().map(|case| format!("{:width$}  {}\n", case.name, case.about)).collect()
 }
 
-/// The results, a line per case, and below it what the program said.
-pub fn table(reports: &[Report]) -> String {
-    let width = reports.iter().map(|report| report.case.name.len()).max().unwrap_or(0).max(4);
-    let head = format!("{:width$}  outcome  {:>10}  {:>8}  {:>7}  measured\n", "case", "residual", "steps", "wall");
-    reports.iter().fold(head, |table, report| table + &row(report, width))
+/// The columns of a result, in JSON and for people.
+fn columns() -> Vec<Column<'static, Report>> {
+    fn of_answer<V: Into<Value> + 'static>(of: fn(&Answer) -> V) -> impl Fn(&Report) -> Value {
+        move |report: &Report| report.answer.as_ref().map_or(Value::Missing, |answer| of(answer).into())
+    }
+    vec![
+        Column::new("case", "case", "", 0, |report: &Report| report.case.name.clone()),
+        Column::in_files("about", |report: &Report| report.case.about.clone()),
+        Column::new("outcome", "outcome", "", 0, |report: &Report| report.outcome.word())
+            .shown_as(|report| report.outcome.to_string()),
+        Column::in_files("unit", of_answer(|answer| answer.unit)),
+        Column::in_files("computed", of_answer(|answer| answer.computed)),
+        Column::in_files("exact", of_answer(|answer| answer.exact)),
+        Column::in_files("error_percent", of_answer(Answer::error_percent)),
+        Column::new("residual_percent", "residual", "", 1, |report: &Report| report.residual.map(|r| 100.0 * r))
+            .shown_as(|report| report.residual.map_or("-".into(), |r| format!("{:.1e} %", 100.0 * r))),
+        Column::new("steps", "steps", "", 0, |report: &Report| report.steps),
+        Column::new("wall_s", "wall", "", 1, |report: &Report| report.wall_s)
+            .shown_as(|report| format!("{:.1} s", report.wall_s)),
+        Column::new("measured", "measured", "", 0, of_answer(|answer| answer.what))
+            .shown_as(|report| report.answer.as_ref().map(measured).unwrap_or_default()),
+        Column::in_files("message", |report: &Report| report.message.clone()),
+    ]
 }
 
-fn row(report: &Report, width: usize) -> String {
-    let residual = report.residual.map_or_else(|| "-".to_string(), |r| format!("{:.1e} %", 100.0 * r));
-    let measured = report.answer.as_ref().map(measured).unwrap_or_default();
-    let line = format!(
-        "{:width$}  {:<7}  {residual:>10}  {:>8}  {:>5.1} s  {measured}",
-        report.case.name, report.outcome, report.steps, report.wall_s,
-    );
-    let said: String = report.message.lines().map(|said| format!("    {said}\n")).collect();
-    format!("{}\n{said}", line.trim_end())
+/// The results, a line per case, and below it what the program said.
+pub fn table(reports: &[Report]) -> String {
+    let text = column::table(String::new(), &columns(), reports, 2).aligned("", "measured");
+    let said = |report: &Report| report.message.lines().map(|said| format!("    {said}\n")).collect::<String>();
+    reports.iter().zip(text.rows).fold(text.head, |table, (report, row)| table + &row + &said(report))
 }
 
 fn measured(answer: &Answer) -> String {
@@ -60,8 +75,8 @@ pub fn summary(reports: &[Report], seconds: f64) -> String {
     let steps: u64 = reports.iter().map(|report| report.steps).sum();
     let tail = if failed.is_empty() { String::new() } else { format!(": {}", failed.join(", ")) };
     format!(
-        "{} cases, {:.1} million steps in {seconds:.1} s: {} stable, {} refused, {} stopped, {} FAILED{tail}",
-        reports.len(),
+        "{}, {:.1} million steps in {seconds:.1} s: {} stable, {} refused, {} stopped, {} FAILED{tail}",
+        counted(reports.len(), "case"),
         steps as f64 * 1e-6,
         count(Outcome::Stable),
         count(Outcome::Refused),
@@ -70,49 +85,10 @@ pub fn summary(reports: &[Report], seconds: f64) -> String {
     )
 }
 
-/// One case in JSON.
-#[derive(Debug, Serialize)]
-struct Record<'a> {
-    case: &'a str,
-    about: &'a str,
-    outcome: Outcome,
-    measured: Option<&'a str>,
-    unit: Option<&'a str>,
-    computed: Option<f64>,
-    exact: Option<f64>,
-    error_percent: Option<f64>,
-    order: Option<f64>,
-    residual_percent: Option<f64>,
-    steps: u64,
-    wall_s: f64,
-    message: &'a str,
-}
-
 /// Writes the results as a JSON list.
 ///
 /// # Errors
 /// A file that cannot be written.
 pub fn write_json(reports: &[Report], path: &Path) -> Result<()> {
-    let record = |report: &'_ Report| -> serde_json::Result<serde_json::Value> {
-        let answer = report.answer.as_ref();
-        serde_json::to_value(Record {
-            case: &report.case.name,
-            about: &report.case.about,
-            outcome: report.outcome,
-            measured: answer.map(|a| a.what),
-            unit: answer.map(|a| a.unit),
-            computed: answer.map(|a| a.computed),
-            exact: answer.map(|a| a.exact),
-            error_percent: answer.and_then(Answer::error_percent),
-            order: None,
-            residual_percent: report.residual.map(|r| 100.0 * r),
-            steps: report.steps,
-            wall_s: report.wall_s,
-            message: &report.message,
-        })
-    };
-    let list: serde_json::Result<Vec<_>> = reports.iter().map(record).collect();
-    let text = list.and_then(|list| serde_json::to_string_pretty(&list));
-    let text = text.map_err(|error| Error::io("cannot write", path, std::io::Error::other(error)))?;
-    write_whole(path, &(text + "\n"))
+    write_whole(path, &column::json(&columns(), reports))
 }

@@ -1,10 +1,11 @@
 //! One case on one thread: runs the engine as a run does, watches more closely, and survives what goes wrong.
 
-use super::case::{Case, Kind};
+use super::case::{Kind, StabilityCase};
 use super::critical;
-use super::measure::Seen;
+use super::measure::CompletedRun;
 use super::outcome::{Ended, Report, judge};
 use crate::base::error::{Error, Result};
+use crate::base::worst::renew;
 use crate::engine::Engine;
 use crate::engine::view::Energy;
 use crate::observe::guard::Guard;
@@ -22,18 +23,21 @@ const GRACE: Duration = Duration::from_secs(10);
 
 /// What a run reports while it goes: its steps, and whether it must end.
 #[derive(Debug, Default)]
-pub struct Leash {
+pub struct RunControl {
     /// Steps done.
     pub steps: AtomicU64,
     /// Set to end the run.
     pub stop: AtomicBool,
 }
 
-/// Runs a case on a thread of its own and judges it; `cancel` ends it early, with no report.
-pub fn run_case(case: &Case, quick: bool, cancel: &AtomicBool) -> Option<Report> {
-    let leash = Arc::new(Leash::default());
+/// Runs a case on a thread of its own, so that it can be given up when it hangs, and judges it.
+///
+/// # Errors
+/// [`Error::Interrupted`] when `stop` ended it early.
+pub fn run_case(case: &StabilityCase, quick: bool, stop: &AtomicBool) -> Result<Report> {
+    let control = Arc::new(RunControl::default());
     let (send, receive) = mpsc::channel();
-    let (job, held) = (case.clone(), leash.clone());
+    let (job, held) = (case.clone(), control.clone());
     let began = Instant::now();
     std::thread::spawn(move || {
         let ended = catch_unwind(AssertUnwindSafe(|| in_pool(Some(1), || end_of(&job, quick, &held))));
@@ -49,12 +53,12 @@ pub fn run_case(case: &Case, quick: bool, cancel: &AtomicBool) -> Option<Report>
     let ended = loop {
         match receive.recv_timeout(Duration::from_millis(50)) {
             Ok(ended) => break ended,
-            Err(_) if cancel.load(Ordering::Relaxed) => {
-                leash.stop.store(true, Ordering::Relaxed);
-                return None;
+            Err(_) if stop.load(Ordering::Relaxed) => {
+                control.stop.store(true, Ordering::Relaxed);
+                return Err(Error::Interrupted);
             }
             Err(_) if began.elapsed() > patience => {
-                leash.stop.store(true, Ordering::Relaxed);
+                control.stop.store(true, Ordering::Relaxed);
                 let answers = receive.recv_timeout(GRACE).is_ok();
                 let how = if answers { "it takes ever more steps" } else { "it hangs within one step" };
                 break Ended::Broke(format!("no end after {:.0} s: {how}", case.patience));
@@ -62,8 +66,7 @@ pub fn run_case(case: &Case, quick: bool, cancel: &AtomicBool) -> Option<Report>
             Err(_) => {}
         }
     };
-    (!cancel.load(Ordering::Relaxed))
-        .then(|| judge(case, ended, leash.steps.load(Ordering::Relaxed), began.elapsed().as_secs_f64()))
+    Ok(judge(case, ended, control.steps.load(Ordering::Relaxed), began.elapsed().as_secs_f64()))
 }
 
 fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
@@ -71,10 +74,10 @@ fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without words".into())
 }
 
-fn end_of(case: &Case, quick: bool, leash: &Leash) -> Ended {
+fn end_of(case: &StabilityCase, quick: bool, control: &RunControl) -> Ended {
     let ended = match &case.kind {
-        Kind::Run => case.scene(quick, &[]).and_then(|scene| once(case, &scene, leash)),
-        Kind::Critical(critical) => critical::search(case, critical, quick, leash),
+        Kind::Run => case.scene(quick).and_then(|scene| once(case, &scene, control)),
+        Kind::Critical(critical) => critical::search(case, critical, quick, control),
     };
     ended.unwrap_or_else(from_error)
 }
@@ -90,8 +93,8 @@ fn from_error(error: Error) -> Ended {
 }
 
 /// A run to its end, with what must hold in every run.
-fn once(case: &Case, scene: &Scene, leash: &Leash) -> Result<Ended> {
-    let seen = watch(scene, leash)?;
+fn once(case: &StabilityCase, scene: &Scene, control: &RunControl) -> Result<Ended> {
+    let seen = watch(scene, control)?;
     let mut wrong = Vec::new();
     let answer = case.check.map(|check| check(&seen));
     wrong.extend(ledger_faults(&seen));
@@ -104,19 +107,19 @@ fn once(case: &Case, scene: &Scene, leash: &Leash) -> Result<Ended> {
 ///
 /// # Errors
 /// What the scene, the engine or the guard refuse.
-pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
-    let engine = Engine::new(&scene.spec, assemble(scene)?)?;
+pub fn watch(scene: &Scene, control: &RunControl) -> Result<CompletedRun> {
+    let engine = Engine::new(&scene.spec, &scene.plan, assemble(scene)?)?;
     let info = engine.info();
     let mut guard = Guard::new(&scene.spec.time);
     guard.start(&info);
-    let seen = Seen::start(scene.spec.clone(), &engine);
+    let seen = CompletedRun::start(scene.spec.clone(), &engine);
     let mut watched = Watched { engine, guard, rule: StopRule::new(&scene.spec.stop, info.wave_passage), seen };
     let end = PlannedEnd::new(&scene.spec.stop, info.strain_end);
     let mut schedule = Schedule::new(&scene.spec.output);
     watched.row()?;
-    while !leash.stop.load(Ordering::Relaxed) && !watched.is_over() {
+    while !control.stop.load(Ordering::Relaxed) && !watched.is_over() {
         let ruptures = watched.step()?;
-        leash.steps.fetch_add(1, Ordering::Relaxed);
+        control.steps.fetch_add(1, Ordering::Relaxed);
         let engine = &watched.engine;
         let now = end.fraction(engine.strain(), engine.time(), engine.steps());
         if ruptures > 0 {
@@ -128,10 +131,13 @@ pub fn watch(scene: &Scene, leash: &Leash) -> Result<Seen> {
             watched.row()?;
         }
     }
-    watched.engine.inspect()?;
+    watched.engine.check_crossings()?;
     watched.row()?;
     watched.guard.finish(true);
     watched.notices();
+    for notice in watched.engine.take_worse().iter().chain(&watched.guard.take_worse()) {
+        renew(&mut watched.seen.notices, notice);
+    }
     watched.seen.finish(&watched.engine);
     Ok(watched.seen)
 }
@@ -141,7 +147,7 @@ struct Watched {
     engine: Engine,
     guard: Guard,
     rule: StopRule,
-    seen: Seen,
+    seen: CompletedRun,
 }
 
 impl Watched {
@@ -180,13 +186,13 @@ impl Watched {
 }
 
 /// The energy that a run had to do with (J); rounding alone does not count.
-fn scale(seen: &Seen) -> f64 {
+fn scale(seen: &CompletedRun) -> f64 {
     let of = |e: &Energy| e.work.abs().max(e.internal().abs()).max(e.kinetic.abs());
     seen.rows.iter().map(|row| of(&row.energy)).fold(seen.negligible, f64::max)
 }
 
 /// Greatest residual of the ledger over the greatest work done (-).
-fn residual(seen: &Seen) -> f64 {
+fn residual(seen: &CompletedRun) -> f64 {
     let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
     seen.rows.iter().map(|row| row.energy.residual().abs()).fold(0.0, larger) / scale(seen)
 }
@@ -195,7 +201,7 @@ fn residual(seen: &Seen) -> f64 {
 type Term = fn(&Energy) -> f64;
 
 /// Terms of the ledger that no closed balance would betray: dissipation that falls, energy stored that is negative.
-fn ledger_faults(seen: &Seen) -> Vec<String> {
+fn ledger_faults(seen: &CompletedRun) -> Vec<String> {
     let (rows, slack) = (&seen.rows, 1e-3 * scale(seen));
     let dissipated: [(&str, Term); 4] = [
         ("plastic work of bonds", |e| e.plastic_bonds),

@@ -2,14 +2,14 @@
 
 use super::gather::Gathered;
 use super::quantity::off_middle;
-use crate::study::cases::measured::Measured;
-use crate::study::cases::stat::Stat;
+use crate::study::statistics::Statistics;
+use crate::study::tensile::TensileResult;
 use serde::Serialize;
 
 /// What became of one layer over the runs of a point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LayerBreaks {
-    /// Its name.
+    /// Name of the layer.
     pub layer: String,
     /// Its wires.
     pub wires: usize,
@@ -18,21 +18,21 @@ pub struct LayerBreaks {
     /// Runs in which it did not break.
     pub never: usize,
     /// Its wires that broke (%).
-    pub broken_percent: Option<Stat>,
+    pub broken_percent: Option<Statistics>,
     /// Runs in which its first break lay in the middle third of the gauge.
     pub middle_third: usize,
     /// Distance of its first break from mid-gauge, before loading (mm).
-    pub off_middle_mm: Option<Stat>,
+    pub off_middle_mm: Option<Statistics>,
 }
 
 /// The layers of a point, from the inside out; empty where no case ran.
 pub fn layers(gathered: &Gathered, point: usize) -> Vec<LayerBreaks> {
-    let runs: Vec<&Measured> = gathered.runs(point).collect();
+    let runs: Vec<&TensileResult> = gathered.runs(point).collect();
     let Some(first) = runs.first() else { return Vec::new() };
     (0..first.layers.len()).map(|k| layer(&runs, k)).collect()
 }
 
-fn layer(runs: &[&Measured], k: usize) -> LayerBreaks {
+fn layer(runs: &[&TensileResult], k: usize) -> LayerBreaks {
     let (name, wires, layers) = (&runs[0].layers[k], runs[0].layer_wires[k], runs[0].layers.len());
     let mut places = vec![0; layers];
     let (mut never, mut middle_third) = (0, 0);
@@ -56,14 +56,14 @@ fn layer(runs: &[&Measured], k: usize) -> LayerBreaks {
         wires,
         places,
         never,
-        broken_percent: Stat::of(&broken),
+        broken_percent: Statistics::of(&broken),
         middle_third,
-        off_middle_mm: Stat::of(&off),
+        off_middle_mm: Statistics::of(&off),
     }
 }
 
 /// Layers in the order in which each first broke.
-pub fn order(run: &Measured) -> Vec<String> {
+pub fn order(run: &TensileResult) -> Vec<String> {
     let mut order: Vec<String> = Vec::new();
     for one in &run.breaks {
         if !order.contains(&one.layer) {

@@ -3,15 +3,18 @@
 use super::axis::{self, Axis, Merged};
 use super::conflicts;
 use super::quantity::{self, Quantity};
-use super::raw::{RawDesign, RawQuality, RawSeeds, RawStudy};
+use super::raw::{RawDesign, RawSeeds, RawStudy};
 use crate::base::error::{Error, Result};
-use crate::scene::plan::Plan;
+use crate::base::regular;
+use crate::base::wording::counted;
+use crate::reference::published::{self, Published};
 use crate::scene::quality::Quality;
 use crate::scene::spec::Spec;
 use crate::scene::suggest::nearest;
-use crate::scene::{self, SceneSource};
-use crate::study::cases::record::Identity;
+use crate::scene::{self, Scene, SceneSource};
+use crate::study::runner::{CaseStore, Identity};
 use crate::study::screening::{self, Model};
+use crate::study::tensile::{TensileCase, definition};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -52,18 +55,17 @@ pub struct Changes {
     pub seeds: Vec<u64>,
 }
 
-/// What results stand beside.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beside {
-    /// What the reference paper prints.
-    Paper,
-    /// Strand theory.
-    StrandTheory,
+/// What results are compared with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct References {
+    /// Published tests and simulations.
+    pub published: &'static Published,
+    /// Whether strand theory, calibrated on the published experiment, is compared with too.
+    pub theory: bool,
 }
 
-impl Beside {
-    const ALL: [(&'static str, Beside); 2] = [("paper", Beside::Paper), ("strand-theory", Beside::StrandTheory)];
-}
+/// How a study names strand theory in `compare`.
+const STRAND_THEORY: &str = "strand-theory";
 
 /// A study that was read.
 pub struct Definition {
@@ -91,12 +93,12 @@ pub struct Definition {
     pub quantities: Vec<&'static Quantity>,
     /// What curves are fitted to.
     pub fits: Vec<&'static Quantity>,
-    /// What results stand beside.
-    pub compare: Vec<Beside>,
+    /// What results are compared with.
+    pub compare: Option<References>,
+    /// The scene of every point, with its own seed; or why it is refused.
+    pub scenes: Vec<std::result::Result<Scene, String>>,
     /// Options of every case, before those of its point.
     common: Vec<String>,
-    /// Whether a seed makes a difference, point by point.
-    scatters: Vec<bool>,
 }
 
 impl Definition {
@@ -111,11 +113,8 @@ impl Definition {
             let text = builtin(name_or_path)?;
             return Self::parse(text, &format!("{name_or_path}.toml"), Path::new("."), changes);
         }
-        let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
-            std::io::ErrorKind::NotFound => {
-                Error::input(format!("there is no study file {}", path.display()), "give its path, or a built-in name")
-            }
-            _ => Error::io("cannot read", path, source),
+        let text = regular::text_if_there(path, regular::LONGEST_SCENE)?.ok_or_else(|| {
+            Error::input(format!("there is no study file {}", path.display()), "give its path, or a built-in name")
         })?;
         Self::parse(&text, name_or_path, path.parent().unwrap_or(Path::new(".")), changes)
     }
@@ -133,19 +132,22 @@ impl Definition {
         let base = base_scene(base, folder);
         let (axes, merged) = axis::axes(&raw.axis, &source)?;
         conflicts::check(&axes, &raw, changes, &source)?;
-        let quality = changes.quality.unwrap_or_else(|| quality(raw.quality.as_ref()));
+        let quality = changes.quality.or(raw.quality).unwrap_or_default();
         let own = scene::load(&base, &[])?;
         let seeds = match changes.seeds.is_empty() {
             true => seeds(raw.seeds.as_ref(), own.spec.seed, &source)?,
             false => changes.seeds.clone(),
         };
-        let common: Vec<String> =
-            quality.overrides(&own.spec).into_iter().chain(raw.set).chain(changes.set.iter().cloned()).collect();
+        let common: Vec<String> = raw.set.into_iter().chain(changes.set.iter().cloned()).collect();
         let design = raw.design.as_ref();
         let model = design.map(|design| model(&design.interactions, &axes, &source)).transpose()?;
         let points = points(&axes, model.as_ref(), raw.design.as_ref(), &source)?;
         if points.len() * seeds.len() > MOST_CASES {
-            let what = format!("{} points and {} seeds are more than {MOST_CASES} cases", points.len(), seeds.len());
+            let what = format!(
+                "{} and {} are more than {MOST_CASES} cases",
+                counted(points.len(), "point"),
+                counted(seeds.len(), "seed")
+            );
             return Err(source.error("axis", what, "vary less, or pick points with [design]"));
         }
         let stem = Path::new(file_name).file_stem().map_or_else(|| "study".into(), |stem| stem.to_string_lossy());
@@ -159,34 +161,60 @@ impl Definition {
                 Some(names) => quantities(names, "quantities", &source)?,
             },
             fits: fits(&raw.fits, &axes, &source)?,
-            compare: beside(&raw.compare, &source)?,
+            compare: references(&raw.compare, &source)?,
             axes,
             merged,
             points,
             model,
             seeds,
             quality,
+            scenes: Vec::new(),
             common,
-            scatters: Vec::new(),
         };
-        definition.look_at_points(&source)?;
+        definition.resolve()?;
+        definition.compare_points(&source)?;
         Ok(definition)
     }
 
-    /// Finds out at which points a seed makes a difference; a scene that is refused may.
+    /// Resolves the scene of every point.
     ///
     /// # Errors
-    /// When two points have the same scene, so that what is varied between them changes nothing.
-    fn look_at_points(&mut self, source: &SceneSource) -> Result<()> {
-        let first = self.seeds.first().copied().unwrap_or_default();
-        let mut seen: HashMap<String, usize> = HashMap::new();
+    /// The first refusal, when every point is refused; what the file system refuses.
+    fn resolve(&mut self) -> Result<()> {
+        let mut first = None;
         for point in 0..self.points.len() {
-            let scene = scene::load(&self.base, &self.overrides(point, first));
-            self.scatters.push(scene.as_ref().map_or(true, |scene| Plan::new(&scene.spec).scatter));
+            let loaded = scene::load(&self.base, &self.overrides(point)).and_then(|mut scene| {
+                self.quality.apply(&mut scene)?;
+                Ok(scene)
+            });
+            let scene = match loaded {
+                Ok(scene) => Ok(scene),
+                Err(error @ (Error::Scene(_) | Error::Input { .. })) => {
+                    let cause = error.to_string();
+                    first = first.or(Some(error));
+                    Err(cause)
+                }
+                Err(error) => return Err(error),
+            };
+            self.scenes.push(scene);
+        }
+        match first {
+            Some(error) if self.scenes.iter().all(|scene| scene.is_err()) => Err(error),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses two points with the same scene, between which what is varied changes nothing.
+    ///
+    /// # Errors
+    /// At the first axis in which they differ.
+    fn compare_points(&self, source: &SceneSource) -> Result<()> {
+        let mut seen: HashMap<String, usize> = HashMap::new();
+        for (point, scene) in self.scenes.iter().enumerate() {
             let Ok(scene) = scene else { continue };
             // A name or a sentence makes no other run.
-            let bare = Spec { name: String::new(), about: String::new(), ..scene.spec };
-            if let Some(before) = seen.insert(Identity::of(&bare, None, false).name(), point) {
+            let bare = Spec { name: String::new(), about: String::new(), ..scene.spec.clone() };
+            if let Some(before) = seen.insert(Identity::new(definition(&bare), None, false).name(), point) {
                 let [one, other] = [before, point].map(|point| self.point_name(point));
                 let what = format!("`{one}` and `{other}` are the same scene, so that they would be one run twice");
                 let key = format!("axis.{}", self.differs(before, point));
@@ -205,10 +233,16 @@ impl Definition {
         (0..self.axes.len()).find(|k| self.points[a][*k] != self.points[b][*k]).unwrap_or(0)
     }
 
-    /// Options of a point with a seed, in the order in which they win: quality, the study's, the axes', the seed.
-    pub fn overrides(&self, point: usize, seed: u64) -> Vec<String> {
+    /// Options of a point, in the order in which they win: the study's, the axes'.
+    fn overrides(&self, point: usize) -> Vec<String> {
         let of_axes = self.levels(point).flat_map(|(_, level)| level.set.iter().cloned());
-        self.common.iter().cloned().chain(of_axes).chain([format!("seed={seed}")]).collect()
+        self.common.iter().cloned().chain(of_axes).collect()
+    }
+
+    /// A case as a runner takes it; `work` is what it costs, in any unit that all share.
+    pub fn case<'a>(&'a self, (point, seed): (usize, u64), work: f64, store: &'a CaseStore) -> TensileCase<'a> {
+        let scene = self.scenes[point].as_ref().map_err(String::as_str);
+        TensileCase { work, ..TensileCase::new(self.case_name(point, seed), scene, seed, store) }
     }
 
     /// The level of every axis at a point.
@@ -228,12 +262,16 @@ impl Definition {
         format!("{}, seed {seed}", self.point_name(point))
     }
 
-    /// All cases in the order in which they are made: all points with the first seed, so that a study that is cut short
-    /// has been everywhere, then those in which scatter makes a difference with the next.
+    /// Point and seed of all cases in the order in which they are run: all points with the first seed, so that a study that
+    /// is cut short has been everywhere, then those in which scatter makes a difference, or whose scene is refused, with
+    /// the next.
     pub fn cases(&self) -> Vec<(usize, u64)> {
+        let scatters: Vec<bool> =
+            self.scenes.iter().map(|s| s.as_ref().map_or(true, |scene| scene.plan.scatter)).collect();
+        let scatters = &scatters;
         let of_seed = |(k, seed): (usize, &u64)| {
             let seed = *seed;
-            (0..self.points.len()).filter(move |point| k == 0 || self.scatters[*point]).map(move |point| (point, seed))
+            (0..self.points.len()).filter(move |point| k == 0 || scatters[*point]).map(move |point| (point, seed))
         };
         self.seeds.iter().enumerate().flat_map(of_seed).collect()
     }
@@ -264,14 +302,6 @@ fn builtin(name: &str) -> Result<&'static str> {
 /// A scene file is given from the study's folder, a built-in scene by its name.
 fn base_scene(base: &str, folder: &Path) -> String {
     if base.ends_with(".toml") { folder.join(base).to_string_lossy().into_owned() } else { base.to_owned() }
-}
-
-fn quality(raw: Option<&RawQuality>) -> Quality {
-    match raw {
-        Some(RawQuality::Draft) => Quality::Draft,
-        Some(RawQuality::Fine) => Quality::Fine,
-        Some(RawQuality::Standard) | None => Quality::Standard,
-    }
 }
 
 fn seeds(raw: Option<&RawSeeds>, own: u64, source: &SceneSource) -> Result<Vec<u64>> {
@@ -351,7 +381,7 @@ fn points(
 fn quantities(names: &[String], key: &str, source: &SceneSource) -> Result<Vec<&'static Quantity>> {
     let one = |(k, name): (usize, &String)| {
         quantity::find(name).ok_or_else(|| {
-            let known: Vec<&str> = quantity::ALL.iter().map(|quantity| quantity.name).collect();
+            let known: Vec<&str> = quantity::ALL.iter().map(|quantity| &*quantity.name).collect();
             let all = format!("known: {}", known.join(", "));
             let help = match nearest(name, known.iter().copied()) {
                 Some(near) => format!("did you mean `{near}`? {all}"),
@@ -372,14 +402,27 @@ fn fits(names: &[String], axes: &[Axis], source: &SceneSource) -> Result<Vec<&'s
     quantities(names, "fits", source)
 }
 
-fn beside(names: &[String], source: &SceneSource) -> Result<Vec<Beside>> {
-    let one = |(k, name): (usize, &String)| {
-        let found = Beside::ALL.iter().find(|(known, _)| known == name);
-        found.map(|(_, beside)| *beside).ok_or_else(|| {
-            let known: Vec<&str> = Beside::ALL.iter().map(|(name, _)| *name).collect();
-            let what = format!("`{name}` is nothing to compare with");
-            source.error(&format!("compare.{k}"), what, format!("one of: {}", known.join(", ")))
-        })
-    };
-    names.iter().enumerate().map(one).collect()
+/// The data set and the theory that `compare` names.
+fn references(names: &[String], source: &SceneSource) -> Result<Option<References>> {
+    let mut published = None;
+    for (k, name) in names.iter().enumerate().filter(|(_, name)| *name != STRAND_THEORY) {
+        let at = format!("compare.{k}");
+        let found = published::find(name).ok_or_else(|| {
+            let known: Vec<&str> = published::names().chain([STRAND_THEORY]).collect();
+            let help = format!("one of: {}", known.join(", "));
+            source.error(&at, format!("`{name}` is nothing to compare with"), help)
+        })?;
+        if published.replace(found).is_some() {
+            return Err(source.error(&at, "results are compared with one publication at a time", "name one"));
+        }
+    }
+    let theory = names.iter().any(|name| name == STRAND_THEORY);
+    match published {
+        None if theory => {
+            let known: Vec<&str> = published::names().collect();
+            let help = format!("name its publication too: {}", known.join(", "));
+            Err(source.error("compare", "strand theory is calibrated on an experiment", help))
+        }
+        published => Ok(published.map(|published| References { published, theory })),
+    }
 }

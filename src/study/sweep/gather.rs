@@ -2,143 +2,103 @@
 
 use super::definition::Definition;
 use super::quantity::Quantity;
-use crate::base::error::{Error, Result};
 use crate::base::units::{self, Dimension};
 use crate::scene::spec::{LayerSpec, Spec};
-use crate::scene::{self, Scene};
-use crate::study::cases::measured::Measured;
-use crate::study::cases::record::{self, Found, Identity, Record};
-use crate::study::cases::stat::Stat;
-use std::path::Path;
-
-/// What became of a case.
-#[derive(Debug, Clone, PartialEq)]
-pub enum State {
-    /// It ran to its end.
-    Ran(Box<Measured>),
-    /// The engine or the guard stopped it: why.
-    Failed(String),
-    /// Its scene is refused: why.
-    Refused(String),
-    /// It was not made yet.
-    Missing,
-}
-
-impl State {
-    /// In a word.
-    pub fn word(&self) -> &'static str {
-        match self {
-            State::Ran(_) => "ran",
-            State::Failed(_) => "failed",
-            State::Refused(_) => "refused",
-            State::Missing => "missing",
-        }
-    }
-
-    /// Why there is no answer, where there is none.
-    pub fn cause(&self) -> Option<&str> {
-        match self {
-            State::Failed(cause) | State::Refused(cause) => Some(cause),
-            State::Ran(_) | State::Missing => None,
-        }
-    }
-}
+use crate::study::runner::store::build;
+use crate::study::runner::{CaseStore, Record};
+use crate::study::statistics::Statistics;
+use crate::study::tensile::{TensileOutcome, TensileResult, identity};
 
 /// A case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaseResult {
     /// Number, from 1.
     pub number: usize,
-    /// Its point.
+    /// Number of its point among those of the study, from 0.
     pub point: usize,
-    /// Its seed.
+    /// Seed of its scatter.
     pub seed: u64,
-    /// Name of its folder, the hash of its resolved scene; empty when the scene is refused.
+    /// Name of its folder, the hash of its identity; empty when the scene is refused.
     pub folder: String,
-    /// What became of it.
-    pub state: State,
+    /// What became of it; `None` when it was not run yet.
+    pub outcome: Option<TensileOutcome>,
 }
 
 impl CaseResult {
-    /// What it measured, if it ran.
-    pub fn measured(&self) -> Option<&Measured> {
-        match &self.state {
-            State::Ran(measured) => Some(measured),
-            _ => None,
+    /// What it gave, if it ran.
+    pub fn result(&self) -> Option<&TensileResult> {
+        self.outcome.as_ref()?.result()
+    }
+
+    /// Why there is no answer, where there is none.
+    pub fn cause(&self) -> Option<&str> {
+        self.outcome.as_ref()?.cause()
+    }
+
+    /// What became of it, in a word.
+    pub fn word(&self) -> &'static str {
+        match &self.outcome {
+            Some(TensileOutcome::Ran(_)) => "ran",
+            Some(TensileOutcome::Failed(_)) => "failed",
+            Some(TensileOutcome::Refused(_)) => "refused",
+            None => "missing",
         }
     }
 }
 
-/// Everything that is there of a study.
-pub struct Gathered {
+/// The cases of a study with what is kept of them.
+pub struct Gathered<'a> {
+    definition: &'a Definition,
     /// Its cases, in their order.
     pub cases: Vec<CaseResult>,
-    /// The scene of every point, with the first seed; `None` where it is refused.
-    pub scenes: Vec<Option<Scene>>,
-    /// Kept cases that another build of the same physics made.
+    /// Kept cases that another build of the same revision had run.
     pub other_build: usize,
 }
 
-impl Gathered {
-    /// Reads what is kept in the study's folder.
-    ///
-    /// # Errors
-    /// When a centreline file of the scene cannot be read.
-    pub fn read(definition: &Definition, folder: &Path) -> Result<Self> {
-        let build = record::build();
-        let mut scenes = vec![None; definition.points.len()];
+impl<'a> Gathered<'a> {
+    /// Reads what is kept in a store.
+    pub fn read(definition: &'a Definition, store: &CaseStore) -> Self {
+        let build = build();
         let (mut cases, mut other_build) = (Vec::new(), 0);
         for (index, (point, seed)) in definition.cases().into_iter().enumerate() {
-            let (name, state) = match scene::load(&definition.base, &definition.overrides(point, seed)) {
+            let (folder, outcome) = match &definition.scenes[point] {
                 Ok(scene) => {
-                    let identity = Identity::of(&scene.spec, None, false);
-                    scenes[point].get_or_insert(scene);
-                    let record = Record::kept(&identity, folder);
+                    let identity = identity(scene, seed);
+                    let record: Option<Record<TensileOutcome>> = store.find(&identity);
                     other_build += usize::from(record.as_ref().is_some_and(|record| record.build != build));
-                    (identity.name(), state(record))
+                    (identity.name(), record.map(|record| record.result))
                 }
-                Err(error @ (Error::Scene(_) | Error::Input { .. })) => {
-                    (String::new(), State::Refused(error.to_string()))
-                }
-                Err(error) => return Err(error),
+                Err(cause) => (String::new(), Some(TensileOutcome::Refused(cause.clone()))),
             };
-            cases.push(CaseResult { number: index + 1, point, seed, folder: name, state });
+            cases.push(CaseResult { number: index + 1, point, seed, folder, outcome });
         }
-        Ok(Self { cases, scenes, other_build })
+        Self { definition, cases, other_build }
     }
 
     /// The runs of a point, by seed.
-    pub fn runs(&self, point: usize) -> impl Iterator<Item = &Measured> {
-        self.cases.iter().filter(move |case| case.point == point).filter_map(CaseResult::measured)
+    pub fn runs(&self, point: usize) -> impl Iterator<Item = &TensileResult> {
+        self.cases.iter().filter(move |case| case.point == point).filter_map(CaseResult::result)
     }
 
     /// A quantity over the seeds of a point; `None` where no run has it.
-    pub fn stat(&self, point: usize, quantity: &Quantity) -> Option<Stat> {
-        let values: Vec<f64> = self.runs(point).filter_map(quantity.of).collect();
-        Stat::of(&values)
+    pub fn stat(&self, point: usize, quantity: &Quantity) -> Option<Statistics> {
+        let values: Vec<f64> = self.runs(point).filter_map(|run| quantity.number(run)).collect();
+        Statistics::of(&values)
     }
 
     /// Cases that ran.
     pub fn ran(&self) -> usize {
-        self.cases.iter().filter(|case| matches!(case.state, State::Ran(_))).count()
+        self.cases.iter().filter(|case| case.result().is_some()).count()
     }
 
-    /// Cases that are not made yet.
+    /// Cases that were not run yet.
     pub fn missing(&self) -> usize {
-        self.cases.iter().filter(|case| case.state == State::Missing).count()
+        self.cases.iter().filter(|case| case.outcome.is_none()).count()
     }
 
-    /// The scene of a point.
+    /// The scene of a point, if it is not refused.
     pub fn spec(&self, point: usize) -> Option<&Spec> {
-        self.scenes[point].as_ref().map(|scene| &scene.spec)
-    }
-}
-
-fn state(record: Option<Record>) -> State {
-    match record.map(|record| record.found) {
-        Some(Found::Ran(measured)) => State::Ran(measured),
-        Some(Found::Failed(cause)) => State::Failed(cause),
-        None => State::Missing,
+        self.definition.scenes[point].as_ref().ok().map(|scene| &scene.spec)
     }
 }
 

@@ -1,6 +1,8 @@
 //! What a study gathers of each run.
 
-use crate::study::cases::measured::Measured;
+use crate::study::column::Column;
+use crate::study::tensile::TensileResult;
+use std::sync::LazyLock;
 
 /// Strain beyond the drop at which the residual stress is read, and half the window it is averaged over, because elastic
 /// waves run then (-).
@@ -10,87 +12,31 @@ const HALF_WINDOW: f64 = 0.001;
 /// Unit of what a run either is or is not.
 const OF_RUNS: &str = "% of runs";
 
-/// A number that every run has, or lacks for a reason.
-#[derive(Debug)]
-pub struct Quantity {
-    /// Its name in a study file and in tables.
-    pub name: &'static str,
-    /// As people read it.
-    pub label: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    /// Decimals in tables.
-    pub decimals: usize,
-    /// Its value; `None` where the run has none, such as the place of a break when nothing broke.
-    pub of: fn(&Measured) -> Option<f64>,
-}
+/// A number that every run has, or lacks for a reason, such as the place of a break when nothing broke.
+pub type Quantity = Column<'static, TensileResult>;
 
-impl Quantity {
-    /// Whether it is 100 or 0 for each run, so that its mean is how often something happens.
-    pub fn is_frequency(&self) -> bool {
-        self.unit == OF_RUNS
-    }
-
-    /// Label and unit, for the axis of a plot or the head of a column.
-    pub fn label_and_unit(&self) -> String {
-        format!("{} [{}]", self.label, self.unit)
-    }
+/// Whether a quantity is 100 or 0 for each run, so that its mean is how often something happens.
+pub fn is_frequency(quantity: &Quantity) -> bool {
+    quantity.unit == OF_RUNS
 }
 
 /// All quantities.
-pub static ALL: [Quantity; 9] = [
-    Quantity {
-        name: "strength",
-        label: "strength",
-        unit: "MPa",
-        decimals: 2,
-        of: |measured| Some(measured.strength_mpa),
-    },
-    Quantity {
-        name: "elongation",
-        label: "elongation",
-        unit: "%",
-        decimals: 2,
-        of: |measured| Some(measured.elongation_percent),
-    },
-    Quantity {
-        name: "drop",
-        label: "elongation at a 20 % drop",
-        unit: "%",
-        decimals: 2,
-        of: |measured| measured.drop_percent,
-    },
-    Quantity {
-        name: "first-outer",
-        label: "first break in the outer layer",
-        unit: OF_RUNS,
-        decimals: 0,
-        of: |measured| Some(share(first_layer(measured)? == measured.layers.len() - 1)),
-    },
-    Quantity { name: "outer-broken", label: "outer wires broken", unit: "%", decimals: 0, of: outer_broken },
-    Quantity { name: "below-broken", label: "wires below them broken", unit: "%", decimals: 0, of: below_broken },
-    Quantity {
-        name: "outer-alone",
-        label: "all outer wires broken, some below whole",
-        unit: OF_RUNS,
-        decimals: 0,
-        of: |measured| Some(share(outer_broken(measured)? == 100.0 && below_broken(measured)? < 100.0)),
-    },
-    Quantity {
-        name: "first-off-middle",
-        label: "first break from mid-length",
-        unit: "mm",
-        decimals: 1,
-        of: |measured| Some(off_middle(measured, measured.breaks.first()?.rest_z_mm)?.abs()),
-    },
-    Quantity {
-        name: "residual",
-        label: "stress left 1 % of strain beyond the drop",
-        unit: "MPa",
-        decimals: 1,
-        of: residual_stress,
-    },
-];
+pub static ALL: LazyLock<[Quantity; 9]> = LazyLock::new(|| {
+    let alone = |run: &TensileResult| Some(share(outer_broken(run)? == 100.0 && below_broken(run)? < 100.0));
+    let first_outer = |run: &TensileResult| Some(share(first_layer(run)? == run.layers.len() - 1));
+    let off = |run: &TensileResult| Some(off_middle(run, run.breaks.first()?.rest_z_mm)?.abs());
+    [
+        Column::new("strength", "strength", "MPa", 2, |run: &TensileResult| run.strength_mpa),
+        Column::new("elongation", "elongation", "%", 2, |run: &TensileResult| run.elongation_percent),
+        Column::new("drop", "elongation at a 20 % drop", "%", 2, |run: &TensileResult| run.drop_percent),
+        Column::new("first-outer", "first break in the outer layer", OF_RUNS, 0, first_outer),
+        Column::new("outer-broken", "outer wires broken", "%", 0, outer_broken),
+        Column::new("below-broken", "wires below them broken", "%", 0, below_broken),
+        Column::new("outer-alone", "all outer wires broken, some below whole", OF_RUNS, 0, alone),
+        Column::new("first-off-middle", "first break from mid-length", "mm", 1, off),
+        Column::new("residual", "stress left 1 % of strain beyond the drop", "MPa", 1, residual_stress),
+    ]
+});
 
 /// The quantity of this name.
 pub fn find(name: &str) -> Option<&'static Quantity> {
@@ -103,38 +49,40 @@ fn share(holds: bool) -> f64 {
 }
 
 /// Layer in which the first wire broke, from the inside, from 0.
-pub fn first_layer(measured: &Measured) -> Option<usize> {
-    let first = measured.breaks.first()?;
-    measured.layers.iter().position(|layer| *layer == first.layer)
+pub fn first_layer(run: &TensileResult) -> Option<usize> {
+    let first = run.breaks.first()?;
+    run.layers.iter().position(|layer| *layer == first.layer)
 }
 
 /// Distance of a place from mid-gauge, before loading (mm).
-pub fn off_middle(measured: &Measured, rest_z_mm: f64) -> Option<f64> {
-    let [lower, upper] = measured.gauge_mm?;
+pub fn off_middle(run: &TensileResult, rest_z_mm: f64) -> Option<f64> {
+    let [lower, upper] = run.gauge_mm?;
     Some(rest_z_mm - 0.5 * (lower + upper))
 }
 
 /// Wires of the layers in `range` that broke (%).
-fn broken(measured: &Measured, range: std::ops::Range<usize>) -> Option<f64> {
-    let wires: usize = measured.layer_wires.get(range.clone())?.iter().sum();
-    let names = &measured.layers[range];
-    let broken = measured.breaks.iter().filter(|one| names.contains(&one.layer)).count();
+fn broken(run: &TensileResult, range: std::ops::Range<usize>) -> Option<f64> {
+    let wires: usize = run.layer_wires.get(range.clone())?.iter().sum();
+    let names = &run.layers[range];
+    let broken = run.breaks.iter().filter(|one| names.contains(&one.layer)).count();
     (wires > 0).then(|| 100.0 * broken as f64 / wires as f64)
 }
 
-fn outer_broken(measured: &Measured) -> Option<f64> {
-    let layers = measured.layers.len();
-    broken(measured, layers.checked_sub(1)?..layers)
+/// Wires of the outermost layer that broke (%).
+pub fn outer_broken(run: &TensileResult) -> Option<f64> {
+    let layers = run.layers.len();
+    broken(run, layers.checked_sub(1)?..layers)
 }
 
-fn below_broken(measured: &Measured) -> Option<f64> {
-    broken(measured, 0..measured.layers.len().checked_sub(1)?)
+/// Wires of all layers below the outermost that broke (%).
+pub fn below_broken(run: &TensileResult) -> Option<f64> {
+    broken(run, 0..run.layers.len().checked_sub(1)?)
 }
 
 /// Mean nominal stress (MPa) around [`AFTER_DROP`] beyond the drop; `None` without a drop, or when the run ended before.
-fn residual_stress(measured: &Measured) -> Option<f64> {
-    let curve = &measured.curve;
-    let middle = 0.01 * measured.drop_percent? + AFTER_DROP;
+fn residual_stress(run: &TensileResult) -> Option<f64> {
+    let curve = &run.curve;
+    let middle = 0.01 * run.drop_percent? + AFTER_DROP;
     if curve.end() < middle + HALF_WINDOW {
         return None;
     }
@@ -148,9 +96,9 @@ fn residual_stress(measured: &Measured) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::observe::summary::Break;
-    use crate::study::cases::measured::Curve;
+    use crate::study::tensile::Curve;
 
-    fn snapped(broken: &[(&str, f64)]) -> Measured {
+    fn snapped(broken: &[(&str, f64)]) -> TensileResult {
         let one = |(k, (layer, rest_z_mm)): (usize, &(&str, f64))| Break {
             order: k + 1,
             wire: k + 1,
@@ -161,7 +109,7 @@ mod tests {
             stress_mpa: 300.0,
             cause: "plastic strain".into(),
         };
-        Measured {
+        TensileResult {
             strength_mpa: 300.0,
             elongation_percent: 20.0,
             drop_percent: Some(20.005),
@@ -174,12 +122,12 @@ mod tests {
                 stress_mpa: vec![0.0, 300.0, 100.0, 80.0],
                 ..Curve::default()
             },
-            ..Measured::default()
+            ..TensileResult::default()
         }
     }
 
-    fn of(name: &str, measured: &Measured) -> Option<f64> {
-        (find(name).unwrap().of)(measured)
+    fn of(name: &str, run: &TensileResult) -> Option<f64> {
+        find(name).unwrap().number(run)
     }
 
     #[test]

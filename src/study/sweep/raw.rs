@@ -1,6 +1,7 @@
 //! A study as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference of
 //! all its keys.
 
+use crate::scene::quality::Quality;
 use serde::Deserialize;
 
 /// A whole study file.
@@ -15,7 +16,7 @@ pub(super) struct RawStudy {
     #[serde(default)]
     pub set: Vec<String>,
     /// `draft`, `standard` (default) or `fine`; `--quality` wins over it.
-    pub quality: Option<RawQuality>,
+    pub quality: Option<Quality>,
     /// Seeds of the scatter: how many, counted from 1, or a list. Default: the scene's own.
     pub seeds: Option<RawSeeds>,
     /// `[[axis]]`: what is varied. Several make a grid.
@@ -28,30 +29,19 @@ pub(super) struct RawStudy {
     /// Quantities that curves are fitted to, over the only axis.
     #[serde(default)]
     pub fits: Vec<String>,
-    /// What the results stand beside: "paper", "strand-theory".
+    /// What the results are compared with: a data set of `assets/reference/` by name, such as "zhao-2025", and
+    /// "strand-theory", which is calibrated on its experiment.
     #[serde(default)]
     pub compare: Vec<String>,
-}
-
-/// `quality`.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum RawQuality {
-    /// Faster and coarser.
-    Draft,
-    /// The scene as it stands.
-    Standard,
-    /// Slower and finer.
-    Fine,
 }
 
 /// `seeds`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged, expecting = "expected a number of seeds, or a list of them such as [1, 2, 3]")]
 pub(super) enum RawSeeds {
-    /// So many, from 1.
+    /// How many seeds, counted from 1.
     Count(i64),
-    /// These.
+    /// The seeds one by one.
     List(Vec<i64>),
 }
 

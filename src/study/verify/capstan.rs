@@ -1,8 +1,8 @@
 //! A wire that slides round another.
 
-use super::Case;
-use super::finding::{Finding, Point, Spent};
-use super::support::{Lab, set};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point, Spent};
+use super::support::{Context, set};
 use crate::base::error::Result;
 use crate::reference::capstan::{Wrapped, string_ratio};
 use crate::scene;
@@ -10,7 +10,7 @@ use crate::scene::spec::PathSpec;
 use crate::strand::helix::Helix;
 use glam::DVec3;
 
-pub const CAPSTAN: Case = Case {
+pub const CAPSTAN: VerificationCase = VerificationCase {
     name: "capstan",
     about: "a thin wire slides round a thick one: growth of its tension",
     source: "Euler 1769, T2 = T1 e^(mu phi); Kirchhoff's equations of a rod for the wire's thickness",
@@ -32,7 +32,7 @@ struct Slide {
     spent: Spent,
 }
 
-fn slide(lab: &Lab, friction: f64, spacing: f64) -> Result<Slide> {
+fn slide(context: &Context, friction: f64, spacing: f64) -> Result<Slide> {
     // A step in proportion to the spacing, as the bonds ask for.
     let options =
         [set("spacing", spacing), set("contact.friction", friction), set("time.step", format!("{} ns", 8.0 * spacing))];
@@ -49,27 +49,27 @@ fn slide(lab: &Lab, friction: f64, spacing: f64) -> Result<Slide> {
     spec.holds[1].force = -helix.tangent(0.0) * spec.holds[1].force.length();
     spec.holds[2].velocity = helix.tangent(height) * spec.holds[2].velocity.length();
     let end = spec.stop.time.expect("the scene says when it ends");
-    let mut trial = lab.trial_of(spec)?;
-    let bonds = trial.bonds();
+    let mut simulation = context.simulation_of(spec)?;
+    let bonds = simulation.bonds();
     let skipped = (ENDS * bonds as f64).round() as usize;
     let [first, last] = [skipped, bonds - 1 - skipped];
-    let ratio = trial.settled(0.5 * end, end, |engine| {
+    let ratio = simulation.settled(0.5 * end, end, |engine| {
         let s = engine.state();
         let tension = |k: usize| s.bond.pull(k).dot((s.x.get(k + 1) - s.x.get(k)).normalize());
         tension(last) / tension(first)
     })?;
     let piece = helix.arc_length(height) / bonds as f64;
     let (length, corner) = (piece * (last - first) as f64, wire.curvature * piece);
-    Ok(Slide { ratio, wire, length, corner, spent: trial.finish() })
+    Ok(Slide { ratio, wire, length, corner, spent: simulation.finish() })
 }
 
-fn capstan(lab: &Lab) -> Result<Vec<Finding>> {
+fn capstan(context: &Context) -> Result<Vec<Comparison>> {
     let mut found = Vec::new();
-    for friction in lab.pick(&[0.2][..], &[0.1, 0.2, 0.4]) {
+    for friction in context.pick(&[0.2][..], &[0.1, 0.2, 0.4]) {
         let mut points = Vec::new();
         let mut finest = None;
-        for spacing in lab.pick(&[5.0, 2.5][..], &[5.0, 2.5, 1.25]) {
-            let s = slide(lab, *friction, *spacing)?;
+        for spacing in context.pick(&[5.0, 2.5][..], &[5.0, 2.5, 1.25]) {
+            let s = slide(context, *friction, *spacing)?;
             let exact = (s.wire.rate() * s.length).exp();
             points.push(Point { resolution: s.corner, error: s.ratio.ln() / exact.ln() - 1.0, spent: s.spent });
             finest = Some((s, exact));
@@ -78,7 +78,7 @@ fn capstan(lab: &Lab) -> Result<Vec<Finding>> {
         let angle = s.wire.curvature * s.length;
         let string = string_ratio(*friction, angle);
         found.push(
-            Finding::new(format!("T2/T1 over {angle:.2} rad, mu = {friction}"), "-", s.ratio, exact, s.spent)
+            Comparison::new(format!("T2/T1 over {angle:.2} rad, mu = {friction}"), "-", s.ratio, exact, s.spent)
                 .within(2e-2)
                 .over("angle of a corner", points)
                 .note(format!(

@@ -1,8 +1,8 @@
 //! Momentum and angular momentum of free bodies, energy of undamped motion.
 
-use super::Case;
-use super::finding::{Convergence, Finding, Point};
-use super::support::{Lab, Trial, set};
+use super::VerificationCase;
+use super::comparison::{Comparison, Convergence, Point};
+use super::support::{Context, Simulation, set};
 use crate::base::error::Result;
 use crate::base::random::uniform;
 use crate::engine::Engine;
@@ -10,28 +10,28 @@ use crate::strand::assembly::Assembly;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-pub const WIRE: Case = Case {
+pub const WIRE: VerificationCase = VerificationCase {
     name: "momenta-wire",
     about: "a free wire thrown and spun, undamped and damped, keeps its momenta",
     source: "Newton's third law",
     run: free_wire,
 };
 
-pub const COLLISION: Case = Case {
+pub const COLLISION: VerificationCase = VerificationCase {
     name: "momenta-collision",
     about: "two wires that collide, rub and yield keep their momenta, any shape and tangential law",
     source: "Newton's third law",
     run: collision,
 };
 
-pub const STRAND: Case = Case {
+pub const STRAND: VerificationCase = VerificationCase {
     name: "momenta-strand",
     about: "an isolated strand that turns, rings, rubs and yields keeps its momenta over 10⁶ steps",
     source: "Newton's third law",
     run: isolated_strand,
 };
 
-pub const ENERGY: Case = Case {
+pub const ENERGY: VerificationCase = VerificationCase {
     name: "energy-drift",
     about: "undamped swing of a few per cent of the length over 10⁶ steps: energy bounded, its trend vanishes with the step",
     source: "symplectic integration: Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, chapter IX",
@@ -61,10 +61,10 @@ fn sizes(engine: &Engine) -> [f64; 2] {
 }
 
 /// Greatest change of the momenta, over their sizes, every `interval` steps; and the greatest number of contacts.
-fn follow(trial: &mut Trial, steps: u64, interval: u64) -> Result<([f64; 2], usize)> {
-    let before = momenta(&trial.engine);
+fn follow(simulation: &mut Simulation, steps: u64, interval: u64) -> Result<([f64; 2], usize)> {
+    let before = momenta(&simulation.engine);
     let (mut worst, mut touching) = ([0.0f64; 2], 0);
-    trial.run_steps(steps, |engine| {
+    simulation.run_steps(steps, |engine| {
         if engine.steps().is_multiple_of(interval) {
             touching = touching.max(engine.contact_counts().2);
             let (now, size) = (momenta(engine), sizes(engine));
@@ -77,67 +77,72 @@ fn follow(trial: &mut Trial, steps: u64, interval: u64) -> Result<([f64; 2], usi
 }
 
 /// Change of both momenta over what the bodies carry.
-fn changes(worst: [f64; 2], what: &str, trial: Trial) -> [Finding; 2] {
-    let spent = trial.finish();
+fn changes(worst: [f64; 2], what: &str, simulation: Simulation) -> [Comparison; 2] {
+    let spent = simulation.finish();
     let finding = |k: usize, name: &str| {
         let what = format!("change of {name} over its size{what}");
-        Finding::new(what, "-", worst[k], 0.0, spent).relative_to(1.0).within(ROUNDING)
+        Comparison::new(what, "-", worst[k], 0.0, spent).relative_to(1.0).within(ROUNDING)
     };
     [finding(0, "momentum"), finding(1, "angular momentum")]
 }
 
 /// The worst of each momentum.
-fn worst_of_each(all: Vec<[Finding; 2]>) -> Vec<Finding> {
+fn worst_of_each(all: Vec<[Comparison; 2]>) -> Vec<Comparison> {
     let (p, l): (Vec<_>, Vec<_>) = all.into_iter().map(|[p, l]| (p, l)).unzip();
-    vec![Finding::worst(p), Finding::worst(l)]
+    vec![Comparison::worst(p), Comparison::worst(l)]
 }
 
-fn free_wire(lab: &Lab) -> Result<Vec<Finding>> {
+fn free_wire(context: &Context) -> Result<Vec<Comparison>> {
     let mut all = Vec::new();
     for damping in [0.0, 0.1] {
-        let mut trial = lab.trial("verify/free-wire", &[set("bond.damping", damping)])?;
-        let (worst, _) = follow(&mut trial, lab.pick(20_000, 100_000), 10)?;
-        all.push(changes(worst, "", trial));
+        let mut simulation = context.simulation("verify/free-wire", &[set("bond.damping", damping)])?;
+        let (worst, _) = follow(&mut simulation, context.pick(20_000, 100_000), 10)?;
+        all.push(changes(worst, "", simulation));
     }
     Ok(worst_of_each(all))
 }
 
-fn collision(lab: &Lab) -> Result<Vec<Finding>> {
+fn collision(context: &Context) -> Result<Vec<Comparison>> {
     let (mut all, mut fewest) = (Vec::new(), usize::MAX);
     for shape in ["sphere", "wire"] {
         for law in ["mindlin", "mindlin-deresiewicz", "none"] {
             let options = [set("contact.shape", shape), set("contact.tangential", law)];
-            let mut trial = lab.trial("verify/crossing-wires", &options)?;
-            let steps = (0.3e-3 / trial.engine.time_step()) as u64;
-            let (worst, touching) = follow(&mut trial, steps, 1)?;
+            let mut simulation = context.simulation("verify/crossing-wires", &options)?;
+            let steps = (0.3e-3 / simulation.engine.time_step()) as u64;
+            let (worst, touching) = follow(&mut simulation, steps, 1)?;
             fewest = fewest.min(touching);
-            all.push(changes(worst, ", worst of 6", trial));
+            all.push(changes(worst, ", worst of 6", simulation));
         }
     }
-    let mut findings = worst_of_each(all);
-    findings.push(touched(fewest, 1, &findings[0]));
-    Ok(findings)
+    let mut comparisons = worst_of_each(all);
+    comparisons.push(touched(fewest, 1, &comparisons[0]));
+    Ok(comparisons)
 }
 
 /// That bodies touched at all, or the case says nothing about contacts.
-fn touched(count: usize, least: usize, like: &Finding) -> Finding {
-    Finding::at_least("contacts at once", "-", count as f64, least as f64, like.spent)
+fn touched(count: usize, least: usize, like: &Comparison) -> Comparison {
+    Comparison::at_least("contacts at once", "-", count as f64, least as f64, like.spent)
 }
 
 /// Seven helical wires, each thrown on its own way on top of the strand's: they ring, rub, yield, and hold each other by
 /// their lay. A quarter of the default step resolves their first impacts, so that the ledger closes.
-fn isolated_strand(lab: &Lab) -> Result<Vec<Finding>> {
-    let steps = lab.pick(100_000, 1_000_000);
-    let mut trial = lab.changed("verify/free-strand", &[set("time.safety", 0.2)], throw)?;
-    let (worst, touching) = follow(&mut trial, steps, 100)?;
-    let energy = trial.engine.energy();
+fn isolated_strand(context: &Context) -> Result<Vec<Comparison>> {
+    let steps = context.pick(100_000, 1_000_000);
+    let mut simulation = context.changed("verify/free-strand", &[set("time.safety", 0.2)], throw)?;
+    let (worst, touching) = follow(&mut simulation, steps, 100)?;
+    let energy = simulation.engine.energy();
     let yielded = energy.plastic_bonds > 0.0 && energy.plastic_contacts > 0.0 && energy.friction > 0.0;
-    let mut findings = Vec::from(changes(worst, &format!(", {steps} steps"), trial));
-    findings.push(touched(touching, 6, &findings[0]));
-    let lost =
-        Finding::new("bonds and contacts yield and rub (1: all do)", "-", f64::from(yielded), 1.0, findings[0].spent);
-    findings.push(lost);
-    Ok(findings)
+    let mut comparisons = Vec::from(changes(worst, &format!(", {steps} steps"), simulation));
+    comparisons.push(touched(touching, 6, &comparisons[0]));
+    let lost = Comparison::new(
+        "bonds and contacts yield and rub (1: all do)",
+        "-",
+        f64::from(yielded),
+        1.0,
+        comparisons[0].spent,
+    );
+    comparisons.push(lost);
+    Ok(comparisons)
 }
 
 /// A common velocity and spin of the whole strand, and waves of random direction up to 5 m/s in every wire.
@@ -167,16 +172,16 @@ struct Drift {
 const WINDOWS: u64 = 50;
 
 /// `steps` steps at the default step over `finer`.
-fn drift(lab: &Lab, finer: u64, steps: u64) -> Result<Drift> {
+fn drift(context: &Context, finer: u64, steps: u64) -> Result<Drift> {
     let options = [
         set("wire.0.velocity", r#"["1 m/s", "0.5 m/s", "0 m/s"]"#),
-        set("time.safety", lab.trial("verify/free-vibration", &[])?.spec.time.safety / finer as f64),
+        set("time.safety", context.simulation("verify/free-vibration", &[])?.spec.time.safety / finer as f64),
     ];
-    let mut trial = lab.trial("verify/free-vibration", &options)?;
-    let (start, steps) = (trial.engine.energy().work, steps * finer);
+    let mut simulation = context.simulation("verify/free-vibration", &options)?;
+    let (start, steps) = (simulation.engine.energy().work, steps * finer);
     let window = steps / WINDOWS;
     let (mut means, mut sum, mut count, mut worst) = (Vec::new(), 0.0, 0, 0.0f64);
-    trial.run_steps(steps, |engine| {
+    simulation.run_steps(steps, |engine| {
         if engine.steps().is_multiple_of(10) {
             let energy = engine.energy();
             let error = (energy.kinetic + energy.elastic_bonds) / start - 1.0;
@@ -189,25 +194,25 @@ fn drift(lab: &Lab, finer: u64, steps: u64) -> Result<Drift> {
             (sum, count) = (0.0, 0);
         }
     })?;
-    let period = TAU / trial.bar().first_bending_frequency();
-    let resolution = trial.engine.time_step() / period;
+    let period = TAU / simulation.bar().first_bending_frequency();
+    let resolution = simulation.engine.time_step() / period;
     let trend = trend(&means);
-    Ok(Drift { worst, trend, point: Point { resolution, error: trend.0, spent: trial.finish() } })
+    Ok(Drift { worst, trend, point: Point { resolution, error: trend.0, spent: simulation.finish() } })
 }
 
 /// The same time is run again with finer steps, so that a trend shows where it comes from.
-fn energy_drift(lab: &Lab) -> Result<Vec<Finding>> {
-    let steps = lab.pick(100_000, 1_000_000);
+fn energy_drift(context: &Context) -> Result<Vec<Comparison>> {
+    let steps = context.pick(100_000, 1_000_000);
     let mut drifts = Vec::new();
-    for finer in lab.pick(&[1][..], &[1, 2, 4]) {
-        drifts.push(drift(lab, *finer, steps)?);
+    for finer in context.pick(&[1][..], &[1, 2, 4]) {
+        drifts.push(drift(context, *finer, steps)?);
     }
     let Drift { worst, trend: (rise, _), point } = &drifts[0];
     let over = |what: &str, value: f64| {
-        Finding::new(format!("{what} over {steps} steps"), "-", value, 0.0, point.spent).relative_to(1.0)
+        Comparison::new(format!("{what} over {steps} steps"), "-", value, 0.0, point.spent).relative_to(1.0)
     };
     let rises: Vec<String> = drifts.iter().map(|d| format!("{:.1e} ± {:.1e}", d.trend.0, 2.0 * d.trend.1)).collect();
-    let mut findings = vec![
+    let mut comparisons = vec![
         over("greatest change of energy", *worst).within(1e-3),
         over("trend of energy", *rise).within(1e-5).note(format!(
             "rise of a straight line through means of {WINDOWS} windows, ± two standard errors, each at half the step of \
@@ -218,11 +223,11 @@ fn energy_drift(lab: &Lab) -> Result<Vec<Finding>> {
     if let [_, .., Drift { trend: (rise, _), point, .. }] = &drifts[..] {
         let part = drifts[0].point.resolution / point.resolution;
         let what = format!("trend of energy over the same time at 1/{part:.0} of that step");
-        let mut finest = Finding::new(what, "-", *rise, 0.0, point.spent).relative_to(1.0).within(1e-6);
+        let mut finest = Comparison::new(what, "-", *rise, 0.0, point.spent).relative_to(1.0).within(1e-6);
         finest.convergence = Some(Convergence { axis: "dt/T", points: drifts.iter().map(|d| d.point).collect() });
-        findings.push(finest);
+        comparisons.push(finest);
     }
-    Ok(findings)
+    Ok(comparisons)
 }
 
 /// Rise of the straight line through equally spaced values, from the first to the last, and its standard error (least

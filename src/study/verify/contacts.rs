@@ -1,8 +1,8 @@
 //! Two spheres: Hertz, Thornton, friction at constant normal force, sliding into rolling.
 
-use super::Case;
-use super::finding::{Finding, Point, Spent};
-use super::support::{Lab, Trial, set};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point, Spent};
+use super::support::{Context, Simulation, set};
 use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::reference::hertz::Pair;
@@ -10,28 +10,28 @@ use crate::reference::mindlin::{Held, effective_shear_modulus};
 use crate::reference::{sliding, thornton};
 use crate::scene::spec::NormalSpec;
 
-pub const HERTZ: Case = Case {
+pub const HERTZ: VerificationCase = VerificationCase {
     name: "hertz",
     about: "two elastic spheres collide head-on: duration, depth and rebound",
     source: "Hertz 1882; Johnson, Contact Mechanics, 1985, section 11.4",
     run: hertz,
 };
 
-pub const THORNTON: Case = Case {
+pub const THORNTON: VerificationCase = VerificationCase {
     name: "thornton",
     about: "two elastoplastic spheres collide head-on: restitution over V/V_y",
     source: "Thornton, J. Appl. Mech. 64 (1997) 383",
     run: thornton_restitution,
 };
 
-pub const TANGENTIAL: Case = Case {
+pub const TANGENTIAL: VerificationCase = VerificationCase {
     name: "friction-constant-load",
     about: "tangential force over displacement at constant normal force, both laws",
     source: "Mindlin 1949; Mindlin & Deresiewicz 1953",
     run: constant_load,
 };
 
-pub const ROLLING: Case = Case {
+pub const ROLLING: VerificationCase = VerificationCase {
     name: "sliding-to-rolling",
     about: "a sphere thrown to slide ends up rolling: when, and how fast, both laws",
     source: "Timoshenko & Young, Advanced Dynamics, 1948: 2 v₀/(7 μ g′), (5/7) v₀",
@@ -41,9 +41,9 @@ pub const ROLLING: Case = Case {
 const TANGENTIAL_LAWS: [&str; 2] = ["mindlin", "mindlin-deresiewicz"];
 
 /// The two equal spheres of a scene.
-fn pair(trial: &Trial) -> Pair {
-    let m = &trial.spec.material;
-    Pair::equal_spheres(0.5 * trial.spec.spheres[0].diameter, m.young, m.poisson, m.density)
+fn pair(simulation: &Simulation) -> Pair {
+    let m = &simulation.spec.material;
+    Pair::equal_spheres(0.5 * simulation.spec.spheres[0].diameter, m.young, m.poisson, m.density)
 }
 
 fn overlap(engine: &Engine) -> f64 {
@@ -52,10 +52,10 @@ fn overlap(engine: &Engine) -> f64 {
 }
 
 /// Duration from touch to parting (s), interpolated (NaN when they do not part), and the greatest overlap (m).
-fn collide(trial: &mut Trial) -> Result<(f64, f64)> {
+fn collide(simulation: &mut Simulation) -> Result<(f64, f64)> {
     let (mut deepest, mut end, mut before) = (0.0f64, f64::NAN, 0.0);
-    let dt = trial.engine.time_step();
-    trial.run(|engine| {
+    let dt = simulation.engine.time_step();
+    simulation.run(|engine| {
         let now = overlap(engine);
         if end.is_nan() && before > 0.0 && now <= 0.0 {
             end = engine.time() - dt * now / (now - before);
@@ -67,34 +67,34 @@ fn collide(trial: &mut Trial) -> Result<(f64, f64)> {
 }
 
 /// Leapfrog is of order 2; the smooth 3/2 power of Hertz's law does not spoil it.
-fn hertz(lab: &Lab) -> Result<Vec<Finding>> {
+fn hertz(context: &Context) -> Result<Vec<Comparison>> {
     let speed = 1.0;
     let (mut points, mut finest) = (Vec::new(), None);
-    for step in lab.pick(&[400.0, 200.0, 100.0][..], &[800.0, 400.0, 200.0, 100.0, 50.0]) {
-        let mut trial = lab.trial("verify/hertz", &[set("time.step", format!("{step} ns"))])?;
-        let exact = pair(&trial);
-        let (time, depth) = collide(&mut trial)?;
-        let v = &trial.engine.state().v;
+    for step in context.pick(&[400.0, 200.0, 100.0][..], &[800.0, 400.0, 200.0, 100.0, 50.0]) {
+        let mut simulation = context.simulation("verify/hertz", &[set("time.step", format!("{step} ns"))])?;
+        let exact = pair(&simulation);
+        let (time, depth) = collide(&mut simulation)?;
+        let v = &simulation.engine.state().v;
         let rebound = v.z[1] - v.z[0];
         let whole = exact.contact_time(speed);
-        let spent = trial.finish();
+        let spent = simulation.finish();
         points.push(Point { resolution: step * 1e-9 / whole, error: time / whole - 1.0, spent });
         finest = Some((time, depth, rebound, exact));
     }
     let (time, depth, rebound, exact) = finest.expect("there are steps");
     let spent = points.last().map_or(Spent::default(), |p| p.spent);
     Ok(vec![
-        Finding::new("contact time", "s", time, exact.contact_time(speed), spent)
+        Comparison::new("contact time", "s", time, exact.contact_time(speed), spent)
             .within(1e-3)
             .converging("dt/T", points, 2.0, 0.1),
-        Finding::new("greatest overlap", "m", depth, exact.greatest_overlap(speed), spent).within(1e-3),
-        Finding::new("speed of rebound", "m/s", rebound, speed, spent).within(1e-6),
+        Comparison::new("greatest overlap", "m", depth, exact.greatest_overlap(speed), spent).within(1e-3),
+        Comparison::new("speed of rebound", "m/s", rebound, speed, spent).within(1e-6),
     ])
 }
 
 /// An elastic contact of each speed in 2000 steps; elastoplastic ones take longer.
-fn thornton_restitution(lab: &Lab) -> Result<Vec<Finding>> {
-    let still = lab.trial("verify/thornton", &[])?;
+fn thornton_restitution(context: &Context) -> Result<Vec<Comparison>> {
+    let still = context.simulation("verify/thornton", &[])?;
     let exact = pair(&still);
     let pressure = match still.spec.contact.as_ref().map(|c| &c.normal) {
         Some(NormalSpec::Thornton { limiting_pressure }) => *limiting_pressure,
@@ -110,22 +110,22 @@ fn thornton_restitution(lab: &Lab) -> Result<Vec<Finding>> {
             set("time.step", format!("{:e} s", time / 2000.0)),
             set("stop.time", format!("{:e} s", 6.0 * time)),
         ];
-        let mut trial = lab.trial("verify/thornton", &options)?;
-        trial.run(|_| {})?;
-        let v = &trial.engine.state().v;
+        let mut simulation = context.simulation("verify/thornton", &options)?;
+        simulation.run(|_| {})?;
+        let v = &simulation.engine.state().v;
         let restitution = (v.z[1] - v.z[0]) / speed;
         let what = format!("restitution at V/V_y = {ratio}");
-        Ok(Finding::new(what, "-", restitution, thornton::restitution(ratio), trial.finish()).within(1e-3))
+        Ok(Comparison::new(what, "-", restitution, thornton::restitution(ratio), simulation.finish()).within(1e-3))
     };
     [0.9, 1.5, 3.0, 10.0, 100.0].into_iter().map(collide_at).collect()
 }
 
 /// At every tenth of the displacement at which the whole contact slides, up to 1.3 of it.
-fn constant_load(lab: &Lab) -> Result<Vec<Finding>> {
+fn constant_load(context: &Context) -> Result<Vec<Comparison>> {
     let of_law = |law: &'static str| {
-        let mut trial = lab.trial("verify/tangential", &[set("contact.tangential", law)])?;
-        let (spec, exact) = (&trial.spec, pair(&trial));
-        let depth = overlap(&trial.engine);
+        let mut simulation = context.simulation("verify/tangential", &[set("contact.tangential", law)])?;
+        let (spec, exact) = (&simulation.spec, pair(&simulation));
+        let depth = overlap(&simulation.engine);
         let held = Held {
             shear_modulus: effective_shear_modulus(spec.material.shear(), spec.material.poisson),
             radius: (exact.radius * depth).sqrt(),
@@ -135,40 +135,40 @@ fn constant_load(lab: &Lab) -> Result<Vec<Finding>> {
         let rate = spec.holds[1].spin.y * (0.5 * spec.spheres[1].diameter - 0.5 * depth);
         let whole = held.sliding_displacement();
         let mut seen = Vec::new();
-        trial.run_to(1.3 * whole / rate, |engine| {
+        simulation.run_to(1.3 * whole / rate, |engine| {
             let slip = rate * engine.time();
             if slip / whole >= 0.1 * (seen.len() + 1) as f64 {
                 seen.push((slip, engine.state().force.x[1].abs()));
             }
         })?;
-        let spent = trial.finish();
+        let spent = simulation.finish();
         let points = seen.len();
         let compare = |(slip, force): (f64, f64)| {
             let exact = if law == "mindlin" { held.no_slip_force(slip) } else { held.partial_slip_force(slip) };
             let what = format!("{law}: force, worst of {points}: {:.1} of sliding", slip / whole);
-            Finding::new(what, "N", force, exact, Spent::default()).within(5e-3)
+            Comparison::new(what, "N", force, exact, Spent::default()).within(5e-3)
         };
-        Ok(Finding { spent, ..Finding::worst(seen.into_iter().map(compare).collect()) })
+        Ok(Comparison { spent, ..Comparison::worst(seen.into_iter().map(compare).collect()) })
     };
     TANGENTIAL_LAWS.into_iter().map(of_law).collect()
 }
 
 /// Slip ends at 2v₀/(7μg′); from then on the speed is (5/7)v₀ in the mean over the ringing of the tangential spring.
-fn sliding_to_rolling(lab: &Lab) -> Result<Vec<Finding>> {
-    let mut findings = Vec::new();
+fn sliding_to_rolling(context: &Context) -> Result<Vec<Comparison>> {
+    let mut comparisons = Vec::new();
     for law in TANGENTIAL_LAWS {
         let (radius, floor, force, speed, friction) = (0.5e-3, 1.0, 10e-3, 0.5, 0.2);
-        let m = lab.trial("verify/rolling", &[])?.spec.material;
+        let m = context.simulation("verify/rolling", &[])?.spec.material;
         let modulus = m.young / (2.0 * (1.0 - m.poisson * m.poisson));
         let reduced = radius * floor / (radius + floor);
         let depth = (0.75 * force / (modulus * f64::sqrt(reduced))).powf(2.0 / 3.0);
         let height = format!(r#"["0 m", "0 m", "{:.17e} m"]"#, radius - depth);
-        let mut trial =
-            lab.trial("verify/rolling", &[set("sphere.1.position", height), set("contact.tangential", law)])?;
-        let mass = trial.engine.assembly().mass[1];
+        let mut simulation = context
+            .simulation("verify/rolling", &[set("sphere.1.position", height), set("contact.tangential", law)])?;
+        let mass = simulation.engine.assembly().mass[1];
         let start = sliding::rolling_start(speed, friction, force / mass);
         let (mut rolls, mut sum, mut count) = (f64::NAN, 0.0, 0);
-        trial.run_to(2.0 * start, |engine| {
+        simulation.run_to(2.0 * start, |engine| {
             let s = engine.state();
             let slip = s.v.x[1] - s.w.y[1] * (radius - 0.5 * depth);
             if rolls.is_nan() && slip <= 0.0 {
@@ -179,10 +179,10 @@ fn sliding_to_rolling(lab: &Lab) -> Result<Vec<Finding>> {
                 count += 1;
             }
         })?;
-        let (mean, spent) = (sum / f64::from(count), trial.finish());
+        let (mean, spent) = (sum / f64::from(count), simulation.finish());
         let exact = sliding::rolling_speed(speed);
-        findings.push(Finding::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2));
-        findings.push(Finding::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3));
+        comparisons.push(Comparison::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2));
+        comparisons.push(Comparison::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3));
     }
-    Ok(findings)
+    Ok(comparisons)
 }

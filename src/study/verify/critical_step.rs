@@ -1,33 +1,33 @@
 //! The stable step: where runs really explode, against 2/ω_max and against the engine's bound.
 
-use super::Case;
-use super::finding::{Finding, Spent};
-use super::support::{Lab, set};
+use super::VerificationCase;
+use super::comparison::{Comparison, Spent};
+use super::support::{Context, set};
 use crate::base::error::{Error, Result};
 use crate::reference::stability::{Ends, critical_step};
 
-pub const CHAIN: Case = Case {
+pub const CHAIN: VerificationCase = VerificationCase {
     name: "critical-step-chain",
     about: "axial chain between two walls: the step at which it explodes, and the engine's bound",
     source: "2/ω_max: Belytschko, Liu & Moran, Nonlinear Finite Elements, section 6.2",
     run: chain,
 };
 
-pub const CANTILEVER: Case = Case {
+pub const CANTILEVER: VerificationCase = VerificationCase {
     name: "critical-step-cantilever",
     about: "cantilever in all its modes: the engine's bound lies below the step that explodes, within 20 %",
     source: "bisection on the engine itself",
     run: cantilever,
 };
 
-pub const FREE_WIRE: Case = Case {
+pub const FREE_WIRE: VerificationCase = VerificationCase {
     name: "critical-step-free-wire",
     about: "free wire in all its modes: the engine's bound lies below the step that explodes, within 20 %",
     source: "bisection on the engine itself",
     run: free_wire,
 };
 
-pub const DAMPED: Case = Case {
+pub const DAMPED: VerificationCase = VerificationCase {
     name: "critical-step-damped",
     about: "damped cantilever: the engine's bound lies below the step that explodes",
     source: "bisection on the engine itself",
@@ -48,21 +48,21 @@ struct Edge {
 
 impl Edge {
     /// The bound against the edge: below it by at most `share` (-).
-    fn bound_below(&self, what: impl Into<String>, share: f64) -> Finding {
-        Finding::new(what, "s", self.bound, self.step, self.spent).between(-share, 0.0)
+    fn bound_below(&self, what: impl Into<String>, share: f64) -> Comparison {
+        Comparison::new(what, "s", self.bound, self.step, self.spent).between(-share, 0.0)
     }
 }
 
 /// Bisection between 0.5 and 2 times the bound; without an edge there, the edge is NaN.
-fn edge(lab: &Lab, scene: &str, options: &[String]) -> Result<Edge> {
-    let bound = lab.trial(scene, options)?.engine.time_step_bound();
+fn edge(context: &Context, scene: &str, options: &[String]) -> Result<Edge> {
+    let bound = context.simulation(scene, options)?.engine.time_step_bound();
     let mut spent = Spent::default();
     let mut explodes = |step: f64| {
         let mut options = options.to_vec();
         options.push(set("time.step", format!("{step:e} s")));
-        let mut trial = lab.trial(scene, &options)?;
-        let result = trial.run_steps(STEPS, |_| {});
-        spent = spent + trial.spent();
+        let mut simulation = context.simulation(scene, &options)?;
+        let result = simulation.run_steps(STEPS, |_| {});
+        spent = spent + simulation.spent();
         match result {
             Ok(()) => Ok(false),
             Err(Error::Simulation(_)) => Ok(true),
@@ -80,49 +80,49 @@ fn edge(lab: &Lab, scene: &str, options: &[String]) -> Result<Edge> {
     Ok(Edge { step: low, bound, spent })
 }
 
-fn chain(lab: &Lab) -> Result<Vec<Finding>> {
-    let still = lab.trial("verify/chain", &[])?;
+fn chain(context: &Context) -> Result<Vec<Comparison>> {
+    let still = context.simulation("verify/chain", &[])?;
     let (a, bar) = (still.engine.assembly(), still.bar());
     let exact =
         critical_step(Ends::FixedFixed, a.wires[0].len - 2, bar.young * bar.area() / a.rest_length[0], a.mass[1]);
-    let edge = edge(lab, "verify/chain", &[])?;
+    let edge = edge(context, "verify/chain", &[])?;
     Ok(vec![
-        Finding::new("greatest stable step", "s", edge.step, exact, edge.spent).within(5e-4),
-        Finding::new("the engine's bound", "s", edge.bound, exact, edge.spent).between(-0.2, 0.0),
+        Comparison::new("greatest stable step", "s", edge.step, exact, edge.spent).within(5e-4),
+        Comparison::new("the engine's bound", "s", edge.bound, exact, edge.spent).between(-0.2, 0.0),
     ])
 }
 
 /// Which mode limits changes with the spacing.
-fn cantilever(lab: &Lab) -> Result<Vec<Finding>> {
-    let mut findings = Vec::new();
-    for spacing in lab.pick(&[0.5, 2.0][..], &[0.5, 1.0, 2.0, 3.0]) {
+fn cantilever(context: &Context) -> Result<Vec<Comparison>> {
+    let mut comparisons = Vec::new();
+    for spacing in context.pick(&[0.5, 2.0][..], &[0.5, 1.0, 2.0, 3.0]) {
         let options =
             [set("spacing", spacing), set("wire.0.to", r#"["0 mm", "0 mm", "6 mm"]"#), set("stop.time", "1 s")];
-        let edge = edge(lab, "verify/free-vibration", &options)?;
-        findings.push(edge.bound_below(format!("the engine's bound, worst spacing: {spacing} d"), 0.2));
+        let edge = edge(context, "verify/free-vibration", &options)?;
+        comparisons.push(edge.bound_below(format!("the engine's bound, worst spacing: {spacing} d"), 0.2));
     }
-    Ok(vec![Finding::worst(findings)])
+    Ok(vec![Comparison::worst(comparisons)])
 }
 
 /// Its end particles have half the mass. A gentle throw: turning fast, the wire would be pulled stiffer than the bound
 /// knows at the start.
-fn free_wire(lab: &Lab) -> Result<Vec<Finding>> {
-    let mut findings = Vec::new();
+fn free_wire(context: &Context) -> Result<Vec<Comparison>> {
+    let mut comparisons = Vec::new();
     for spacing in [1.0, 2.0] {
         let options = [set("spacing", spacing), set("wire.0.spin", r#"["2 rad/s", "1 rad/s", "-1 rad/s"]"#)];
-        let edge = edge(lab, "verify/free-wire", &options)?;
-        findings.push(edge.bound_below(format!("the engine's bound, worst spacing: {spacing} d"), 0.2));
+        let edge = edge(context, "verify/free-wire", &options)?;
+        comparisons.push(edge.bound_below(format!("the engine's bound, worst spacing: {spacing} d"), 0.2));
     }
-    Ok(vec![Finding::worst(findings)])
+    Ok(vec![Comparison::worst(comparisons)])
 }
 
-fn damped(lab: &Lab) -> Result<Vec<Finding>> {
+fn damped(context: &Context) -> Result<Vec<Comparison>> {
     [0.05, 0.3]
         .into_iter()
         .map(|damping| {
             let options =
                 [set("bond.damping", damping), set("wire.0.to", r#"["0 mm", "0 mm", "6 mm"]"#), set("spacing", 1)];
-            let edge = edge(lab, "verify/free-vibration", &options)?;
+            let edge = edge(context, "verify/free-vibration", &options)?;
             let finding = edge.bound_below(format!("the engine's bound at {damping} of critical damping"), 1.0);
             Ok(finding.note("the bound counts every bond's damping at its worst, and may lie well below"))
         })

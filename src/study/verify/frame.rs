@@ -1,15 +1,15 @@
 //! The same motion in other frames of reference.
 
-use super::Case;
-use super::finding::{Finding, Spent};
-use super::support::Lab;
+use super::VerificationCase;
+use super::comparison::{Comparison, Spent};
+use super::support::Context;
 use crate::base::error::Result;
 use crate::engine::state::BondActions;
 use crate::scene;
 use crate::scene::spec::{PathSpec, Spec};
 use glam::{DMat3, DVec3};
 
-pub const FRAME: Case = Case {
+pub const FRAME: VerificationCase = VerificationCase {
     name: "frame-indifference",
     about: "a rod is twisted, bent and pulled, and two wires collide, in turned, shifted and flying frames: nothing changes",
     source: "Galilean relativity, isotropy of space",
@@ -49,7 +49,7 @@ impl Frame {
 }
 
 /// What must not depend on the frame.
-struct Outcome {
+struct FrameRun {
     /// Positions (m), bond forces (N) and moments (N m), seen from home.
     vectors: [Vec<DVec3>; 3],
     /// Thinning of the bonds, which tells their plastic strain (-).
@@ -59,18 +59,18 @@ struct Outcome {
     spent: Spent,
 }
 
-fn outcome(lab: &Lab, name: &str, frame: &Frame) -> Result<Outcome> {
+fn outcome(context: &Context, name: &str, frame: &Frame) -> Result<FrameRun> {
     let mut spec = scene::load(name, &[])?.spec;
     spec.time.step = Some(spec.time.step.unwrap_or(20e-9));
     frame.see(&mut spec);
-    let mut trial = lab.trial_of(spec)?;
-    trial.run(|_| {})?;
-    let s = trial.engine.state();
+    let mut simulation = context.simulation_of(spec)?;
+    simulation.run(|_| {})?;
+    let s = simulation.engine.state();
     let home = frame.turn.transpose();
     let away = frame.shift + frame.velocity * s.time;
     let seen = |v: DVec3| home * v;
-    let e = trial.engine.energy();
-    Ok(Outcome {
+    let e = simulation.engine.energy();
+    Ok(FrameRun {
         vectors: [
             (0..s.len()).map(|p| seen(s.x.get(p) - away)).collect(),
             (0..s.len()).map(|b| seen(s.bond.pull(b))).collect(),
@@ -78,11 +78,11 @@ fn outcome(lab: &Lab, name: &str, frame: &Frame) -> Result<Outcome> {
         ],
         thinning: (0..s.len()).map(|b| s.bond.get(b, BondActions::THINNING)).collect(),
         energies: [e.elastic_bonds, e.plastic_bonds, e.damping, e.plastic_contacts, e.friction],
-        spent: trial.finish(),
+        spent: simulation.finish(),
     })
 }
 
-impl Outcome {
+impl FrameRun {
     /// Greatest difference to `other`, each relative to the greatest value of its kind (-).
     fn differs(&self, other: &Self) -> [f64; 3] {
         let forces = self.vectors.iter().zip(&other.vectors).skip(1).map(|(a, b)| {
@@ -98,7 +98,7 @@ impl Outcome {
     }
 }
 
-fn frame(lab: &Lab) -> Result<Vec<Finding>> {
+fn frame(context: &Context) -> Result<Vec<Comparison>> {
     let turn = DMat3::from_axis_angle(DVec3::new(1.0, -2.0, 0.5).normalize(), 1.1);
     let (shift, velocity) = (DVec3::new(0.3, -0.7, 0.5), DVec3::new(30.0, -20.0, 50.0));
     let frames = [
@@ -117,16 +117,16 @@ fn frame(lab: &Lab) -> Result<Vec<Finding>> {
         ),
         ("verify/crossing-wires", "collision", 1e-4, "Rounding grows while the wires ring and rub."),
     ] {
-        let home = outcome(lab, scene, &Frame::HOME)?;
+        let home = outcome(context, scene, &Frame::HOME)?;
         let mut off = Vec::new();
         for (how, frame) in frames {
-            let there = outcome(lab, scene, &frame)?;
+            let there = outcome(context, scene, &frame)?;
             for (kind, value) in ["forces", "plastic strains", "energies"].iter().zip(there.differs(&home)) {
                 let what = format!("{what}: greatest difference, {kind}, {how}");
-                off.push(Finding::new(what, "-", value, 0.0, there.spent).relative_to(1.0).within(target));
+                off.push(Comparison::new(what, "-", value, 0.0, there.spent).relative_to(1.0).within(target));
             }
         }
-        found.push(Finding::worst(off).note(note));
+        found.push(Comparison::worst(off).note(note));
     }
     Ok(found)
 }

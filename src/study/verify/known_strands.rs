@@ -3,27 +3,27 @@
 //! Force and torque are those of strand theory, which `reference::strand` has and tests against the printed values; the
 //! elastic-plastic strand is compared with the forces printed for it.
 
-use super::Case;
-use super::finding::{Finding, Spent};
-use super::support::{Lab, set};
+use super::VerificationCase;
+use super::comparison::{Comparison, Spent};
+use super::support::{Context, set};
 use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::strand::theory::Theory;
 
-pub const UTTING: Case = Case {
+pub const UTTING: VerificationCase = VerificationCase {
     name: "strand-utting",
     about: "1x7 strands at lay angles of 9.2, 11.8 and 14.9 degrees: force and torque at 0.1 %",
     source: "strand theory; Utting & Jones, Int. J. Mech. Sci. 29 (1987) 605",
-    run: |lab| elastic(lab, &[utting("148.773 mm"), utting("115.341 mm"), utting("90.559 mm")]),
+    run: |context| elastic(context, &[utting("148.773 mm"), utting("115.341 mm"), utting("90.559 mm")]),
 };
 
-pub const TEXTBOOK: Case = Case {
+pub const TEXTBOOK: VerificationCase = VerificationCase {
     name: "strand-textbook",
     about: "1x7 strand of 0.206 and 0.202 in at a pitch of 9.75 in: force and torque at 0.3 %",
     source: "Costello, Theory of Wire Rope, 2nd ed. 1997, chapter 3",
-    run: |lab| {
+    run: |context| {
         elastic(
-            lab,
+            context,
             &[Strand {
                 young: "196.5005745 GPa",
                 poisson: 0.25,
@@ -36,13 +36,13 @@ pub const TEXTBOOK: Case = Case {
     },
 };
 
-pub const GHOREISHI: Case = Case {
+pub const GHOREISHI: VerificationCase = VerificationCase {
     name: "strand-ghoreishi",
     about: "1x7 strand of 5.35 and 5.18 mm at a pitch of 230 mm: force and torque at 0.1 %",
     source: "strand theory; Ghoreishi et al., Int. J. Mech. Sci. 49 (2007) 1251",
-    run: |lab| {
+    run: |context| {
         elastic(
-            lab,
+            context,
             &[Strand {
                 young: "200 GPa",
                 poisson: 0.3,
@@ -55,7 +55,7 @@ pub const GHOREISHI: Case = Case {
     },
 };
 
-pub const JIANG: Case = Case {
+pub const JIANG: VerificationCase = VerificationCase {
     name: "strand-jiang",
     about: "1x7 strand that yields, with friction: force at 0.1, 1 and 1.5 %",
     source: "Jiang, Yao & Walton, Int. J. Mech. Sci. 41 (1999) 1233",
@@ -122,40 +122,42 @@ fn load(engine: &Engine) -> [f64; 2] {
     [0.5 * (sample.grip_force[0] + sample.grip_force[1]), sample.torque]
 }
 
-fn elastic(lab: &Lab, strands: &[Strand]) -> Result<Vec<Finding>> {
-    let mut findings = Vec::new();
+fn elastic(context: &Context, strands: &[Strand]) -> Result<Vec<Comparison>> {
+    let mut comparisons = Vec::new();
     for strand in strands {
-        let mut trial = lab.trial("verify/known-strand", &strand.options())?;
-        let theory = Theory::of_pull(&trial.spec).expect("the scene is a strand that is pulled");
-        let started = trial.engine.energy().elastic_contacts;
-        trial.run(|_| {})?;
-        let strain = trial.engine.strain();
-        let [force, torque] = load(&trial.engine);
-        let work = trial.engine.energy().work;
-        let spent = trial.finish();
+        let mut simulation = context.simulation("verify/known-strand", &strand.options())?;
+        let theory = Theory::of_pull(&simulation.spec).expect("the scene is a strand that is pulled");
+        let started = simulation.engine.energy().elastic_contacts;
+        simulation.run(|_| {})?;
+        let strain = simulation.engine.strain();
+        let [force, torque] = load(&simulation.engine);
+        let work = simulation.engine.energy().work;
+        let spent = simulation.finish();
         let at =
             |what: &str| format!("{what}, {} and {}, pitch {}", strand.diameters[0], strand.diameters[1], strand.pitch);
         let [low, high] = SHAPE.force;
-        findings.push(Finding::new(at("force"), "N", force, theory.wrench.force * strain, spent).between(low, high));
+        comparisons
+            .push(Comparison::new(at("force"), "N", force, theory.wrench.force * strain, spent).between(low, high));
         let [low, high] = SHAPE.torque;
-        findings
-            .push(Finding::new(at("torque"), "N m", torque, theory.wrench.torque * strain, spent).between(low, high));
-        findings.push(
-            Finding::new(at("energy in contacts before the pull, over its work"), "-", started / work, 0.0, spent)
+        comparisons.push(
+            Comparison::new(at("torque"), "N m", torque, theory.wrench.torque * strain, spent).between(low, high),
+        );
+        comparisons.push(
+            Comparison::new(at("energy in contacts before the pull, over its work"), "-", started / work, 0.0, spent)
                 .relative_to(1.0)
                 .within(SHAPE.started),
         );
     }
-    findings[1].note = Some(
+    comparisons[1].note = Some(
         "Torque is that of wires as rods which stretch; the textbook's formula leaves their twist per length out and has \
          4 to 5 % less."
             .into(),
     );
-    Ok(findings)
+    Ok(comparisons)
 }
 
 /// Bilinear true stress: yield at 1540 MPa, tangent modulus 24.6 GPa, so H = E Eₜ/(E − Eₜ).
-fn yielding(lab: &Lab) -> Result<Vec<Finding>> {
+fn yielding(context: &Context) -> Result<Vec<Comparison>> {
     let strand = Strand {
         young: "188 GPa",
         poisson: 0.3,
@@ -172,11 +174,11 @@ fn yielding(lab: &Lab) -> Result<Vec<Finding>> {
         set("contact.tangential", "mindlin"),
         set("contact.friction", 0.115),
     ]);
-    let mut trial = lab.trial("verify/known-strand", &options)?;
+    let mut simulation = context.simulation("verify/known-strand", &options)?;
     let known = [(1e-3, 13.70e3), (1e-2, 120.1e3), (1.5e-2, 129.1e3)];
     let mut found: Vec<f64> = Vec::new();
     let mut before = [0.0; 2];
-    trial.run(|engine| {
+    simulation.run(|engine| {
         let now = [engine.strain(), load(engine)[0]];
         while let Some((strain, _)) = known.get(found.len()).filter(|(strain, _)| now[0] >= *strain) {
             let share = (strain - before[0]) / (now[0] - before[0]);
@@ -184,10 +186,10 @@ fn yielding(lab: &Lab) -> Result<Vec<Finding>> {
         }
         before = now;
     })?;
-    let spent: Spent = trial.finish();
+    let spent: Spent = simulation.finish();
     let finding = |((strain, force), found): (&(f64, f64), f64)| {
         let [low, high] = if *strain < 5e-3 { SHAPE.force } else { SHAPE.plastic };
-        Finding::new(format!("force at {} %", strain * 1e2), "N", found, *force, spent).between(low, high)
+        Comparison::new(format!("force at {} %", strain * 1e2), "N", found, *force, spent).between(low, high)
     };
     Ok(known.iter().zip(found).map(finding).collect())
 }

@@ -3,13 +3,12 @@
 
 mod beams;
 mod capstan;
-
+pub mod comparison;
 mod conservation;
 mod contacts;
 mod critical_step;
 mod damping;
 mod elastica;
-pub mod finding;
 mod frame;
 mod known_strands;
 mod modes;
@@ -28,18 +27,17 @@ mod waves;
 mod wires;
 mod written;
 
-use crate::base::error::Result;
-use crate::run::in_pool;
+use crate::base::error::{Error, Result};
+use crate::study::runner::{CaseRunner, Named, Status};
 use crate::study::select;
-use finding::{Finding, Outcome};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use comparison::{Comparison, Verdict};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use support::Context;
 pub use support::Effort;
-use support::Lab;
 
 /// A case: one claim about the engine that a closed form decides.
-pub struct Case {
+pub struct VerificationCase {
     /// What the user calls it.
     pub name: &'static str,
     /// The claim in one line.
@@ -47,11 +45,11 @@ pub struct Case {
     /// Where the equation comes from.
     pub source: &'static str,
     /// Runs what the case needs and compares.
-    pub run: fn(&Lab) -> Result<Vec<Finding>>,
+    pub run: fn(&Context) -> Result<Vec<Comparison>>,
 }
 
 /// All cases, by theme.
-pub const CASES: &[Case] = &[
+pub const CASES: &[VerificationCase] = &[
     // Bars and beams
     beams::CANTILEVER,
     beams::STOCKY,
@@ -112,16 +110,16 @@ pub const CASES: &[Case] = &[
 ///
 /// # Errors
 /// A name that no case has; the nearest is suggested.
-pub fn select(names: &[String]) -> Result<Vec<&'static Case>> {
+pub fn select(names: &[String]) -> Result<Vec<&'static VerificationCase>> {
     select::select(names, CASES, |case| case.name, "verification case", "strandsnap verify --list")
 }
 
 /// What became of one case.
 pub struct Report {
     /// The case.
-    pub case: &'static Case,
+    pub case: &'static VerificationCase,
     /// What it found, its energy ledger last; or why it could not be run.
-    pub result: Result<Vec<Finding>>,
+    pub result: Result<Vec<Comparison>>,
     /// Wall time (s).
     pub wall_s: f64,
 }
@@ -129,56 +127,42 @@ pub struct Report {
 impl Report {
     /// Whether the case ran and every finding agrees with its closed form.
     pub fn passes(&self) -> bool {
-        self.result.as_ref().is_ok_and(|findings| findings.iter().all(|f| f.outcome() == Outcome::Pass))
+        self.result.as_ref().is_ok_and(|comparisons| comparisons.iter().all(|f| f.verdict() == Verdict::Pass))
     }
 }
 
-/// Runs one case on the present thread pool. `stop` ends it early, as an error.
-pub fn run_one(case: &'static Case, effort: Effort, stop: &AtomicBool) -> Report {
+/// Runs one case on the present thread pool.
+///
+/// # Errors
+/// [`Error::Interrupted`] when `stop` ended it early.
+pub fn run_one(case: &'static VerificationCase, effort: Effort, stop: &AtomicBool) -> Result<Report> {
     let began = Instant::now();
-    let lab = Lab::new(effort, stop);
-    let result = (case.run)(&lab).map(|mut findings| {
-        findings.extend(lab.ledger());
-        findings
-    });
-    Report { case, result, wall_s: began.elapsed().as_secs_f64() }
+    let context = Context::new(effort, stop);
+    let result = match (case.run)(&context) {
+        Err(Error::Interrupted) => return Err(Error::Interrupted),
+        other => other.map(|mut comparisons| {
+            comparisons.extend(context.ledger());
+            comparisons
+        }),
+    };
+    Ok(Report { case, result, wall_s: began.elapsed().as_secs_f64() })
 }
 
-/// Runs cases side by side, each on a thread of its own: they are small, and sharing one out over threads would only
-/// cost. Calls `done` after each. Reports come in the order of `cases`; those that `stop` cut short are left out.
+/// Runs cases; they are small, so a runner with several jobs, each on one thread, is fastest. The statuses come in the
+/// order of `cases`.
 ///
 /// # Errors
 /// When a thread cannot be started.
 pub fn run_all(
-    cases: &[&'static Case],
+    cases: &[&'static VerificationCase],
     effort: Effort,
-    threads: usize,
-    stop: &AtomicBool,
-    done: &(dyn Fn(&Report) + Sync),
-) -> Result<Vec<Report>> {
-    let next = AtomicUsize::new(0);
-    let reports = Mutex::new(Vec::new());
-    let work = || -> Result<()> {
-        while !stop.load(Ordering::Relaxed) {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(case) = cases.get(index) else { break };
-            let report = in_pool(Some(1), || run_one(case, effort, stop))?;
-            if report.result.is_ok() || !stop.load(Ordering::Relaxed) {
-                done(&report);
-                reports.lock().unwrap_or_else(PoisonError::into_inner).push((index, report));
-            }
-        }
-        Ok(())
+    runner: &CaseRunner,
+) -> Result<Vec<Status<Report>>> {
+    let named = |case: &&'static VerificationCase| {
+        let case = *case;
+        Named(case.name.into(), move |stop: &AtomicBool| run_one(case, effort, stop))
     };
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads.clamp(1, cases.len().max(1))).map(|_| scope.spawn(work)).collect();
-        workers
-            .into_iter()
-            .try_for_each(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-    })?;
-    let mut reports = reports.into_inner().unwrap_or_else(PoisonError::into_inner);
-    reports.sort_by_key(|(index, _)| *index);
-    Ok(reports.into_iter().map(|(_, report)| report).collect())
+    runner.run(&cases.iter().map(named).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Error against resolution and against run time, case by case.
 
 use super::Report;
-use super::finding::{Convergence, Finding};
+use super::comparison::{Comparison, Convergence};
 use crate::base::error::Result;
 use crate::study::plot::{self, Axis, Figure, Limit, Mark, Series, Slope};
 use std::path::{Path, PathBuf};
@@ -20,31 +20,23 @@ pub fn write(reports: &[Report], folder: &Path) -> Result<Vec<PathBuf>> {
         })
         .collect();
     let mut files = Vec::new();
-    let mut save = |name: &str, figures: &[Figure], columns: usize| -> Result<()> {
-        for extension in ["svg", "png"] {
-            let path = folder.join(format!("{name}.{extension}"));
-            plot::write(figures, columns, &path)?;
-            files.push(path);
-        }
-        Ok(())
-    };
     for (name, pair) in &pairs {
-        save(name, pair, 2)?;
+        files.extend(plot::write_pair(pair, 2, folder, name)?);
     }
     if pairs.len() > 1 {
         let all: Vec<Figure> = pairs.into_iter().flat_map(|(_, pair)| pair).collect();
-        save("all", &all, 4)?;
+        files.extend(plot::write_pair(&all, 4, folder, "all")?);
     }
     Ok(files)
 }
 
 /// Error over resolution and over run time.
-fn figures(name: &str, finding: &Finding, convergence: &Convergence) -> [Figure; 2] {
+fn figures(name: &str, finding: &Comparison, convergence: &Convergence) -> [Figure; 2] {
     let error = || Axis::log("|relative error| [-]");
     let title = format!("{name}: {}", finding.what);
     let mut by_resolution = Figure::new(title, Axis::log(format!("{} [-]", convergence.axis)), error());
     let mut by_time = Figure::new(format!("{name}: cost"), Axis::log("run time on one core [s]"), error());
-    let points = |x: fn(&super::finding::Point) -> f64| {
+    let points = |x: fn(&super::comparison::Point) -> f64| {
         convergence.points.iter().map(|p| [x(p), p.error.abs()]).collect::<Vec<_>>()
     };
     by_resolution.series.push(Series::new("error", Mark::LineAndPoints, points(|p| p.resolution)));

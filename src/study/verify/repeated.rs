@@ -1,15 +1,15 @@
 //! Repeated loading of an elastoplastic contact.
 
-use super::Case;
-use super::finding::Finding;
-use super::support::Lab;
+use super::VerificationCase;
+use super::comparison::Comparison;
+use super::support::Context;
 use crate::base::error::Result;
 use crate::reference::hertz::Pair;
 use crate::reference::thornton;
 use crate::scene::spec::{DriveSpec, NormalSpec};
 use std::f64::consts::TAU;
 
-pub const REPEATED: Case = Case {
+pub const REPEATED: VerificationCase = VerificationCase {
     name: "thornton-repeated",
     about: "an elastoplastic contact is loaded, unloaded and loaded again, deeper each time: force and lost energy",
     source: "Thornton, J. Appl. Mech. 64 (1997) 383",
@@ -17,25 +17,26 @@ pub const REPEATED: Case = Case {
 };
 
 /// The overlap is prescribed, v t + A sin ωt: the force is compared at every step, the energy after every cycle.
-fn repeated(lab: &Lab) -> Result<Vec<Finding>> {
-    let mut trial = lab.trial("verify/repeated", &[])?;
-    let NormalSpec::Thornton { limiting_pressure } = trial.spec.contact.as_ref().expect("it touches").normal else {
+fn repeated(context: &Context) -> Result<Vec<Comparison>> {
+    let mut simulation = context.simulation("verify/repeated", &[])?;
+    let NormalSpec::Thornton { limiting_pressure } = simulation.spec.contact.as_ref().expect("it touches").normal
+    else {
         unreachable!("the scene is elastoplastic")
     };
-    let Some(DriveSpec::Cyclic { amplitude, frequency }) = trial.spec.grip.as_ref().map(|g| g.drive) else {
+    let Some(DriveSpec::Cyclic { amplitude, frequency }) = simulation.spec.grip.as_ref().map(|g| g.drive) else {
         unreachable!("the scene swings")
     };
-    let speed = -trial.spec.holds[0].velocity.z;
-    let (m, sphere) = (trial.spec.material, trial.engine.state().len() - 1);
-    let radii = [sphere - 1, sphere].map(|p| trial.engine.state().radius[p]);
+    let speed = -simulation.spec.holds[0].velocity.z;
+    let (m, sphere) = (simulation.spec.material, simulation.engine.state().len() - 1);
+    let radii = [sphere - 1, sphere].map(|p| simulation.engine.state().radius[p]);
     let pair = Pair {
         radius: 1.0 / (1.0 / radii[0] + 1.0 / radii[1]),
         ..Pair::equal_spheres(1.0, m.young, m.poisson, m.density)
     };
-    let cycles = lab.pick(3.0, 6.0);
+    let cycles = context.pick(3.0, 6.0);
     let (mut greatest, mut strongest, mut worst) = (0.0f64, 0.0f64, [0.0f64; 2]);
     let mut energies = Vec::new();
-    trial.run_to(cycles / frequency, |engine| {
+    simulation.run_to(cycles / frequency, |engine| {
         let time = engine.time();
         let overlap = speed * time + amplitude * (TAU * frequency * time).sin();
         greatest = greatest.max(overlap);
@@ -50,17 +51,17 @@ fn repeated(lab: &Lab) -> Result<Vec<Finding>> {
             energies.push([engine.energy().plastic_contacts, lost]);
         }
     })?;
-    let spent = trial.finish();
+    let spent = simulation.finish();
     let per_cycle = |k: usize, side: usize| energies[k][side] - if k > 0 { energies[k - 1][side] } else { 0.0 };
     let lost = (0..energies.len())
         .map(|k| {
             let what = format!("energy lost in cycle {}", k + 1);
-            Finding::new(what, "J", per_cycle(k, 0), per_cycle(k, 1), spent).within(1e-3)
+            Comparison::new(what, "J", per_cycle(k, 0), per_cycle(k, 1), spent).within(1e-3)
         })
         .collect();
     let what = format!("force, furthest off in {cycles} cycles");
     Ok(vec![
-        Finding::new(what, "N", worst[0], worst[1], spent).relative_to(strongest).within(1e-6),
-        Finding { spent, ..Finding::worst(lost) },
+        Comparison::new(what, "N", worst[0], worst[1], spent).relative_to(strongest).within(1e-6),
+        Comparison { spent, ..Comparison::worst(lost) },
     ])
 }

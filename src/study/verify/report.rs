@@ -1,117 +1,105 @@
 //! What verification found, as a table for people and as JSON for programs.
 
 use super::Report;
-use super::finding::{Finding, Outcome};
-use crate::base::error::{Error, Result};
+use super::comparison::{Comparison, Convergence, Point, Verdict};
+use crate::base::error::Result;
 use crate::observe::files::write_whole;
-use serde::Serialize;
+use crate::study::column::{self, Column, Value};
 use std::fmt::Write;
 use std::path::Path;
 
-/// One finding in JSON. Numbers that are not finite are null.
-#[derive(Serialize)]
-struct Row<'a> {
-    case: &'a str,
-    quantity: &'a str,
-    unit: &'a str,
-    computed: Option<f64>,
-    exact: Option<f64>,
-    /// Of `scale`, in the finding's unit.
-    error_percent: Option<f64>,
-    scale: Option<f64>,
-    /// Least and greatest error allowed; null where there is no limit.
-    target_percent: [Option<f64>; 2],
-    order: Option<f64>,
-    order_theory: Option<f64>,
-    order_tolerance: Option<f64>,
-    steps: u64,
-    wall_s: f64,
-    /// `pass`, `miss`, or `failed` when the case could not be run.
-    outcome: &'a str,
-    note: Option<String>,
-    series: Option<Series<'a>>,
+/// A line of the results: a comparison of a case, or that the case could not be run.
+type Line<'a> = (&'a Report, Option<&'a Comparison>);
+
+/// The lines of a report.
+fn lines(report: &Report) -> Vec<Line<'_>> {
+    match &report.result {
+        Ok(comparisons) => comparisons.iter().map(|finding| (report, Some(finding))).collect(),
+        Err(_) => vec![(report, None)],
+    }
 }
 
-#[derive(Serialize)]
-struct Series<'a> {
-    axis: &'a str,
-    points: Vec<SeriesPoint>,
+/// The columns of a line, in JSON and for people. Numbers that are not finite are null.
+fn columns<'a>() -> Vec<Column<'a, Line<'a>>> {
+    fn of<'a, V: Into<Value> + 'static>(of: fn(&Comparison) -> V) -> impl Fn(&Line<'a>) -> Value {
+        move |(_, finding): &Line<'a>| finding.map_or(Value::Missing, |finding| of(finding).into())
+    }
+    vec![
+        Column::in_files("case", |(report, _): &Line<'a>| report.case.name),
+        Column::new("quantity", "quantity", "", 0, |(_, f): &Line<'a>| f.map_or("", |f| &f.what))
+            .shown_as(|(_, f): &Line| f.map_or(String::new(), quantity)),
+        Column::in_files("unit", |(_, f): &Line<'a>| f.map_or("-", |f| f.unit)),
+        Column::new("computed", "computed", "", 6, of(|f| f.computed))
+            .shown_as(|(_, f): &Line| f.map_or(String::new(), |f| number(f.computed))),
+        Column::new("exact", "exact", "", 6, of(|f| f.exact)).shown_as(|(_, f): &Line| f.map_or(String::new(), exact)),
+        Column::new("error_percent", "error", "%", 3, of(|f| 100.0 * f.error()))
+            .shown_as(|(_, f): &Line| f.map_or(String::new(), error)),
+        Column::in_files("scale", of(|f| f.scale)),
+        Column::in_files("target_percent", |(_, f): &Line<'a>| {
+            serde_json::json!(f.map_or([None; 2], |f| f.allowed.map(|limit| finite(100.0 * limit))))
+        }),
+        Column::new("order", "order (theory)", "", 2, of(|f| f.order.map(|order| order.observed)))
+            .shown_as(|(_, f): &Line| f.map_or(String::new(), order)),
+        Column::in_files("order_theory", of(|f| f.order.map(|order| order.theory))),
+        Column::in_files("order_tolerance", of(|f| f.order.map(|order| order.tolerance))),
+        Column::new("steps", "steps", "", 0, |(_, f): &Line<'a>| f.map_or(0, |f| f.spent.steps)),
+        Column::new("wall_s", "time", "s", 2, |(report, f): &Line<'a>| f.map_or(report.wall_s, |f| f.spent.wall_s)),
+        Column::new("outcome", "outcome", "", 0, |(_, f): &Line<'a>| f.map_or("failed", |f| f.verdict().word()))
+            .shown_as(|(_, f): &Line| f.map_or(String::new(), verdict)),
+        Column::in_files("note", |(report, f): &Line<'a>| match &report.result {
+            Err(error) => Some(error.to_string()),
+            Ok(_) => f.and_then(|f| f.note.clone()),
+        }),
+        Column::in_files("series", of(|f| f.convergence.as_ref().map(series))),
+    ]
 }
 
-#[derive(Serialize)]
-struct SeriesPoint {
-    resolution: f64,
-    error: Option<f64>,
-    wall_s: f64,
-    steps: u64,
+/// Error over resolution for programs.
+fn series(convergence: &Convergence) -> serde_json::Value {
+    let point = |p: &Point| {
+        let Point { resolution, error, spent } = p;
+        serde_json::json!({
+            "resolution": resolution, "error": finite(*error), "wall_s": spent.wall_s, "steps": spent.steps,
+        })
+    };
+    serde_json::json!({
+        "axis": convergence.axis, "points": convergence.points.iter().map(point).collect::<Vec<_>>(),
+    })
 }
 
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-fn word(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Pass => "pass",
-        Outcome::Miss => "miss",
-    }
+/// What was computed, with its unit.
+fn quantity(f: &Comparison) -> String {
+    if f.unit == "-" { f.what.clone() } else { format!("{} [{}]", f.what, f.unit) }
 }
 
-impl<'a> Row<'a> {
-    fn of(case: &'a str, f: &'a Finding) -> Self {
-        let series = f.convergence.as_ref().map(|c| Series {
-            axis: c.axis,
-            points: c
-                .points
-                .iter()
-                .map(|p| SeriesPoint {
-                    resolution: p.resolution,
-                    error: finite(p.error),
-                    wall_s: p.spent.wall_s,
-                    steps: p.spent.steps,
-                })
-                .collect(),
-        });
-        Self {
-            case,
-            quantity: &f.what,
-            unit: f.unit,
-            computed: finite(f.computed),
-            exact: finite(f.exact),
-            error_percent: finite(100.0 * f.error()),
-            scale: finite(f.scale),
-            target_percent: f.allowed.map(|limit| finite(100.0 * limit)),
-            order: f.order.and_then(|order| finite(order.observed)),
-            order_theory: f.order.map(|order| order.theory),
-            order_tolerance: f.order.map(|order| order.tolerance),
-            steps: f.spent.steps,
-            wall_s: f.spent.wall_s,
-            outcome: word(f.outcome()),
-            note: f.note.clone(),
-            series,
-        }
-    }
+/// Whether the finding asks for a least value, which has no error.
+fn is_least(f: &Comparison) -> bool {
+    f.allowed[1].is_infinite()
+}
 
-    /// A case that could not be run.
-    fn failed(report: &'a Report, error: &Error) -> Self {
-        Self {
-            case: report.case.name,
-            quantity: "",
-            unit: "-",
-            computed: None,
-            exact: None,
-            error_percent: None,
-            scale: None,
-            target_percent: [None; 2],
-            order: None,
-            order_theory: None,
-            order_tolerance: None,
-            steps: 0,
-            wall_s: report.wall_s,
-            outcome: "failed",
-            note: Some(error.to_string()),
-            series: None,
-        }
+fn exact(f: &Comparison) -> String {
+    if is_least(f) { format!("≥ {}", number(f.exact)) } else { number(f.exact) }
+}
+
+fn error(f: &Comparison) -> String {
+    if is_least(f) { String::new() } else { percent(100.0 * f.error()) }
+}
+
+fn order(f: &Comparison) -> String {
+    f.order.map_or(String::new(), |o| format!("{:.2} ({:.2})", o.observed, o.theory))
+}
+
+fn verdict(f: &Comparison) -> String {
+    let [low, high] = f.allowed.map(|limit| 100.0 * limit);
+    let target = if -low == high { format!("±{high:.2}") } else { format!("{low:.2} to {high:.2}") };
+    let target = if target == "±0.00" { format!("±{high:.0e}") } else { target };
+    match f.verdict() {
+        Verdict::Pass => "pass".into(),
+        Verdict::Miss => format!("MISS (allowed {target} %)"),
     }
 }
 
@@ -124,40 +112,29 @@ pub fn write_json(reports: &[Report], path: &Path) -> Result<()> {
 }
 
 fn json(reports: &[Report]) -> String {
-    let rows: Vec<Row> = reports
-        .iter()
-        .flat_map(|report| match &report.result {
-            Ok(findings) => findings.iter().map(|f| Row::of(report.case.name, f)).collect(),
-            Err(error) => vec![Row::failed(report, error)],
-        })
-        .collect();
-    serde_json::to_string_pretty(&rows).expect("rows hold nothing that JSON lacks") + "\n"
+    column::json(&columns(), &reports.iter().flat_map(lines).collect::<Vec<_>>())
 }
 
 /// The table: per case a line with its name and claim, then one line per finding.
 pub fn table(reports: &[Report]) -> String {
-    let cells: Vec<(&Report, Vec<[String; 8]>)> = reports.iter().map(|r| (r, rows(r))).collect();
-    let head = ["quantity", "computed", "exact", "error [%]", "order (theory)", "steps", "time [s]", "outcome"];
-    let mut widths = head.map(|text| text.chars().count());
-    for row in cells.iter().flat_map(|(_, rows)| rows) {
-        for (width, cell) in widths.iter_mut().zip(row) {
-            *width = (*width).max(cell.chars().count());
-        }
-    }
-    let mut text = line(&head.map(String::from), &widths);
-    for (report, rows) in cells {
-        let _ = writeln!(text, "{}: {}", report.case.name, report.case.about);
+    let all: Vec<Line> = reports.iter().flat_map(lines).collect();
+    let text = column::table(String::new(), &columns(), &all, 1).aligned("  ", "outcome");
+    let mut rows = text.rows.into_iter();
+    let mut table = text.head;
+    for report in reports {
+        let _ = writeln!(table, "{}: {}", report.case.name, report.case.about);
+        let rows: Vec<String> = rows.by_ref().take(lines(report).len()).collect();
         match &report.result {
-            Ok(_) => rows.iter().for_each(|row| text += &line(row, &widths)),
+            Ok(_) => table += &rows.concat(),
             Err(error) => {
-                let _ = writeln!(text, "  FAILED: {error}");
+                let _ = writeln!(table, "  FAILED: {error}");
             }
         }
     }
-    text
+    table
 }
 
-/// Why findings differ from their closed forms by design, and what those that miss would have had to be.
+/// Why comparisons differ from their closed forms by design, and what those that miss would have had to be.
 pub fn notes(reports: &[Report]) -> String {
     let mut text = String::new();
     for report in reports {
@@ -168,44 +145,6 @@ pub fn notes(reports: &[Report]) -> String {
         }
     }
     text
-}
-
-fn rows(report: &Report) -> Vec<[String; 8]> {
-    report.result.iter().flatten().map(cells).collect()
-}
-
-fn cells(f: &Finding) -> [String; 8] {
-    let unit = if f.unit == "-" { String::new() } else { format!(" [{}]", f.unit) };
-    let [low, high] = f.allowed.map(|limit| 100.0 * limit);
-    let target = if -low == high { format!("±{high:.2}") } else { format!("{low:.2} to {high:.2}") };
-    let target = if target == "±0.00" { format!("±{high:.0e}") } else { target };
-    let outcome = match f.outcome() {
-        Outcome::Pass => "pass".into(),
-        Outcome::Miss => format!("MISS (allowed {target} %)"),
-    };
-    // A least value has no error.
-    let least = high.is_infinite();
-    let order = f.order.map_or(String::new(), |o| format!("{:.2} ({:.2})", o.observed, o.theory));
-    [
-        format!("{}{unit}", f.what),
-        number(f.computed),
-        if least { format!("≥ {}", number(f.exact)) } else { number(f.exact) },
-        if least { String::new() } else { percent(100.0 * f.error()) },
-        order,
-        f.spent.steps.to_string(),
-        format!("{:.2}", f.spent.wall_s),
-        outcome,
-    ]
-}
-
-/// Text to the left, numbers to the right.
-fn line(cells: &[String; 8], widths: &[usize; 8]) -> String {
-    let mut text = String::new();
-    for (k, (cell, width)) in cells.iter().zip(widths).enumerate() {
-        let pad = " ".repeat(width - cell.chars().count());
-        text += &if k == 0 || k == 7 { format!("  {cell}{pad}") } else { format!("  {pad}{cell}") };
-    }
-    text.trim_end().to_owned() + "\n"
 }
 
 /// Six figures.
@@ -242,20 +181,21 @@ fn percent(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::error::Error;
     use crate::study::verify::CASES;
-    use crate::study::verify::finding::{Point, Spent};
+    use crate::study::verify::comparison::Spent;
 
     fn reports() -> Vec<Report> {
         let spent = Spent { steps: 1200, wall_s: 0.25 };
         let point = |resolution: f64, error: f64| Point { resolution, error, spent };
-        let good = Finding::new("contact time", "s", 3.0001e-5, 3e-5, spent).within(1e-3).converging(
+        let good = Comparison::new("contact time", "s", 3.0001e-5, 3e-5, spent).within(1e-3).converging(
             "dt/T",
             vec![point(0.1, 0.04), point(0.05, 0.01)],
             2.0,
             0.1,
         );
-        let bad = Finding::new("depth", "m", f64::NAN, 0.5, spent).within(1e-3).note("because");
-        let error = Error::input("interrupted", "");
+        let bad = Comparison::new("depth", "m", f64::NAN, 0.5, spent).within(1e-3).note("because");
+        let error = Error::input("no such scene", "");
         vec![
             Report { case: &CASES[0], result: Ok(vec![good, bad]), wall_s: 1.0 },
             Report { case: &CASES[1], result: Err(error), wall_s: 1.0 },
@@ -272,14 +212,14 @@ mod tests {
         assert_eq!(first["outcome"], "pass");
         assert_eq!(first["series"]["points"].as_array().unwrap().len(), 2);
         assert_eq!((&rows[1]["outcome"], rows[1]["computed"].is_null()), (&"miss".into(), true));
-        assert_eq!((&rows[2]["outcome"], &rows[2]["note"]), (&"failed".into(), &"interrupted".into()));
+        assert_eq!((&rows[2]["outcome"], &rows[2]["note"]), (&"failed".into(), &"no such scene".into()));
     }
 
     #[test]
     fn table_shows_what_passes_what_misses_and_what_failed() {
         let text = table(&reports());
         for part in
-            ["contact time [s]", "2.00 (2.00)", "+0.003", "pass", "MISS (allowed ±0.10 %)", "FAILED: interrupted"]
+            ["contact time [s]", "2.00 (2.00)", "+0.003", "pass", "MISS (allowed ±0.10 %)", "FAILED: no such scene"]
         {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }

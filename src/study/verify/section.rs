@@ -1,8 +1,8 @@
 //! Plasticity of a section under tension, bending and torsion together.
 
-use super::Case;
-use super::finding::Finding;
-use super::support::Lab;
+use super::VerificationCase;
+use super::comparison::Comparison;
+use super::support::Context;
 use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::reference::beam::RoundBar;
@@ -11,7 +11,7 @@ use crate::scene;
 use crate::scene::spec::BondLawSpec;
 use glam::DVec3;
 
-pub const SECTION: Case = Case {
+pub const SECTION: VerificationCase = VerificationCase {
     name: "section-plasticity",
     about: "a plastic bond under a constant tension is bent, twisted, or both: what it carries and how it flows",
     source: "Lubliner, Plasticity Theory, 1990, ch. 4: yield surface (N/N_p)^2 + |M|/M_p + (T/T_p)^2 = 1 and its normal",
@@ -58,7 +58,7 @@ struct Path {
 }
 
 /// What the bond carries at the end and how it flowed in the second half, against the yield surface and its normal.
-fn follow(lab: &Lab, path: &Path) -> Result<Vec<Finding>> {
+fn follow(context: &Context, path: &Path) -> Result<Vec<Comparison>> {
     let mut spec = scene::load("verify/section", &[])?.spec;
     let BondLawSpec::ElastoPlastic(hardening) = &spec.bond.law else { unreachable!("the scene is plastic") };
     let yield_stress = hardening.stress(0.0);
@@ -68,13 +68,13 @@ fn follow(lab: &Lab, path: &Path) -> Result<Vec<Finding>> {
     (spec.holds[0].spin, spec.holds[1].spin) = (-spin, spin);
     spec.holds[1].force.z = axial;
     let end = spec.stop.time.expect("the scene says when it ends");
-    let mut trial = lab.trial_of(spec)?;
-    let bar = trial.bar();
-    trial.run_to(0.6 * end, |_| {})?;
-    let a = look(&trial.engine, &bar, yield_stress, rates);
-    trial.run_to(end, |_| {})?;
-    let b = look(&trial.engine, &bar, yield_stress, rates);
-    let spent = trial.finish();
+    let mut simulation = context.simulation_of(spec)?;
+    let bar = simulation.bar();
+    simulation.run_to(0.6 * end, |_| {})?;
+    let a = look(&simulation.engine, &bar, yield_stress, rates);
+    simulation.run_to(end, |_| {})?;
+    let b = look(&simulation.engine, &bar, yield_stress, rates);
+    let spent = simulation.finish();
     let exact = b.section.flow(axial, path.twist);
     let [before, after] = [a, b].map(|i| i.section.flow(axial, path.twist).elongation);
     let Path { share, twist } = path;
@@ -86,29 +86,29 @@ fn follow(lab: &Lab, path: &Path) -> Result<Vec<Finding>> {
     let name = |what: &str| format!("{what}, N = {share} N_p, {how}");
     let mut found = Vec::new();
     if exact.moment > 0.0 {
-        found.push(Finding::new(name("moment"), "N m", b.moment, exact.moment, spent));
+        found.push(Comparison::new(name("moment"), "N m", b.moment, exact.moment, spent));
     }
     if *twist > 0.0 {
-        found.push(Finding::new(name("torque"), "N m", b.torque, exact.torque, spent));
+        found.push(Comparison::new(name("torque"), "N m", b.torque, exact.torque, spent));
     }
     if *share > 0.0 {
         let rate = (b.elongation - a.elongation) / (b.angle - a.angle);
-        found.push(Finding::new(name("plastic elongation per angle"), "m/rad", rate, 0.5 * (before + after), spent));
+        found.push(Comparison::new(name("plastic elongation per angle"), "m/rad", rate, 0.5 * (before + after), spent));
     }
     Ok(found.into_iter().map(|f| f.within(5e-3)).collect())
 }
 
-/// The worst of those findings whose name begins with `what`.
-fn worst(found: &[Finding], what: &str) -> Finding {
-    Finding::worst(found.iter().filter(|f| f.what.starts_with(what)).cloned().collect())
+/// The worst of those comparisons whose name begins with `what`.
+fn worst(found: &[Comparison], what: &str) -> Comparison {
+    Comparison::worst(found.iter().filter(|f| f.what.starts_with(what)).cloned().collect())
 }
 
-fn section(lab: &Lab) -> Result<Vec<Finding>> {
+fn section(context: &Context) -> Result<Vec<Comparison>> {
     let twists = [0.0, 0.7, f64::INFINITY];
     let mut found = Vec::new();
-    for share in lab.pick(&[0.0, 0.6][..], &[0.0, 0.2, 0.4, 0.6, 0.8]) {
+    for share in context.pick(&[0.0, 0.6][..], &[0.0, 0.2, 0.4, 0.6, 0.8]) {
         for twist in twists {
-            found.extend(follow(lab, &Path { share: *share, twist })?);
+            found.extend(follow(context, &Path { share: *share, twist })?);
         }
     }
     let unit = Section { radius: 1.0, yield_stress: 1.0 };
@@ -116,7 +116,7 @@ fn section(lab: &Lab) -> Result<Vec<Finding>> {
         let axial = share * unit.plastic_force();
         100.0 * (1.0 - unit.flow(axial, 0.0).moment / unit.exact_moment(axial))
     };
-    let mut limits: Vec<Finding> =
+    let mut limits: Vec<Comparison> =
         ["moment", "torque", "plastic elongation"].iter().map(|what| worst(&found, what)).collect();
     limits[0].note = Some(format!(
         "The surface is an approximation of the round section, whose exact limit is N/N_p = (2/pi)(t + sin t cos t), \

@@ -1,15 +1,15 @@
 //! A bond that breaks at the first step, beside no bond at all.
 
-use super::Case;
-use super::finding::Finding;
-use super::support::Lab;
+use super::VerificationCase;
+use super::comparison::Comparison;
+use super::support::Context;
 use crate::base::error::Result;
 use crate::base::vectors::Vectors;
 use crate::engine::Engine;
 use crate::strand::assembly::{Assembly, Wire};
 use glam::DVec3;
 
-pub const SNAPPED: Case = Case {
+pub const SNAPPED: VerificationCase = VerificationCase {
     name: "snapped-bond",
     about: "a bond that breaks at the first step leaves the same motion, to the bit, as no bond at all",
     source: "identity",
@@ -24,15 +24,15 @@ fn collide(a: &mut Assembly, middle: usize) {
     }
 }
 
-fn snapped_bond(lab: &Lab) -> Result<Vec<Finding>> {
+fn snapped_bond(context: &Context) -> Result<Vec<Comparison>> {
     let scene = "verify/snapped-wire";
     let middle = |a: &Assembly| a.wires[0].len / 2 - 1;
-    let mut breaking = lab.changed(scene, &[], |a| {
+    let mut breaking = context.changed(scene, &[], |a| {
         let slot = middle(a);
         collide(a, slot);
         a.rest_length[slot] *= 0.9;
     })?;
-    let mut without = lab.changed(scene, &[], |a| {
+    let mut without = context.changed(scene, &[], |a| {
         let slot = middle(a);
         collide(a, slot);
         let whole = a.wires[0];
@@ -42,20 +42,20 @@ fn snapped_bond(lab: &Lab) -> Result<Vec<Finding>> {
     })?;
     let broken = breaking.engine.take_ruptures().len();
     let mut touching = 0;
-    let steps = lab.pick(20_000, 100_000);
+    let steps = context.pick(20_000, 100_000);
     breaking.run_steps(steps, |engine| touching = touching.max(engine.contact_counts().2))?;
     without.run_steps(steps, |_| {})?;
     let differing = differing_bits(&breaking.engine, &without.engine);
     let later = breaking.engine.take_ruptures().len();
     let (a, b) = (breaking.finish(), without.finish());
     let count = |what: &str, value: usize, exact: usize| {
-        Finding::new(what, "-", value as f64, exact as f64, a + b).relative_to(1.0)
+        Comparison::new(what, "-", value as f64, exact as f64, a + b).relative_to(1.0)
     };
     Ok(vec![
         count(&format!("numbers that differ after {steps} steps"), differing, 0),
         count("bonds broken before the first step", broken, 1),
         count("bonds broken later", later, 0),
-        Finding::at_least("contacts at once", "-", touching as f64, 1.0, a + b),
+        Comparison::at_least("contacts at once", "-", touching as f64, 1.0, a + b),
     ])
 }
 

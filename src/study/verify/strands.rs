@@ -1,29 +1,29 @@
 //! A strand pulled elastically, against strand theory.
 
-use super::Case;
-use super::finding::{Finding, Point, Spent};
-use super::support::{Lab, Trial, set};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point, Spent};
+use super::support::{Context, Simulation, set};
 use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::reference::strand::{Layer, stiffness_factor, stiffness_factor_contracting, wire_strain};
 use crate::strand::assembly;
 
-pub const PITCHES: Case = Case {
+pub const PITCHES: VerificationCase = VerificationCase {
     name: "strand-stiffness",
     about: "seven wires at four pitches, ends not turning: between the bounds of strand theory",
     source: "Hruska 1951: Σn cos³β/Σn; Costello, Theory of Wire Rope, 1997, chapter 3",
     run: four_pitches,
 };
 
-pub const FINER: Case = Case {
+pub const FINER: VerificationCase = VerificationCase {
     name: "strand-spacing",
     about: "seven wires at a short pitch are as stiff at any spacing, a little less so than strand theory says",
     source: "Hruska 1951, for wires that do not give where they touch",
     run: finer_spacing,
 };
 
-fn layers(trial: &Trial) -> Vec<Layer> {
-    let a = trial.engine.assembly();
+fn layers(simulation: &Simulation) -> Vec<Layer> {
+    let a = simulation.engine.assembly();
     let layer = |(k, l): (usize, &assembly::Layer)| Layer {
         wires: a.wires.iter().filter(|w| w.layer == k).count(),
         diameter: a.wires[0].diameter,
@@ -72,12 +72,12 @@ struct Stiffness {
 }
 
 /// Slopes between 0.5 and 1 % of strain.
-fn stiffness(lab: &Lab, options: &[String]) -> Result<Stiffness> {
-    let mut trial = lab.trial("verify/strand-elastic", options)?;
-    let layers = layers(&trial);
-    let young = trial.spec.material.young;
+fn stiffness(context: &Context, options: &[String]) -> Result<Stiffness> {
+    let mut simulation = context.simulation("verify/strand-elastic", options)?;
+    let layers = layers(&simulation);
+    let young = simulation.spec.material.young;
     let mut points: Vec<[f64; 3]> = Vec::new();
-    trial.run(|engine| {
+    simulation.run(|engine| {
         if engine.strain() >= 0.005 && engine.steps().is_multiple_of(10) {
             points.push([engine.strain(), engine.stress() / young, from_its_shape(engine, &layers)]);
         }
@@ -90,9 +90,9 @@ fn stiffness(lab: &Lab, options: &[String]) -> Result<Stiffness> {
     Ok(Stiffness {
         value: measured / plain * hruska,
         hruska,
-        costello: stiffness_factor_contracting(&layers, trial.spec.material.poisson),
+        costello: stiffness_factor_contracting(&layers, simulation.spec.material.poisson),
         slopes: [measured, shape],
-        spent: trial.finish(),
+        spent: simulation.finish(),
     })
 }
 
@@ -102,34 +102,34 @@ fn pitch(millimetres: f64) -> String {
 
 /// At the pitches of the KA4 strand the contacts of seven wires give way by no more than Poisson's contraction. (The KA4
 /// strand itself is no test of stiffness: its middle layer sinks into the grooves of the inner one, wire after wire.)
-fn four_pitches(lab: &Lab) -> Result<Vec<Finding>> {
-    let (mut findings, mut shapes) = (Vec::new(), Vec::new());
-    for millimetres in lab.pick(&[39.0, 54.0][..], &[39.0, 44.0, 49.0, 54.0]) {
-        let s = stiffness(lab, &[pitch(*millimetres)])?;
+fn four_pitches(context: &Context) -> Result<Vec<Comparison>> {
+    let (mut comparisons, mut shapes) = (Vec::new(), Vec::new());
+    for millimetres in context.pick(&[39.0, 54.0][..], &[39.0, 44.0, 49.0, 54.0]) {
+        let s = stiffness(context, &[pitch(*millimetres)])?;
         let room = 5e-4 / s.hruska;
         let what = format!("E_strand/E at {millimetres} mm (Costello {:.4})", s.costello);
-        findings.push(
-            Finding::new(what, "-", s.value, s.hruska, s.spent).between(s.costello / s.hruska - 1.0 - room, room),
+        comparisons.push(
+            Comparison::new(what, "-", s.value, s.hruska, s.spent).between(s.costello / s.hruska - 1.0 - room, room),
         );
         let what = "slope, against strain and radius of the wires";
-        shapes.push(Finding::new(what, "-", s.slopes[0], s.slopes[1], s.spent).within(5e-4));
+        shapes.push(Comparison::new(what, "-", s.slopes[0], s.slopes[1], s.spent).within(5e-4));
     }
-    findings[0].note = Some(
+    comparisons[0].note = Some(
         "exact is Hruska's value; wires do not thin here and only contacts give, so the strand lies between it and \
          Costello's, which lets wires thin"
             .into(),
     );
-    findings.push(Finding::worst(shapes));
-    Ok(findings)
+    comparisons.push(Comparison::worst(shapes));
+    Ok(comparisons)
 }
 
 /// The number of contacts per length grows as the spacing a falls, each carries q a, and its overlap is (q a)^(2/3): what
 /// is missing to Hruska's value goes with order 2/3.
-fn finer_spacing(lab: &Lab) -> Result<Vec<Finding>> {
+fn finer_spacing(context: &Context) -> Result<Vec<Comparison>> {
     let (mut points, mut found) = (Vec::new(), Vec::new());
     let mut finest = None;
-    for spacing in lab.pick(&[1.0, 0.5][..], &[1.0, 0.5, 0.25]) {
-        let s = stiffness(lab, &[pitch(13.0), set("spacing", spacing)])?;
+    for spacing in context.pick(&[1.0, 0.5][..], &[1.0, 0.5, 0.25]) {
+        let s = stiffness(context, &[pitch(13.0), set("spacing", spacing)])?;
         points.push(Point { resolution: *spacing, error: s.value / s.hruska - 1.0, spent: s.spent });
         found.push(s.value);
         finest = Some(s);
@@ -137,7 +137,7 @@ fn finer_spacing(lab: &Lab) -> Result<Vec<Finding>> {
     let finest = finest.expect("there are several spacings");
     let (most, least) = found.iter().fold((0.0f64, f64::MAX), |(a, b), v| (a.max(*v), b.min(*v)));
     Ok(vec![
-        Finding::new(
+        Comparison::new(
             "E_strand/E at 13 mm, greatest over least for a/d from 1 down",
             "-",
             most / least,
@@ -145,7 +145,7 @@ fn finer_spacing(lab: &Lab) -> Result<Vec<Finding>> {
             finest.spent,
         )
         .within(5e-3),
-        Finding::new("E_strand/E at 13 mm, finest", "-", finest.value, finest.hruska, finest.spent)
+        Comparison::new("E_strand/E at 13 mm, finest", "-", finest.value, finest.hruska, finest.spent)
             .between(-0.015, 0.0)
             .over("a/d", points)
             .note("wires give where they touch: 0.3 E* per length under the pressure of a pitch of 13 mm"),

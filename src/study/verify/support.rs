@@ -1,10 +1,11 @@
 //! What all cases share: scenes, engines, averages, frequencies, the ledger.
 
-use super::finding::{Finding, Spent};
+use super::comparison::{Comparison, Spent};
 use crate::base::error::{Error, Result};
 use crate::engine::Engine;
 use crate::reference::beam::RoundBar;
 use crate::scene;
+use crate::scene::plan::Plan;
 use crate::scene::spec::Spec;
 use crate::strand;
 use crate::strand::assembly::Assembly;
@@ -24,11 +25,12 @@ pub enum Effort {
 
 /// Steps between two looks at whether the user wants to stop.
 const STOP_INTERVAL: u64 = 1024;
-/// What the energy ledger of a trial may miss of the work done (-).
+/// What the energy ledger of a simulation may miss of the work done (-).
 const LEDGER_TARGET: f64 = 1e-3;
 
-/// Where a case gets its trials from. Keeps the worst energy ledger that it has seen.
-pub struct Lab<'a> {
+/// What a case is run in: it sets up simulations, ends them when the user wants to stop, and keeps the worst energy ledger
+/// among them.
+pub struct Context<'a> {
     effort: Effort,
     stop: &'a AtomicBool,
     ledger: Cell<Ledger>,
@@ -41,8 +43,8 @@ struct Ledger {
     spent: Spent,
 }
 
-impl<'a> Lab<'a> {
-    /// A lab for one case; `stop` ends its trials early.
+impl<'a> Context<'a> {
+    /// The context of one case; `stop` ends its simulations early.
     pub fn new(effort: Effort, stop: &'a AtomicBool) -> Self {
         Self { effort, stop, ledger: Cell::default() }
     }
@@ -64,7 +66,7 @@ impl<'a> Lab<'a> {
     ///
     /// # Errors
     /// What is wrong in the scene or the options.
-    pub fn trial(&self, scene: &str, options: &[String]) -> Result<Trial<'_>> {
+    pub fn simulation(&self, scene: &str, options: &[String]) -> Result<Simulation<'_>> {
         self.changed(scene, options, |_| {})
     }
 
@@ -72,48 +74,53 @@ impl<'a> Lab<'a> {
     ///
     /// # Errors
     /// What is wrong in the scene or the options.
-    pub fn changed(&self, scene: &str, options: &[String], change: impl FnOnce(&mut Assembly)) -> Result<Trial<'_>> {
+    pub fn changed(
+        &self,
+        scene: &str,
+        options: &[String],
+        change: impl FnOnce(&mut Assembly),
+    ) -> Result<Simulation<'_>> {
         self.set_up(scene::load(scene, options)?.spec, change)
     }
 
-    /// A trial of a scene that was changed where options do not reach, such as by a rotation.
+    /// A simulation of a scene that was changed where options do not reach, such as by a rotation.
     ///
     /// # Errors
     /// When the bodies cannot be built.
-    pub fn trial_of(&self, spec: Spec) -> Result<Trial<'_>> {
+    pub fn simulation_of(&self, spec: Spec) -> Result<Simulation<'_>> {
         self.set_up(spec, |_| {})
     }
 
-    fn set_up(&self, spec: Spec, change: impl FnOnce(&mut Assembly)) -> Result<Trial<'_>> {
+    fn set_up(&self, spec: Spec, change: impl FnOnce(&mut Assembly)) -> Result<Simulation<'_>> {
         let mut assembly = strand::build(&spec)?;
         change(&mut assembly);
-        let engine = Engine::new(&spec, assembly)?;
-        Ok(Trial { spec, engine, lab: self, wall_s: 0.0 })
+        let engine = Engine::new(&spec, &Plan::new(&spec), assembly)?;
+        Ok(Simulation { spec, engine, context: self, wall_s: 0.0 })
     }
 
-    /// The worst energy ledger of the trials that were finished, if any: what is missing over the work done.
-    pub(super) fn ledger(&self) -> Option<Finding> {
+    /// The worst energy ledger of the simulations that were finished, if any: what is missing over the work done.
+    pub(super) fn ledger(&self) -> Option<Comparison> {
         let Ledger { runs, worst, spent } = self.ledger.get();
         let what = match runs {
             0 => return None,
             1 => "energy ledger: missing over work".into(),
             _ => format!("energy ledger: missing over work, worst of {runs}"),
         };
-        Some(Finding::new(what, "-", worst, 0.0, spent).relative_to(1.0).within(LEDGER_TARGET))
+        Some(Comparison::new(what, "-", worst, 0.0, spent).relative_to(1.0).within(LEDGER_TARGET))
     }
 }
 
 /// A scene in an engine.
-pub struct Trial<'a> {
+pub struct Simulation<'a> {
     /// The scene.
     pub spec: Spec,
     /// The engine that runs it.
     pub engine: Engine,
-    lab: &'a Lab<'a>,
+    context: &'a Context<'a>,
     wall_s: f64,
 }
 
-impl Trial<'_> {
+impl Simulation<'_> {
     /// The first wire as a bar of beam theory.
     pub fn bar(&self) -> RoundBar {
         let (a, m) = (self.engine.assembly(), &self.spec.material);
@@ -138,8 +145,8 @@ impl Trial<'_> {
     pub fn run_while(&mut self, more: impl Fn(&Engine) -> bool, mut each: impl FnMut(&Engine)) -> Result<()> {
         let began = Instant::now();
         while more(&self.engine) {
-            if self.engine.steps().is_multiple_of(STOP_INTERVAL) && self.lab.stop.load(Ordering::Relaxed) {
-                return Err(Error::input("interrupted", "run it again; cases are not kept"));
+            if self.engine.steps().is_multiple_of(STOP_INTERVAL) && self.context.stop.load(Ordering::Relaxed) {
+                return Err(Error::Interrupted);
             }
             self.engine.step()?;
             each(&self.engine);
@@ -151,7 +158,7 @@ impl Trial<'_> {
     /// Steps until `time` (s).
     ///
     /// # Errors
-    /// See [`Trial::run_while`].
+    /// See [`Simulation::run_while`].
     pub fn run_to(&mut self, time: f64, each: impl FnMut(&Engine)) -> Result<()> {
         self.run_while(|engine| engine.time() < time, each)
     }
@@ -159,7 +166,7 @@ impl Trial<'_> {
     /// Takes `steps` more steps.
     ///
     /// # Errors
-    /// See [`Trial::run_while`].
+    /// See [`Simulation::run_while`].
     pub fn run_steps(&mut self, steps: u64, each: impl FnMut(&Engine)) -> Result<()> {
         let end = self.engine.steps() + steps;
         self.run_while(|engine| engine.steps() < end, each)
@@ -168,7 +175,7 @@ impl Trial<'_> {
     /// Steps to the scene's own end.
     ///
     /// # Errors
-    /// See [`Trial::run_while`].
+    /// See [`Simulation::run_while`].
     pub fn run(&mut self, each: impl FnMut(&Engine)) -> Result<()> {
         let stop = self.spec.stop.clone();
         let reached = move |limit: Option<f64>, value: f64| limit.is_some_and(|limit| value >= limit);
@@ -183,7 +190,7 @@ impl Trial<'_> {
     /// Mean over `from..to` (s) under a Hann window, which takes out the swing that is left after a smooth ramp.
     ///
     /// # Errors
-    /// See [`Trial::run_while`].
+    /// See [`Simulation::run_while`].
     pub fn settled(&mut self, from: f64, to: f64, mut value: impl FnMut(&Engine) -> f64) -> Result<f64> {
         let (mut sum, mut weights) = (0.0, 0.0);
         self.run_to(to, |engine| {
@@ -198,19 +205,19 @@ impl Trial<'_> {
         Ok(sum / weights)
     }
 
-    /// What the trial has taken so far.
+    /// What the simulation has taken so far.
     pub fn spent(&self) -> Spent {
         Spent { steps: self.engine.steps(), wall_s: self.wall_s }
     }
 
-    /// Ends the trial: its energy ledger must close. Gives what it took.
+    /// Ends the simulation: its energy ledger must close. Gives what it took.
     pub fn finish(self) -> Spent {
         let (energy, spent) = (self.engine.energy(), self.spent());
         let missing = energy.residual().abs() / energy.work.abs().max(energy.internal());
-        let Ledger { runs, worst, spent: so_far } = self.lab.ledger.get();
+        let Ledger { runs, worst, spent: so_far } = self.context.ledger.get();
         // Not f64::max, which would drop a NaN.
         let worst = if worst.is_nan() || missing <= worst { worst } else { missing };
-        self.lab.ledger.set(Ledger { runs: runs + 1, worst, spent: so_far + spent });
+        self.context.ledger.set(Ledger { runs: runs + 1, worst, spent: so_far + spent });
         spent
     }
 }

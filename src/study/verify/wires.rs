@@ -1,29 +1,29 @@
 //! Smooth wires beside chains of spheres, under a sphere, and across each other.
 
-use super::Case;
-use super::finding::{Finding, Point, Spent};
-use super::support::{Lab, set};
+use super::VerificationCase;
+use super::comparison::{Comparison, Point, Spent};
+use super::support::{Context, set};
 use crate::base::error::Result;
 use crate::law::contact::line::LINE;
 use crate::reference::hertz::{Pair, elliptical_factor};
 use crate::reference::thornton;
 use crate::scene;
 
-pub const SLIDING_WIRES: Case = Case {
+pub const SLIDING_WIRES: VerificationCase = VerificationCase {
     name: "sliding-wires",
     about: "a wire is dragged along another: smooth ones feel friction alone, chains of spheres interlock",
     source: "Coulomb; a sphere of radius r rolls from crest to saddle of two touching ones: height 2r to sqrt(3) r",
     run: sliding_wires,
 };
 
-pub const SPHERE_ON_WIRE: Case = Case {
+pub const SPHERE_ON_WIRE: VerificationCase = VerificationCase {
     name: "sphere-on-wire",
     about: "a sphere pressed into a smooth wire: normal force",
     source: "Hertz 1882; Johnson, Contact Mechanics, 1985, section 4.2",
     run: sphere_on_wire,
 };
 
-pub const CROSSED_WIRES: Case = Case {
+pub const CROSSED_WIRES: VerificationCase = VerificationCase {
     name: "crossed-wires",
     about: "two smooth wires pressed together, parallel and crossed, particles at any spacing: force",
     source: "Hertz's ellipse, Johnson, Contact Mechanics, 1985, section 4.2; Thornton 1997; 0.3 E* per length for parallel wires",
@@ -43,16 +43,16 @@ struct Drag {
     spent: Spent,
 }
 
-fn drag(lab: &Lab, options: &[String]) -> Result<Drag> {
-    let mut trial = lab.trial("verify/parallel-wires", options)?;
-    let load = trial.spec.holds[1].force.x.abs();
-    let a = trial.engine.assembly();
+fn drag(context: &Context, options: &[String]) -> Result<Drag> {
+    let mut simulation = context.simulation("verify/parallel-wires", options)?;
+    let load = simulation.spec.holds[1].force.x.abs();
+    let a = simulation.engine.assembly();
     let (second, spacing) = (a.wires[1], a.rest_length[0]);
     let middle = second.first + second.len / 2;
-    let settled = 0.1 * trial.spec.stop.time.expect("the scene says when it ends");
+    let settled = 0.1 * simulation.spec.stop.time.expect("the scene says when it ends");
     let (mut low, mut high) = (f64::MAX, f64::MIN);
     let mut drag = Drag { greatest: 0.0, last: 0.0, furthest: [0.0; 2], rise: 0.0, spent: Spent::default() };
-    trial.run(|engine| {
+    simulation.run(|engine| {
         if engine.time() < settled {
             return;
         }
@@ -69,22 +69,22 @@ fn drag(lab: &Lab, options: &[String]) -> Result<Drag> {
         let height = s.x.x[middle];
         (low, high) = (low.min(height), high.max(height));
     })?;
-    drag.rise = (high - low) / trial.engine.state().radius[middle];
-    Ok(Drag { spent: trial.finish(), ..drag })
+    drag.rise = (high - low) / simulation.engine.state().radius[middle];
+    Ok(Drag { spent: simulation.finish(), ..drag })
 }
 
-fn sliding_wires(lab: &Lab) -> Result<Vec<Finding>> {
-    let smooth = drag(lab, &[])?;
-    let rough = drag(lab, &[set("contact.tangential", "mindlin"), set("contact.friction", 0.2)])?;
+fn sliding_wires(context: &Context) -> Result<Vec<Comparison>> {
+    let smooth = drag(context, &[])?;
+    let rough = drag(context, &[set("contact.tangential", "mindlin"), set("contact.friction", 0.2)])?;
     // A little further, so that the next crest is passed.
-    let beads = drag(lab, &[set("contact.shape", "sphere"), set("stop.time", "4 ms")])?;
+    let beads = drag(context, &[set("contact.shape", "sphere"), set("stop.time", "4 ms")])?;
     let [off, exact] = beads.furthest;
     Ok(vec![
-        Finding::new("smooth, no friction: greatest drag over load", "-", smooth.greatest, 0.0, smooth.spent)
+        Comparison::new("smooth, no friction: greatest drag over load", "-", smooth.greatest, 0.0, smooth.spent)
             .relative_to(1.0)
             .within(1e-5),
-        Finding::new("smooth, mu = 0.2: drag over load", "-", -rough.last, 0.2, rough.spent).within(2e-2),
-        Finding::new(
+        Comparison::new("smooth, mu = 0.2: drag over load", "-", -rough.last, 0.2, rough.spent).within(2e-2),
+        Comparison::new(
             "spheres, no friction: push over load towards the saddle, furthest off",
             "-",
             off,
@@ -93,13 +93,13 @@ fn sliding_wires(lab: &Lab) -> Result<Vec<Finding>> {
         )
         .relative_to(1.0 / 3f64.sqrt())
         .within(2e-2),
-        Finding::new("spheres: rise from saddle to crest over r", "-", beads.rise, 2.0 - 3f64.sqrt(), beads.spent)
+        Comparison::new("spheres: rise from saddle to crest over r", "-", beads.rise, 2.0 - 3f64.sqrt(), beads.spent)
             .within(5e-3)
             .note("Real wires are smooth; shape = \"sphere\" adds this geometric friction, shape = \"wire\" does not."),
     ])
 }
 
-fn sphere_on_wire(lab: &Lab) -> Result<Vec<Finding>> {
+fn sphere_on_wire(context: &Context) -> Result<Vec<Comparison>> {
     let (mut own, mut points) = (Vec::new(), Vec::new());
     let mut finest = None;
     for diameter in [1.0, 4.0, 16.0] {
@@ -113,13 +113,13 @@ fn sphere_on_wire(lab: &Lab) -> Result<Vec<Finding>> {
         let depth = wire + sphere - spec.spheres[0].position.x;
         let round = 1.0 / (1.0 / wire + 1.0 / sphere);
         let pair = Pair { radius: (round * sphere).sqrt(), ..Pair::equal_spheres(1.0, m.young, m.poisson, m.density) };
-        let mut trial = lab.trial_of(spec)?;
-        trial.run(|_| {})?;
-        let s = trial.engine.state();
+        let mut simulation = context.simulation_of(spec)?;
+        simulation.run(|_| {})?;
+        let s = simulation.engine.state();
         let force = s.force_from_contacts(s.len() - 1).x;
-        let spent = trial.finish();
+        let spent = simulation.finish();
         let what = "force at the geometric mean of the radii of curvature";
-        own.push(Finding::new(what, "N", force, pair.force(depth), spent).within(1e-9));
+        own.push(Comparison::new(what, "N", force, pair.force(depth), spent).within(1e-9));
         let exact = pair.force(depth) * elliptical_factor(sphere / round);
         points.push(Point { resolution: sphere / wire, error: force / exact - 1.0, spent });
         finest = Some((force, exact, spent));
@@ -128,8 +128,8 @@ fn sphere_on_wire(lab: &Lab) -> Result<Vec<Finding>> {
     // Relative radii of curvature 1/R sphere and 1/R sphere + 1/R wire.
     let ellipse = |sphere: f64, wire: f64| 100.0 * (1.0 - 1.0 / elliptical_factor(1.0 + sphere / wire));
     Ok(vec![
-        Finding::worst(own),
-        Finding::new("force of the elliptical contact, wire of 16 mm", "N", force, exact, spent)
+        Comparison::worst(own),
+        Comparison::new("force of the elliptical contact, wire of 16 mm", "N", force, exact, spent)
             .within(5e-3)
             .converging("R sphere/R wire", points, 2.0, 0.4)
             .note(format!(
@@ -148,7 +148,7 @@ const ANGLES: [f64; 6] = [0.0, 2.0, 10.0, 30.0, 60.0, 90.0];
 
 /// Force between two wires of the scene that cross at `angle` (degrees) off their particles, with particles `spacing`
 /// diameters apart and `options`, and the length over which parallel wires lie side by side (m).
-fn crossed(lab: &Lab, angle: f64, spacing: f64, options: &[String]) -> Result<(f64, f64, Spent)> {
+fn crossed(context: &Context, angle: f64, spacing: f64, options: &[String]) -> Result<(f64, f64, Spent)> {
     // A patch at 2 degrees is 3 mm long.
     let half = if angle == 2.0 { 8.0 } else { 3.2 };
     let (sine, cosine) = angle.to_radians().sin_cos();
@@ -166,21 +166,21 @@ fn crossed(lab: &Lab, angle: f64, spacing: f64, options: &[String]) -> Result<(f
         set("wire.1.to", place(second + half)),
     ];
     all.extend_from_slice(options);
-    let trial = lab.trial("verify/crossed-wires", &all)?;
-    let wire = trial.engine.assembly().wires[1];
-    let force = wire.particles().map(|p| trial.engine.state().force_from_contacts(p).x).sum();
-    Ok((force, (2.0 * half - (first - second).abs()) * 1e-3, trial.finish()))
+    let simulation = context.simulation("verify/crossed-wires", &all)?;
+    let wire = simulation.engine.assembly().wires[1];
+    let force = wire.particles().map(|p| simulation.engine.state().force_from_contacts(p).x).sum();
+    Ok((force, (2.0 * half - (first - second).abs()) * 1e-3, simulation.finish()))
 }
 
-fn crossed_wires(lab: &Lab) -> Result<Vec<Finding>> {
-    let mut findings = Vec::new();
+fn crossed_wires(context: &Context) -> Result<Vec<Comparison>> {
+    let mut comparisons = Vec::new();
     let m = scene::load("verify/crossed-wires", &[])?.spec;
     let (radius, m) = (0.5 * m.wires[0].diameter, m.material);
     let ball = Pair { radius, ..Pair::equal_spheres(1.0, m.young, m.poisson, m.density) };
     for angle in ANGLES {
         let (mut own, mut forces) = (Vec::new(), Vec::new());
         for spacing in [2.0, 1.0, 0.5, 0.25] {
-            let (force, length, spent) = crossed(lab, angle, spacing, &[])?;
+            let (force, length, spent) = crossed(context, angle, spacing, &[])?;
             let exact = if angle == 0.0 {
                 LINE * ball.modulus * APPROACH * length
             } else {
@@ -188,33 +188,33 @@ fn crossed_wires(lab: &Lab) -> Result<Vec<Finding>> {
                 let pair = Pair { radius: radius / sine, ..ball };
                 pair.force(APPROACH) * elliptical_factor((1.0 + cosine) / (1.0 - cosine))
             };
-            own.push(Finding::new(format!("force at {angle} degrees"), "N", force, exact, spent).within(1e-2));
+            own.push(Comparison::new(format!("force at {angle} degrees"), "N", force, exact, spent).within(1e-2));
             forces.push((force, spent));
         }
-        findings.push(Finding::worst(own));
+        comparisons.push(Comparison::worst(own));
         let (most, least) = forces.iter().fold((0.0f64, f64::MAX), |(a, b), (f, _)| (a.max(*f), b.min(*f)));
         let what = format!("force at {angle} degrees, greatest over least for a/d from 2 to 0.25");
-        findings.push(Finding::new(what, "-", most / least, 1.0, forces[0].1).within(1e-2));
+        comparisons.push(Comparison::new(what, "-", most / least, 1.0, forces[0].1).within(1e-2));
     }
-    findings.extend(pressed_wires(lab, &ball)?);
-    Ok(findings)
+    comparisons.extend(pressed_wires(context, &ball)?);
+    Ok(comparisons)
 }
 
 /// The same with a limiting pressure, at right angles: Thornton's law for spheres of the wires' radius in pairs.
-fn pressed_wires(lab: &Lab, ball: &Pair) -> Result<Vec<Finding>> {
+fn pressed_wires(context: &Context, ball: &Pair) -> Result<Vec<Comparison>> {
     let mut own = Vec::new();
     for pressure in [0.5e9, 2e9, 8e9] {
         for spacing in [2.0, 0.25] {
             let options =
                 [set("contact.normal", "thornton"), set("contact.limiting_pressure", format!("{pressure} Pa"))];
-            let (force, _, spent) = crossed(lab, 90.0, spacing, &options)?;
+            let (force, _, spent) = crossed(context, 90.0, spacing, &options)?;
             let exact = thornton::force(ball, pressure, APPROACH, APPROACH);
             own.push(
-                Finding::new("force at 90 degrees under a limiting pressure", "N", force, exact, spent).within(2e-2),
+                Comparison::new("force at 90 degrees under a limiting pressure", "N", force, exact, spent).within(2e-2),
             );
         }
     }
-    Ok(vec![Finding::worst(own).note(
+    Ok(vec![Comparison::worst(own).note(
         "Force per length on the limit is Abel's inversion of Thornton's law, whose series is cut off: within 0.8 %; four \
          points per stretch integrate an ellipse to 0.6 %.",
     )])

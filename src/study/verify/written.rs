@@ -1,16 +1,17 @@
 //! The curve as a run writes it: what users read modulus and yield from.
 
-use super::Case;
-use super::finding::{Finding, Spent};
+use super::VerificationCase;
+use super::comparison::{Comparison, Spent};
 use super::plasticity::hardening;
-use super::support::{Lab, set};
+use super::support::{Context, set};
 use crate::base::error::{Error, Result};
 use crate::reference::plasticity::tension_at;
-use crate::run::{RunOptions, run_watched};
+use crate::run::{RunOptions, StopReason, run_watched};
 use crate::scene;
+use serde::Deserialize;
 use std::path::Path;
 
-pub const WRITTEN: Case = Case {
+pub const WRITTEN: VerificationCase = VerificationCase {
     name: "curve-as-written",
     about: "one wire pulled at 5 m/s: modulus and yield read from the rows of curve.csv",
     source: "Hooke, and the hardening law converted with A = A₀ e^(−p)",
@@ -22,12 +23,15 @@ const STRAINS: [f64; 5] = [2e-4, 4e-4, 6e-4, 1e-3, 1.4e-3];
 
 /// The built-in wire at the speed that it is shipped with: 0.15 % take as long as an elastic wave from grip to grip, and what
 /// smooths stress must not shift it against strain.
-fn curve_as_written(lab: &Lab) -> Result<Vec<Finding>> {
+fn curve_as_written(context: &Context) -> Result<Vec<Comparison>> {
     let scene = scene::load("single-wire", &[set("stop.strain", "0.15 %"), set("output.samples", 300)])?;
     let (law, young) = (hardening(&scene.spec), scene.spec.material.young);
     let folder = tempfile::tempdir().map_err(|e| Error::io("cannot make a folder in", std::env::temp_dir(), e))?;
     let out = folder.path().join("run");
-    let summary = run_watched(&scene, &options(&out), Vec::new(), lab.stop())?;
+    let summary = run_watched(&scene, &RunOptions::tables(&out), Vec::new(), context.stop())?;
+    if summary.stopped == StopReason::Interrupted {
+        return Err(Error::Interrupted);
+    }
     let spent = Spent { steps: summary.cost.steps, wall_s: summary.cost.wall_s };
     let curve = read(&out.join("curve.csv"))?;
     let stress = |strain: f64| {
@@ -38,44 +42,25 @@ fn curve_as_written(lab: &Lab) -> Result<Vec<Finding>> {
     let exact = |strain: f64| tension_at(strain, |p| law.stress(p), young).engineering_stress;
     let at = STRAINS.map(|strain| {
         let what = format!("stress in curve.csv, worst of five: at {:.2} %", 100.0 * strain);
-        Finding::new(what, "Pa", stress(strain), exact(strain), spent).within(1e-2)
+        Comparison::new(what, "Pa", stress(strain), exact(strain), spent).within(1e-2)
     });
     let secant = |curve: &dyn Fn(f64) -> f64| (curve(6e-4) - curve(2e-4)) / 4e-4;
-    let modulus = Finding::new("modulus from curve.csv, 0.02 to 0.06 %", "Pa", secant(&stress), secant(&exact), spent);
-    Ok(vec![Finding::worst(at.into()), modulus.within(1e-2)])
+    let modulus =
+        Comparison::new("modulus from curve.csv, 0.02 to 0.06 %", "Pa", secant(&stress), secant(&exact), spent);
+    Ok(vec![Comparison::worst(at.into()), modulus.within(1e-2)])
 }
 
-fn options(out: &Path) -> RunOptions {
-    RunOptions {
-        out: out.into(),
-        overwrite: false,
-        threads: None,
-        frames: false,
-        animation: None,
-        recording: false,
-        live: None,
-        quiet: true,
-    }
+/// A row of the curve.
+#[derive(Deserialize)]
+struct Row {
+    strain_percent: f64,
+    stress_mpa: f64,
 }
 
 /// Strain (-) and nominal stress (Pa) of each row.
 fn read(path: &Path) -> Result<Vec<[f64; 2]>> {
     let wrong = |e: csv::Error| Error::io("cannot read", path, std::io::Error::other(e));
     let mut table = csv::Reader::from_path(path).map_err(wrong)?;
-    let header = table.headers().map_err(wrong)?.clone();
-    let column = |name: &str| {
-        let found = header.iter().position(|h| h == name);
-        found.ok_or_else(|| Error::io("cannot read", path, std::io::Error::other(format!("there is no column {name}"))))
-    };
-    let (strain, stress) = (column("strain_percent")?, column("stress_mpa")?);
-    let number = |row: &csv::StringRecord, k: usize| {
-        row[k].parse::<f64>().map_err(|e| Error::io("cannot read", path, std::io::Error::other(e)))
-    };
-    table
-        .records()
-        .map(|row| {
-            let row = row.map_err(wrong)?;
-            Ok([0.01 * number(&row, strain)?, 1e6 * number(&row, stress)?])
-        })
-        .collect()
+    let row = |row: csv::Result<Row>| row.map(|row| [0.01 * row.strain_percent, 1e6 * row.stress_mpa]).map_err(wrong);
+    table.deserialize().map(row).collect()
 }

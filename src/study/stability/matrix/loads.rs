@@ -1,6 +1,6 @@
 //! Pull speeds, sudden stop, compression, torsion, cycles, breaking, rest.
 
-use super::super::case::{Base, Case};
+use super::super::case::{Base, StabilityCase};
 use super::super::measure::{
     buckled, cycled_alike, cycled_plastic, no_drift, peak_is_yield, pulled_strand, stopped_wave, turned,
 };
@@ -10,15 +10,15 @@ use crate::base::finding::FindingKind;
 /// What must be said of crushed contacts.
 const DEEP: &[FindingKind] = &[FindingKind::DeepContact];
 
-/// All of them.
-pub fn cases() -> Vec<Case> {
+/// The cases of this file.
+pub fn cases() -> Vec<StabilityCase> {
     [speeds(), compression(), torsion(), cycles(), breaking(), grips(), rest()].concat()
 }
 
-fn rest() -> Vec<Case> {
+fn rest() -> Vec<StabilityCase> {
     ["sphere", "wire"]
         .map(|shape| {
-            Case::new(
+            StabilityCase::new(
                 format!("rest-{shape}"),
                 format!(
                     "10⁷ steps at rest: a wire pressed on another and pushed within friction, contact shape {shape}"
@@ -33,18 +33,18 @@ fn rest() -> Vec<Case> {
         .to_vec()
 }
 
-fn cycles() -> Vec<Case> {
+fn cycles() -> Vec<StabilityCase> {
     let cyclic = ["grip.speed=", "stop.strain="];
     vec![
         // Short, so that its wires' own bending is ten times as fast as the cycles.
-        Case::new("cycles-strand", "1,000 cycles of an elastic strand with rubbing wires, ± 0.08 %", SEVEN)
+        StabilityCase::new("cycles-strand", "1,000 cycles of an elastic strand with rubbing wires, ± 0.08 %", SEVEN)
             .set(cyclic)
             .set(["strand.length=6 mm", "grip.length=1 mm", "grip.displacement_amplitude=3.2 um"])
             .set(["grip.frequency=8 kHz", "stop.time=125 ms", "output.samples=40000"])
             .quick(["stop.time=4 ms", "output.samples=1280"])
             .long()
             .gives(cycled_alike),
-        Case::new("cycles-plastic", "1,000 cycles of a perfectly plastic wire, ± 0.15 %", WIRE)
+        StabilityCase::new("cycles-plastic", "1,000 cycles of a perfectly plastic wire, ± 0.15 %", WIRE)
             .set(cyclic)
             .set(["bond.hardening.saturation=0 MPa", "bond.hardening.linear=0 MPa"])
             .set(["grip.displacement_amplitude=0.012 mm"])
@@ -55,9 +55,9 @@ fn cycles() -> Vec<Case> {
     ]
 }
 
-fn speeds() -> Vec<Case> {
+fn speeds() -> Vec<StabilityCase> {
     let pulled = |speed: f64, about: &str| {
-        Case::new(format!("speed-{speed}"), format!("pulled at {speed} m/s{about}"), SEVEN)
+        StabilityCase::new(format!("speed-{speed}"), format!("pulled at {speed} m/s{about}"), SEVEN)
             .set([format!("grip.speed={speed} m/s")])
     };
     let thrown = [
@@ -78,10 +78,10 @@ fn speeds() -> Vec<Case> {
         pulled(10.0, "").gives(pulled_strand),
         pulled(100.0, ", near the speed of plastic waves").finds(fast),
         pulled(300.0, ", above the speed of plastic waves").finds(fast),
-        Case::new("sudden-stop", "an elastic wire flying at 5 m/s whose front end is stopped dead", WIRE)
+        StabilityCase::new("sudden-stop", "an elastic wire flying at 5 m/s whose front end is stopped dead", WIRE)
             .set(thrown)
             .gives(stopped_wave),
-        Case::new("sudden-stop-strand", "seven wires that fly at 100 m/s and are stopped dead at one end", SEVEN).set([
+        StabilityCase::new("sudden-stop-strand", "seven wires that fly at 100 m/s and are stopped dead at one end", SEVEN).set([
             "grip=",
             "strand=",
             "stop.strain=",
@@ -93,14 +93,14 @@ fn speeds() -> Vec<Case> {
     ]
 }
 
-fn compression() -> Vec<Case> {
+fn compression() -> Vec<StabilityCase> {
     vec![
-        Case::new("buckling", "a column shortened to a quarter of its length beyond buckling", COLUMN)
+        StabilityCase::new("buckling", "a column shortened to a quarter of its length beyond buckling", COLUMN)
             .set([r#"hold.1.velocity=["0 m/s", "0 m/s", "-0.1 m/s"]"#, "stop.time=60 ms"])
             .gives(buckled),
-        Case::new("compressed-strand", "seven wires compressed by 20 %: they bulge, buckle and knot", SEVEN)
+        StabilityCase::new("compressed-strand", "seven wires compressed by 20 %: they bulge, buckle and knot", SEVEN)
             .set(["grip.speed=-2 m/s", "stop.strain=20 %"]),
-        Case::new("compressed-wires", "the same with smooth wires", SEVEN).set([
+        StabilityCase::new("compressed-wires", "the same with smooth wires", SEVEN).set([
             "grip.speed=-2 m/s",
             "stop.strain=20 %",
             "contact.shape=wire",
@@ -108,44 +108,45 @@ fn compression() -> Vec<Case> {
     ]
 }
 
-fn torsion() -> Vec<Case> {
+fn torsion() -> Vec<StabilityCase> {
     let ten = ["grip.speed=0 m/s", "grip.rotation_rate=5000 rad/s", "stop.strain=", "stop.time=12.566 ms"];
     let four = [r#"wire.0.to=["0 mm", "0 mm", "4 mm"]"#];
     vec![
-        Case::new("torsion-perfect", "ten turns of a perfectly plastic wire of ten diameters", WIRE)
+        StabilityCase::new("torsion-perfect", "ten turns of a perfectly plastic wire of ten diameters", WIRE)
             .set(ten)
             .set(four)
             .set(["bond.hardening.saturation=0 MPa", "bond.hardening.linear=0 MPa"])
             .gives(turned),
-        Case::new("torsion-hardening", "ten turns of a hardening wire", WIRE).set(ten).set(four).gives(turned),
-        Case::new(
+        StabilityCase::new("torsion-hardening", "ten turns of a hardening wire", WIRE).set(ten).set(four).gives(turned),
+        StabilityCase::new(
             "torsion-strand",
             "ten turns of seven wires, chains of spheres: wrung until wires slip through",
             SEVEN,
         )
         .set(ten)
         .passes_through(),
-        Case::new("torsion-unlay", "ten turns of seven wires against their lay, chains of spheres", SEVEN)
+        StabilityCase::new("torsion-unlay", "ten turns of seven wires against their lay, chains of spheres", SEVEN)
             .set(ten)
             .set(["grip.rotation_rate=-5000 rad/s"])
             .passes_through(),
-        Case::new("torsion-smooth", "two turns of seven smooth wires", SEVEN)
+        StabilityCase::new("torsion-smooth", "two turns of seven smooth wires", SEVEN)
             .set(ten)
             .set(["contact.shape=wire", "stop.time=2.513 ms"]),
     ]
 }
 
-fn breaking() -> Vec<Case> {
+fn breaking() -> Vec<StabilityCase> {
     let at = |strain: &str| format!(r#"bond.rupture={{ criterion = "plastic-strain", strain = "{strain}" }}"#);
     let brittle = r#"bond.rupture={ criterion = "beam-stress", tensile = "0.001 MPa", shear = "0.001 MPa" }"#;
     let mut cases = vec![
-        Case::new("broken-at-once", "every bond breaks at the first pull", SEVEN).set([brittle, "stop.strain=20 %"]),
-        Case::new("broken-together", "every bond breaks at one plastic strain, without scatter", SEVEN)
+        StabilityCase::new("broken-at-once", "every bond breaks at the first pull", SEVEN)
+            .set([brittle, "stop.strain=20 %"]),
+        StabilityCase::new("broken-together", "every bond breaks at one plastic strain, without scatter", SEVEN)
             .set([at("2 %"), "stop.strain=20 %".into()]),
     ];
     for shape in ["sphere", "wire"] {
         cases.push(
-            Case::new(
+            StabilityCase::new(
                 format!("after-the-break-{shape}"),
                 format!("pulled to twice its length, long after the last wire has gone, contact shape {shape}"),
                 SEVEN,
@@ -158,7 +159,7 @@ fn breaking() -> Vec<Case> {
             .quick(["stop.strain=20 %"]),
         );
         cases.push(
-            Case::new(
+            StabilityCase::new(
                 format!("stretched-{shape}"),
                 format!("a soft strand pulled to more than twice its length, contact shape {shape}"),
                 SEVEN,
@@ -173,7 +174,7 @@ fn breaking() -> Vec<Case> {
             .gives(pulled_strand),
         );
         cases.push(
-            Case::new(
+            StabilityCase::new(
                 format!("broken-fine-{shape}"),
                 format!("particles a quarter diameter apart, pulled until all wires break, contact shape {shape}"),
                 SEVEN,
@@ -185,9 +186,9 @@ fn breaking() -> Vec<Case> {
     cases
 }
 
-fn grips() -> Vec<Case> {
+fn grips() -> Vec<StabilityCase> {
     let jaw = |name: &str, about: &str, pressure: &str| {
-        Case::new(name, about, Base::Builtin("jaw-grip")).set([
+        StabilityCase::new(name, about, Base::Builtin("jaw-grip")).set([
             "strand.length=14 mm".to_string(),
             "grip.length=3 mm".into(),
             "grip.speed=1 m/s".into(),
@@ -199,17 +200,14 @@ fn grips() -> Vec<Case> {
     vec![
         jaw("jaw-100MPa", "KA4 in a jaw of 100 MPa", "100 MPa").finds(DEEP),
         jaw("jaw-3GPa", "KA4 in a jaw of 3 GPa, which crushes it", "3 GPa").passes_through(),
-        Case::new("jaw-slips", "seven wires whose core is held by friction alone, without friction", SEVEN).set([
-            "grip.kind=jaw",
-            "grip.clamp_pressure=100 MPa",
-            "contact.friction=0",
-        ]),
-        Case::new("grip-still", "grips that do not move", SEVEN).set([
+        StabilityCase::new("jaw-slips", "seven wires whose core is held by friction alone, without friction", SEVEN)
+            .set(["grip.kind=jaw", "grip.clamp_pressure=100 MPa", "contact.friction=0"]),
+        StabilityCase::new("grip-still", "grips that do not move", SEVEN).set([
             "grip.speed=0 m/s",
             "stop.strain=",
             "stop.time=0.2 ms",
         ]),
-        Case::new(
+        StabilityCase::new(
             "yield-at-once",
             "a perfectly plastic wire that each step strains by seventy times its yield strain",
             WIRE,

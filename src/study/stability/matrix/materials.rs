@@ -1,18 +1,18 @@
 //! Stiffness, hardening, yield stress, friction, damping.
 
-use super::super::case::Case;
+use super::super::case::StabilityCase;
 use super::super::measure::{no_friction, peak_is_yield, pulled_strand, pulled_wire};
 use super::{SEVEN, WIRE};
 use crate::base::finding::FindingKind;
 
-/// All of them.
-pub fn cases() -> Vec<Case> {
+/// The cases of this file.
+pub fn cases() -> Vec<StabilityCase> {
     [stiffness(), hardening(), yields(), friction(), damping()].concat()
 }
 
-fn stiffness() -> Vec<Case> {
+fn stiffness() -> Vec<StabilityCase> {
     let case = |name: &str, about: &str, young: &str| {
-        Case::new(name, about, SEVEN).set([format!("material.young={young}")]).gives(pulled_strand)
+        StabilityCase::new(name, about, SEVEN).set([format!("material.young={young}")]).gives(pulled_strand)
     };
     vec![
         case("base", "seven copper wires pulled by 5 %, the base of what follows", "115 GPa"),
@@ -22,30 +22,30 @@ fn stiffness() -> Vec<Case> {
     ]
 }
 
-fn hardening() -> Vec<Case> {
+fn hardening() -> Vec<StabilityCase> {
     let perfect = ["bond.hardening.saturation=0 MPa", "bond.hardening.linear=0 MPa"];
     let falling = r#"bond.hardening={ form = "table", points = [[0, "100 MPa"], [0.2, "60 MPa"]] }"#;
     vec![
-        Case::new("hardening-0-wire", "a perfectly plastic wire", WIRE)
+        StabilityCase::new("hardening-0-wire", "a perfectly plastic wire", WIRE)
             .set(perfect)
             .finds(&[FindingKind::Necking])
             .gives(peak_is_yield),
-        Case::new("hardening-0-strand", "seven perfectly plastic wires", SEVEN)
+        StabilityCase::new("hardening-0-strand", "seven perfectly plastic wires", SEVEN)
             .set(perfect)
             .finds(&[FindingKind::Necking]),
-        Case::new("hardening-1000x", "a wire that hardens a thousand times more", WIRE)
+        StabilityCase::new("hardening-1000x", "a wire that hardens a thousand times more", WIRE)
             .set(["bond.hardening.linear=543600 MPa", "bond.hardening.saturation=0 MPa"])
             .gives(pulled_wire),
-        Case::new("softening", "true stress that falls with plastic strain", WIRE).set([falling]).refused(),
-        Case::new("softening-linear", "a negative hardening slope", WIRE)
+        StabilityCase::new("softening", "true stress that falls with plastic strain", WIRE).set([falling]).refused(),
+        StabilityCase::new("softening-linear", "a negative hardening slope", WIRE)
             .set(["bond.hardening.linear=-100 MPa"])
             .refused(),
     ]
 }
 
-fn yields() -> Vec<Case> {
+fn yields() -> Vec<StabilityCase> {
     let scaled = |name: &str, about: &str, share: f64| {
-        Case::new(name, about, SEVEN)
+        StabilityCase::new(name, about, SEVEN)
             .set([
                 format!("bond.hardening.yield_stress={} MPa", 100.0 * share),
                 format!("bond.hardening.saturation={} MPa", 177.9 * share),
@@ -62,11 +62,11 @@ fn yields() -> Vec<Case> {
     ]
 }
 
-fn friction() -> Vec<Case> {
+fn friction() -> Vec<StabilityCase> {
     let mut cases = Vec::new();
     for shape in ["sphere", "wire"] {
         for value in [0.0, 0.2, 1.0, 10.0] {
-            let case = Case::new(
+            let case = StabilityCase::new(
                 format!("friction-{value}-{shape}"),
                 format!("friction coefficient {value}, contact shape {shape}"),
                 SEVEN,
@@ -78,10 +78,10 @@ fn friction() -> Vec<Case> {
     cases
 }
 
-fn damping() -> Vec<Case> {
+fn damping() -> Vec<StabilityCase> {
     [0.0, 0.02, 0.3, 1.0, 3.0]
         .map(|value| {
-            Case::new(
+            StabilityCase::new(
                 format!("damping-{value}"),
                 match value {
                     1.0 => "critical damping of bonds and contacts".into(),

@@ -5,7 +5,7 @@ mod loads;
 mod materials;
 mod steps;
 
-use super::case::{Base, Case};
+use super::case::{Base, StabilityCase};
 
 /// The smallest strand that has everything.
 const SEVEN: Base = Base::Text(include_str!("../../../../assets/scenes/stability/seven-wires.toml"));
@@ -19,7 +19,7 @@ const REST: Base = Base::Text(include_str!("../../../../assets/scenes/stability/
 const LIGHT_ON_HEAVY: Base = Base::Text(include_str!("../../../../assets/scenes/stability/light-on-heavy.toml"));
 
 /// Every case.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<StabilityCase> {
     [steps::cases(), materials::cases(), geometry::cases(), loads::cases()].concat()
 }
 

@@ -1,25 +1,25 @@
-//! Tables beside the paper and strand theory.
+//! Tables of the comparison with published results and strand theory.
 
-use super::super::beside::{PointBeside, QUANTITIES, Trend};
+use super::super::comparison::{PointComparison, QUANTITIES, Trend};
 use super::super::definition::Definition;
 use super::Findings;
-use crate::study::cases::stat::Stat;
 use crate::study::table::Table;
 
-/// Ours beside the paper's and theory's, point by point, and the trends; empty when the study compares with nothing.
+/// Computed values beside published ones and theory's, point by point, and the trends; empty when the study compares with
+/// nothing.
 pub fn tables(definition: &Definition, findings: &Findings) -> Vec<Table> {
-    let known = findings.beside.iter().any(|beside| beside.paper.is_some() || beside.theory.is_some());
+    let known = findings.comparison.iter().any(|one| one.simulation.is_some() || one.theory.is_some());
     if !known {
         return Vec::new();
     }
-    let mut tables = vec![values(definition, &findings.beside)];
+    let mut tables = vec![values(definition, &findings.comparison)];
     if !findings.trends.is_empty() {
         tables.push(trends(definition, &findings.trends));
     }
     tables
 }
 
-fn values(definition: &Definition, beside: &[PointBeside]) -> Table {
+fn values(definition: &Definition, points: &[PointComparison]) -> Table {
     let axes = definition.axes.iter().map(|axis| axis.label());
     let of = |name: &str, unit: &str| {
         [
@@ -31,17 +31,17 @@ fn values(definition: &Definition, beside: &[PointBeside]) -> Table {
         ]
     };
     let heads = axes.chain(of(QUANTITIES[0], "MPa")).chain(of(QUANTITIES[1], "%"));
-    let row = |beside: &PointBeside| {
-        let mut cells: Vec<String> = definition.levels(beside.point).map(|(_, level)| level.name.clone()).collect();
+    let row = |one: &PointComparison| {
+        let mut cells: Vec<String> = definition.levels(one.point).map(|(_, level)| level.name.clone()).collect();
         for k in 0..QUANTITIES.len() {
             let value = |other: Option<[f64; 2]>| other.map_or(String::new(), |other| format!("{:.2}", other[k]));
-            let error = |other| beside.error(k, other).map_or(String::new(), |error| format!("{error:+.2}"));
+            let error = |other| one.error(k, other).map_or(String::new(), |error| format!("{error:+.2}"));
             cells.extend([
-                beside.ours[k].map_or(String::new(), with_interval),
-                value(beside.paper),
-                error(beside.paper),
-                value(beside.theory),
-                error(beside.theory),
+                one.computed[k].map_or(String::new(), |stat| stat.with_interval(2)),
+                value(one.simulation),
+                error(one.simulation),
+                value(one.theory),
+                error(one.theory),
             ]);
         }
         cells
@@ -50,7 +50,7 @@ fn values(definition: &Definition, beside: &[PointBeside]) -> Table {
         title: "Beside the paper's simulations and strand theory, both engine and theory calibrated on the experiment at 39 mm"
             .into(),
         heads: heads.collect(),
-        rows: beside.iter().map(row).collect(),
+        rows: points.iter().map(row).collect(),
         default: None,
         left: definition.axes.len(),
     }
@@ -61,16 +61,16 @@ fn trends(definition: &Definition, trends: &[Trend]) -> Table {
     let heads = ["quantity", "this engine", "paper", "strand theory", "same sign as the paper", "as theory"];
     let row = |trend: &Trend| {
         let value = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:+.2}"));
-        let ours = match trend.interval_95 {
-            Some(half) => format!("{:+.2} ± {half:.2}", trend.ours),
-            None => format!("{:+.2}", trend.ours),
+        let computed = match trend.interval_95 {
+            Some(half) => format!("{:+.2} ± {half:.2}", trend.computed),
+            None => format!("{:+.2}", trend.computed),
         };
         vec![
             trend.quantity.to_string(),
-            ours,
-            value(trend.paper),
+            computed,
+            value(trend.simulation),
             value(trend.theory),
-            verdict(trend, trend.paper),
+            verdict(trend, trend.simulation),
             verdict(trend, trend.theory),
         ]
     };
@@ -92,15 +92,8 @@ fn trends(definition: &Definition, trends: &[Trend]) -> Table {
 fn verdict(trend: &Trend, other: Option<f64>) -> String {
     let Some(other) = other else { return String::new() };
     match trend.interval_95 {
-        Some(half) if trend.ours.abs() <= half => "within scatter of none".into(),
-        _ if trend.ours * other > 0.0 => "yes".into(),
+        Some(half) if trend.computed.abs() <= half => "within scatter of none".into(),
+        _ if trend.computed * other > 0.0 => "yes".into(),
         _ => "no".into(),
-    }
-}
-
-fn with_interval(stat: Stat) -> String {
-    match stat.interval_95 {
-        Some(half) => format!("{:.2} ± {half:.2}", stat.mean),
-        None => format!("{:.2}", stat.mean),
     }
 }

@@ -1,12 +1,14 @@
 //! `cases.csv`: a line per case; `points.csv`: means over seeds; `breaks.csv`: what each layer did. Cells of what is not
 //! known are empty.
 
-use super::super::breaks;
+use super::super::breaks::{self, LayerBreaks};
 use super::super::definition::Definition;
 use super::super::gather::{CaseResult, Gathered, construction};
-use super::super::quantity;
-use crate::base::error::{Error, Result};
-use crate::observe::files::write_whole;
+use super::super::quantity::{self, Quantity};
+use crate::base::error::Result;
+use crate::study::column::{Column, Value, write_csv};
+use crate::study::statistics::Statistics;
+use crate::study::tensile::TensileResult;
 use std::path::Path;
 
 /// A line per case.
@@ -14,55 +16,40 @@ use std::path::Path;
 /// # Errors
 /// When the file cannot be written.
 pub fn cases(definition: &Definition, gathered: &Gathered, path: &Path) -> Result<()> {
-    let axes = definition.axes.iter().map(|axis| axis.label());
-    let quantities = quantity::ALL.iter().map(|quantity| quantity.label_and_unit());
-    let head = ["case", "folder", "outcome", "cause"].map(String::from).into_iter().chain(axes);
-    let head = head.chain(["seed", "construction"].map(String::from)).chain(quantities).chain(
-        [
-            "first layer",
-            "first wire",
-            "first break z [mm]",
-            "order of layers",
-            "wires broken",
-            "wires",
-            "particles",
-            "steps",
-        ]
-        .map(String::from),
-    );
-    let head = head.chain(["run time [s]", "CPU [s]", "energy residual [%]", "kinetic/internal [-]"].map(String::from));
-    let rows = gathered.cases.iter().map(|case| row(definition, gathered, case));
-    write(path, head.collect(), rows.collect())
+    let mut columns: Vec<Column<CaseResult>> = vec![
+        Column::in_files("case", |case: &CaseResult| case.number),
+        Column::in_files("folder", |case: &CaseResult| case.folder.clone()),
+        Column::in_files("outcome", |case: &CaseResult| case.word()),
+        Column::in_files("cause", |case: &CaseResult| case.cause().map(str::to_owned)),
+    ];
+    columns.extend(levels(definition, |case: &CaseResult| case.point));
+    columns.push(Column::in_files("seed", |case: &CaseResult| case.seed));
+    columns.push(Column::in_files("construction", |case: &CaseResult| gathered.spec(case.point).map(construction)));
+    let quantity = |quantity: &'static Quantity| of_run(quantity.label(), move |run| quantity.value(run));
+    columns.extend(quantity::ALL.iter().map(quantity));
+    columns.extend([
+        of_run("first layer", |run| run.breaks.first().map(|first| first.layer.clone()).into()),
+        of_run("first wire", |run| run.breaks.first().map(|first| first.wire).into()),
+        of_run("first break z [mm]", |run| run.breaks.first().map(|first| first.rest_z_mm).into()),
+        of_run("order of layers", |run| breaks::order(run).join(" ").into()),
+        of_run("wires broken", |run| run.breaks.len().into()),
+        of_run("wires", |run| run.wires.into()),
+        of_run("particles", |run| run.particles.into()),
+        of_run("steps", |run| run.steps.into()),
+        of_run("run time [s]", |run| run.wall_s.into()),
+        of_run("CPU [s]", |run| run.cpu_s.into()),
+        of_run("energy residual [%]", |run| run.energy_residual_percent.into()),
+        of_run("kinetic/internal [-]", |run| run.kinetic_over_internal.into()),
+    ]);
+    write_csv(&columns, &gathered.cases, path)
 }
 
-fn row(definition: &Definition, gathered: &Gathered, case: &CaseResult) -> Vec<String> {
-    let mut cells = vec![
-        case.number.to_string(),
-        case.folder.clone(),
-        case.state.word().to_string(),
-        case.state.cause().unwrap_or("").to_string(),
-    ];
-    cells.extend(levels(definition, case.point));
-    cells.push(case.seed.to_string());
-    cells.push(gathered.spec(case.point).map_or(String::new(), construction));
-    let Some(run) = case.measured() else { return cells };
-    cells.extend(quantity::ALL.iter().map(|quantity| number((quantity.of)(run))));
-    let first = run.breaks.first();
-    cells.extend([
-        first.map_or(String::new(), |one| one.layer.clone()),
-        first.map_or(String::new(), |one| one.wire.to_string()),
-        number(first.map(|one| one.rest_z_mm)),
-        breaks::order(run).join(" "),
-        run.breaks.len().to_string(),
-        run.wires.to_string(),
-        run.particles.to_string(),
-        run.steps.to_string(),
-        run.wall_s.to_string(),
-        number(run.cpu_s),
-        number(run.energy_residual_percent),
-        number(run.kinetic_over_internal),
-    ]);
-    cells
+/// A column of what a case gave, empty where it gave nothing.
+fn of_run<'a>(
+    name: impl Into<std::borrow::Cow<'a, str>>,
+    of: impl Fn(&TensileResult) -> Value + Send + Sync + 'a,
+) -> Column<'a, CaseResult> {
+    Column::in_files(name, move |case: &CaseResult| case.result().map_or(Value::Missing, &of))
 }
 
 /// A line per point and quantity: mean, standard deviation and interval over seeds.
@@ -70,29 +57,21 @@ fn row(definition: &Definition, gathered: &Gathered, case: &CaseResult) -> Vec<S
 /// # Errors
 /// When the file cannot be written.
 pub fn points(definition: &Definition, gathered: &Gathered, path: &Path) -> Result<()> {
-    let axes = definition.axes.iter().map(|axis| axis.label());
-    let head = axes.chain(
-        ["construction", "quantity", "unit", "mean", "standard deviation", "interval 95 %", "runs"].map(String::from),
-    );
-    let mut rows = Vec::new();
-    for point in 0..definition.points.len() {
-        let built = gathered.spec(point).map_or(String::new(), construction);
-        for quantity in &definition.quantities {
-            let Some(stat) = gathered.stat(point, quantity) else { continue };
-            let mut cells = levels(definition, point);
-            cells.extend([
-                built.clone(),
-                quantity.label.to_string(),
-                quantity.unit.to_string(),
-                stat.mean.to_string(),
-                number(stat.standard_deviation),
-                number(stat.interval_95),
-                stat.count.to_string(),
-            ]);
-            rows.push(cells);
-        }
-    }
-    write(path, head.collect(), rows)
+    type Mean = (usize, &'static Quantity, Statistics);
+    let mut columns: Vec<Column<Mean>> = levels(definition, |(point, ..): &Mean| *point);
+    columns.extend([
+        Column::in_files("construction", |(point, ..): &Mean| gathered.spec(*point).map(construction)),
+        Column::in_files("quantity", |(_, quantity, _): &Mean| &*quantity.heading),
+        Column::in_files("unit", |(_, quantity, _): &Mean| &*quantity.unit),
+        Column::in_files("mean", |(.., stat): &Mean| stat.mean),
+        Column::in_files("standard deviation", |(.., stat): &Mean| stat.standard_deviation),
+        Column::in_files("interval 95 %", |(.., stat): &Mean| stat.interval_95),
+        Column::in_files("runs", |(.., stat): &Mean| stat.count),
+    ]);
+    let means = |point: usize| {
+        definition.quantities.iter().filter_map(move |one| Some((point, *one, gathered.stat(point, one)?)))
+    };
+    write_csv(&columns, &(0..definition.points.len()).flat_map(means).collect::<Vec<Mean>>(), path)
 }
 
 /// A line per point and layer: when and where it broke, as frequencies over seeds.
@@ -100,60 +79,41 @@ pub fn points(definition: &Definition, gathered: &Gathered, path: &Path) -> Resu
 /// # Errors
 /// When the file cannot be written.
 pub fn breaks(definition: &Definition, gathered: &Gathered, path: &Path) -> Result<()> {
-    let layers: Vec<_> = (0..definition.points.len()).map(|point| breaks::layers(gathered, point)).collect();
-    let most = layers.iter().map(Vec::len).max().unwrap_or(0);
-    let axes = definition.axes.iter().map(|axis| axis.label());
-    let head = axes.chain(["layer", "wires", "runs"].map(String::from));
-    let head = head.chain((1..=most).map(|place| format!("runs as layer {place} to break")));
-    let head = head.chain(
-        [
-            "runs unbroken",
-            "wires broken [%]",
-            "runs with its first break in the middle third",
-            "first break from mid-length [mm]",
-        ]
-        .map(String::from),
-    );
-    let mut rows = Vec::new();
-    for (point, layers) in layers.iter().enumerate() {
-        for layer in layers {
-            let mut cells = levels(definition, point);
-            cells.extend([layer.layer.clone(), layer.wires.to_string(), gathered.runs(point).count().to_string()]);
-            cells.extend((0..most).map(|place| layer.places.get(place).map_or(String::new(), usize::to_string)));
-            cells.extend([
-                layer.never.to_string(),
-                number(layer.broken_percent.map(|stat| stat.mean)),
-                layer.middle_third.to_string(),
-                number(layer.off_middle_mm.map(|stat| stat.mean)),
-            ]);
-            rows.push(cells);
-        }
-    }
-    write(path, head.collect(), rows)
+    type Layer = (usize, LayerBreaks);
+    let of_point = |point: usize| breaks::layers(gathered, point).into_iter().map(move |layer| (point, layer));
+    let layers: Vec<Layer> = (0..definition.points.len()).flat_map(of_point).collect();
+    let most = layers.iter().map(|(_, layer)| layer.places.len()).max().unwrap_or(0);
+    let mut columns: Vec<Column<Layer>> = levels(definition, |(point, _): &Layer| *point);
+    columns.extend([
+        Column::in_files("layer", |(_, layer): &Layer| layer.layer.clone()),
+        Column::in_files("wires", |(_, layer): &Layer| layer.wires),
+        Column::in_files("runs", |(point, _): &Layer| gathered.runs(*point).count()),
+    ]);
+    columns.extend((0..most).map(|place| {
+        let name = format!("runs as layer {} to break", place + 1);
+        Column::in_files(name, move |(_, layer): &Layer| layer.places.get(place).copied())
+    }));
+    columns.extend([
+        Column::in_files("runs unbroken", |(_, layer): &Layer| layer.never),
+        Column::in_files("wires broken [%]", |(_, layer): &Layer| layer.broken_percent.map(|stat| stat.mean)),
+        Column::in_files("runs with its first break in the middle third", |(_, layer): &Layer| layer.middle_third),
+        Column::in_files("first break from mid-length [mm]", |(_, layer): &Layer| {
+            layer.off_middle_mm.map(|stat| stat.mean)
+        }),
+    ]);
+    write_csv(&columns, &layers, path)
 }
 
-/// The levels of a point: numbers where they are, names otherwise.
-fn levels(definition: &Definition, point: usize) -> Vec<String> {
-    let cell = |(_, level): (_, &super::super::axis::Level)| {
-        level.number.map_or_else(|| level.name.clone(), |number| number.to_string())
+/// A column per axis: numbers where its levels are, names otherwise.
+fn levels<'a, R: 'a>(
+    definition: &'a Definition,
+    point: impl Fn(&R) -> usize + Copy + Send + Sync + 'a,
+) -> Vec<Column<'a, R>> {
+    let column = |(k, axis): (usize, &'a super::super::axis::Axis)| {
+        Column::in_files(axis.label(), move |result: &R| {
+            let level = &axis.levels[definition.points[point(result)][k]];
+            level.number.map_or_else(|| Value::from(&*level.name), Value::from)
+        })
     };
-    definition.levels(point).map(cell).collect()
-}
-
-fn number(value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| value.to_string())
-}
-
-/// Writes a table whose rows may be shorter than its head.
-fn write(path: &Path, head: Vec<String>, rows: Vec<Vec<String>>) -> Result<()> {
-    let refuse = |e: csv::Error| Error::io("cannot write", path, std::io::Error::other(e));
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let width = head.len();
-    writer.write_record(head).map_err(refuse)?;
-    for mut row in rows {
-        row.resize(width, String::new());
-        writer.write_record(row).map_err(refuse)?;
-    }
-    let bytes = writer.into_inner().map_err(|e| Error::io("cannot write", path, e.into_error()))?;
-    write_whole(path, &bytes)
+    definition.axes.iter().enumerate().map(column).collect()
 }

@@ -19,7 +19,7 @@ const SURE: f64 = 0.05;
 pub fn of(definition: &Definition, gathered: &Gathered) -> Vec<Moved> {
     let Some(model) = &definition.model else { return Vec::new() };
     let one = |quantity: &&'static Quantity| Moved {
-        quantity: quantity.name,
+        quantity: &quantity.name,
         by_points: by_points(definition, model),
         seeds_deviation: seeds_deviation(definition, gathered, quantity),
         effects: effects(model, &responses(definition, gathered, quantity, model)).map_err(|why| why.to_string()),
@@ -46,7 +46,7 @@ fn responses(
         return (0..definition.points.len()).map(|point| (definition.points[point].clone(), mean(point))).collect();
     }
     let run = |case: &CaseResult| {
-        let value = case.measured().map(|run| (quantity.of)(run).unwrap_or(f64::NAN))?;
+        let value = case.result().map(|run| quantity.number(run).unwrap_or(f64::NAN))?;
         Some((definition.points[case.point].clone(), value))
     };
     gathered.cases.iter().filter_map(run).collect()
@@ -128,7 +128,7 @@ fn shares(definition: &Definition, moved: &[Moved]) -> Table {
     let efficiency = definition.efficiency.map_or(String::new(), |e| format!("; D-efficiency of the design {e:.2}"));
     let constant: Vec<String> = moved
         .iter()
-        .filter_map(|one| Some(format!("; {}: {}", quantity::find(one.quantity)?.label, one.effects.as_ref().err()?)))
+        .filter_map(|one| Some(format!("; {}: {}", quantity::find(one.quantity)?.heading, one.effects.as_ref().err()?)))
         .collect();
     Table {
         title: format!(
@@ -138,7 +138,7 @@ fn shares(definition: &Definition, moved: &[Moved]) -> Table {
         ),
         heads: ["term".to_string()]
             .into_iter()
-            .chain(found.iter().map(|(quantity, _)| quantity.label.to_string()))
+            .chain(found.iter().map(|(quantity, _)| quantity.heading.to_string()))
             .collect(),
         rows,
         default: None,
@@ -172,7 +172,7 @@ fn means(definition: &Definition, moved: &[Moved]) -> Table {
     }
     Table {
         title: "Mean of each level, averaged over the levels of all others (difference from the first level ± its 95 % interval; * where it is told from zero)".into(),
-        heads: ["factor", "level"].map(String::from).into_iter().chain(found.iter().map(|(q, _)| q.label_and_unit())).collect(),
+        heads: ["factor", "level"].map(String::from).into_iter().chain(found.iter().map(|(q, _)| q.label())).collect(),
         rows,
         default: None,
         left: 2,
@@ -214,7 +214,7 @@ fn interaction(definition: &Definition, moved: &[Moved], k: usize) -> Table {
         ),
         heads: [axis.name.clone(), other.name.clone()]
             .into_iter()
-            .chain(found.iter().map(|(q, _)| q.label_and_unit()))
+            .chain(found.iter().map(|(q, _)| q.label()))
             .collect(),
         rows,
         default: None,
@@ -225,7 +225,7 @@ fn interaction(definition: &Definition, moved: &[Moved], k: usize) -> Table {
 /// Means of all levels, and the effect of the first factor at each level of the others, of strength and elongation.
 pub fn figures(definition: &Definition, findings: &Findings) -> Vec<(&'static str, Vec<Figure>)> {
     let found = found(&findings.effects);
-    let drawn: Vec<_> = found.iter().filter(|(quantity, _)| DRAWN.contains(&quantity.name)).collect();
+    let drawn: Vec<_> = found.iter().filter(|(quantity, _)| DRAWN.contains(&&*quantity.name)).collect();
     if drawn.is_empty() {
         return Vec::new();
     }
@@ -253,8 +253,8 @@ fn levels(definition: &Definition, quantity: &Quantity, effects: &Effects) -> Fi
         }
         series.push(Series::new(axis.name.clone(), Mark::LineAndPoints, points).with_errors(errors));
     }
-    let title = format!("{}: {}, mean of each level over all others", definition.name, quantity.label);
-    let mut figure = Figure::new(title, Axis::named("", names), Axis::linear(quantity.label_and_unit()));
+    let title = format!("{}: {}, mean of each level over all others", definition.name, quantity.heading);
+    let mut figure = Figure::new(title, Axis::named("", names), Axis::linear(quantity.label()));
     figure.series = series;
     figure.legend = Legend::Beside;
     figure.size = [SIZE[0] + 360, SIZE[1]];
@@ -280,8 +280,8 @@ fn trend(definition: &Definition, quantity: &Quantity, effects: &Effects) -> Opt
         return None;
     }
     let [first, second] = [0, 1].map(|k: usize| &axis.levels[k].name);
-    let title = format!("{}: {} at {} {second} less {first}", definition.name, quantity.label, axis.name);
-    let label = format!("change of {} [{}]", quantity.label, quantity.unit);
+    let title = format!("{}: {} at {} {second} less {first}", definition.name, quantity.heading, axis.name);
+    let label = format!("change of {} [{}]", quantity.heading, quantity.unit);
     let mut figure = Figure::new(title, Axis::named("", names), Axis::linear(label));
     figure.series = series;
     figure.limits.push(Limit::Y(0.0, String::new()));

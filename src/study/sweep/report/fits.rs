@@ -1,6 +1,6 @@
 //! Tables of fitted curves.
 
-use super::super::beside;
+use super::super::comparison;
 use super::super::definition::Definition;
 use super::super::quantity;
 use super::{Findings, Fitted};
@@ -13,7 +13,7 @@ pub fn tables(definition: &Definition, findings: &Findings) -> Vec<Table> {
 }
 
 fn label(fitted: &Fitted) -> String {
-    quantity::find(fitted.quantity).map_or_else(|| fitted.quantity.into(), |quantity| quantity.label_and_unit())
+    quantity::find(fitted.quantity).map_or_else(|| fitted.quantity.into(), |quantity| quantity.label())
 }
 
 fn models(definition: &Definition, fitted: &Fitted) -> Table {
@@ -34,7 +34,7 @@ fn models(definition: &Definition, fitted: &Fitted) -> Table {
         vec![compared.model.formula().into(), parameters, rms, mse, note]
     };
     let mut rows: Vec<Vec<String>> = fitted.comparison.models.iter().map(row).collect();
-    if let Some(paper) = beside::curve_over(axis, fitted.quantity) {
+    if let Some(paper) = comparison::fitted_over(definition, axis, fitted.quantity) {
         let parameters = format!("A = {}, B = {}, C = {}", paper.a, paper.b, paper.c);
         let note = "as printed, through its own seven points".to_string();
         rows.push(vec!["the paper's".into(), parameters, String::new(), format!("{}", paper.loo_mse), note]);

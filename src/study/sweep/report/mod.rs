@@ -8,16 +8,16 @@ mod html;
 mod plots;
 mod tables;
 
-pub use tables::{agenda, built};
+pub use tables::{built, case_list};
 
-use super::beside::{self, PointBeside, Trend};
+use super::comparison::{self as compared, PointComparison, Trend};
 use super::definition::Definition;
 use super::gather::Gathered;
 use super::quantity::Quantity;
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
 use crate::run::folder::{STUDY, STUDY_PAGE};
-use crate::study::fit::{self, Comparison, Fit, Model};
+use crate::study::fit::{self, Fit, Model, ModelComparison};
 use crate::study::screening::Effects;
 use crate::study::table::Table;
 use serde::Serialize;
@@ -26,8 +26,8 @@ use std::path::{Path, PathBuf};
 
 /// What follows from the cases of a study.
 pub struct Findings {
-    /// Points beside the paper and theory.
-    pub beside: Vec<PointBeside>,
+    /// Points compared with published results and theory.
+    pub comparison: Vec<PointComparison>,
     /// How strength and elongation go over the axis.
     pub trends: Vec<Trend>,
     /// Curves over the axis.
@@ -42,7 +42,7 @@ pub struct Fitted {
     /// Name of the quantity.
     pub quantity: &'static str,
     /// All models, each with its cross-validation.
-    pub comparison: Comparison,
+    pub comparison: ModelComparison,
 }
 
 /// What the factors of a design do to a quantity.
@@ -64,14 +64,14 @@ impl Findings {
     /// # Errors
     /// When strand theory cannot be calibrated.
     pub fn new(definition: &Definition, gathered: &Gathered) -> Result<Self> {
-        let beside = beside::points(definition, gathered)?;
-        let trends = beside::trends(definition, &beside);
+        let comparison = compared::points(definition, gathered)?;
+        let trends = compared::trends(definition, &comparison);
         let fitted = |quantity: &&'static Quantity| Fitted {
-            quantity: quantity.name,
+            quantity: &quantity.name,
             comparison: fit::compare(&means_over_axis(definition, gathered, quantity)),
         };
         let fits = definition.fits.iter().map(fitted).collect();
-        Ok(Self { beside, trends, fits, effects: effects::of(definition, gathered) })
+        Ok(Self { comparison, trends, fits, effects: effects::of(definition, gathered) })
     }
 
     /// A exp(B x) + C through a quantity, if it was asked for and found.
@@ -176,7 +176,7 @@ fn write_json(
         "cases": { "all": gathered.cases.len(), "ran": gathered.ran(), "missing": gathered.missing() },
         "design_efficiency": definition.efficiency,
         "points": (0..definition.points.len()).map(point).collect::<Vec<_>>(),
-        "beside": findings.beside,
+        "comparison": findings.comparison,
         "trends": findings.trends,
         "fits": findings.fits,
         "effects": findings.effects,

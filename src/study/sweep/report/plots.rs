@@ -1,14 +1,14 @@
-//! Figures of a study: stress-strain curves overlaid, strength and elongation over the axis beside the paper and theory.
+//! Figures of a study: stress-strain curves overlaid, strength and elongation over the axis beside published results and theory.
 
 use super::super::axis::Axis as StudyAxis;
-use super::super::beside::{self, PointBeside, QUANTITIES};
+use super::super::comparison::{self, PointComparison, QUANTITIES};
 use super::super::definition::Definition;
 use super::super::gather::Gathered;
 use super::super::quantity::{self, Quantity};
 use super::Findings;
 use crate::base::error::Result;
-use crate::study::cases::measured::Curve;
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series};
+use crate::study::tensile::Curve;
 use std::path::{Path, PathBuf};
 
 /// Size of a figure with its legend beside it (px of an SVG).
@@ -35,11 +35,7 @@ pub fn write(definition: &Definition, gathered: &Gathered, findings: &Findings, 
     sheets.extend(super::effects::figures(definition, findings));
     let mut files = Vec::new();
     for (name, figures) in sheets {
-        for end in ["svg", "png"] {
-            let path = folder.join(format!("{name}.{end}"));
-            plot::write(&figures, 1, &path)?;
-            files.push(path);
-        }
+        files.extend(plot::write_pair(&figures, 1, folder, name)?);
     }
     Ok(files)
 }
@@ -55,11 +51,11 @@ fn curves(definition: &Definition, gathered: &Gathered) -> Figure {
     figure.size = SIZE;
     figure.legend = Legend::Beside;
     let shown: Vec<_> = if seeds {
-        gathered.cases.iter().filter_map(|case| Some((case, case.measured()?))).collect()
+        gathered.cases.iter().filter_map(|case| Some((case, case.result()?))).collect()
     } else {
-        let first = |point| gathered.cases.iter().find(|case| case.point == point && case.measured().is_some());
+        let first = |point| gathered.cases.iter().find(|case| case.point == point && case.result().is_some());
         (0..definition.points.len())
-            .filter_map(|point| first(point).and_then(|case| Some((case, case.measured()?))))
+            .filter_map(|point| first(point).and_then(|case| Some((case, case.result()?))))
             .collect()
     };
     let count = shown.len();
@@ -98,14 +94,14 @@ fn thinned(curve: &Curve) -> Vec<[f64; 2]> {
     kept
 }
 
-/// A quantity over the axis, with error bars, beside the paper and theory, and the fitted curve.
+/// A quantity over the axis, with error bars, beside published results and theory, and the fitted curve.
 fn trend(definition: &Definition, gathered: &Gathered, findings: &Findings, axis: &StudyAxis, name: &str) -> Figure {
     let k = QUANTITIES.iter().position(|known| *known == name).expect("it is one of them");
     let quantity = quantity::find(name).expect("strength and elongation are always there");
     let mut figure = Figure::new(
-        format!("{}: {} over {}", definition.name, quantity.label, axis.name),
+        format!("{}: {} over {}", definition.name, quantity.heading, axis.name),
         Axis::linear(axis.label()),
-        Axis::linear(quantity.label_and_unit()),
+        Axis::linear(quantity.label()),
     );
     figure.size = SIZE;
     figure.legend = Legend::Beside;
@@ -119,13 +115,12 @@ fn trend(definition: &Definition, gathered: &Gathered, findings: &Findings, axis
     };
     let fitted = findings.exponential(name).map_or(Vec::new(), |fit| curve(&|x| fit.value(x)));
     push(&mut figure, "A exp(B x) + C through it", Mark::Line, fitted);
-    let of = |value: fn(&PointBeside) -> Option<[f64; 2]>| -> Vec<[f64; 2]> {
-        let at =
-            |beside: &PointBeside| Some([axis.levels[definition.points[beside.point][0]].number?, value(beside)?[k]]);
-        findings.beside.iter().filter_map(at).collect()
+    let of = |value: fn(&PointComparison) -> Option<[f64; 2]>| -> Vec<[f64; 2]> {
+        let at = |one: &PointComparison| Some([axis.levels[definition.points[one.point][0]].number?, value(one)?[k]]);
+        findings.comparison.iter().filter_map(at).collect()
     };
-    let (paper, theory, tested) = (of(|one| one.paper), of(|one| one.theory), of(|one| one.experiment));
-    let printed = beside::curve_over(axis, name).filter(|_| !paper.is_empty());
+    let (paper, theory, tested) = (of(|one| one.simulation), of(|one| one.theory), of(|one| one.experiment));
+    let printed = comparison::fitted_over(definition, axis, name).filter(|_| !paper.is_empty());
     let printed = printed.map_or(Vec::new(), |fit| curve(&|x| fit.value(x)));
     for (words, mark, points) in [
         ("the paper's simulations", Mark::Points, paper),
@@ -159,7 +154,7 @@ fn means(
     (0..definition.points.len()).filter_map(at).unzip()
 }
 
-/// Strength over elongation, one point per seed, beside the paper's.
+/// Strength over elongation, one point per seed, beside the published ones.
 fn scatter(definition: &Definition, gathered: &Gathered, findings: &Findings) -> Figure {
     let mut figure = Figure::new(
         format!("{}: strength over elongation, seed by seed", definition.name),
@@ -170,9 +165,9 @@ fn scatter(definition: &Definition, gathered: &Gathered, findings: &Findings) ->
     figure.legend = Legend::Beside;
     let runs = gathered.runs(0).map(|run| [run.elongation_percent, run.strength_mpa]).collect();
     figure.series.push(Series::new("this engine, one seed each", Mark::Points, runs));
-    if let Some(beside) = findings.beside.first() {
+    if let Some(first) = findings.comparison.first() {
         for (name, value) in
-            [("the paper's simulation", beside.paper), ("the experiment, calibrated on", beside.experiment)]
+            [("the paper's simulation", first.simulation), ("the experiment, calibrated on", first.experiment)]
         {
             let point = value.map(|[strength, elongation]| [elongation, strength]);
             push(&mut figure, name, Mark::Points, point.into_iter().collect());

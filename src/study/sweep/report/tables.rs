@@ -3,15 +3,16 @@
 use super::super::Cost;
 use super::super::breaks;
 use super::super::definition::Definition;
-use super::super::gather::{CaseResult, Gathered, State, construction};
+use super::super::gather::{CaseResult, Gathered, construction};
 use super::super::quantity::{self, Quantity};
-use crate::study::cases::measured::Measured;
-use crate::study::cases::stat::Stat;
+use crate::base::wording::counted;
+use crate::study::statistics::Statistics;
 use crate::study::table::Table;
+use crate::study::tensile::TensileResult;
 use std::fmt::Write;
 
 /// All cases with what they are expected to take.
-pub fn agenda(definition: &Definition, gathered: &Gathered, costs: &[Cost]) -> Table {
+pub fn case_list(definition: &Definition, gathered: &Gathered, costs: &[Cost]) -> Table {
     let axes = definition.axes.iter().map(|axis| axis.label());
     let heads = ["case"].map(String::from).into_iter().chain(axes);
     let heads = heads.chain(["seed", "state", "one thread [s]", "folder"].map(String::from));
@@ -22,7 +23,7 @@ pub fn agenda(definition: &Definition, gathered: &Gathered, costs: &[Cost]) -> T
             Cost::Takes(seconds) => format!("{seconds:.0}"),
             Cost::Done | Cost::Unknown => String::new(),
         };
-        cells.extend([case.seed.to_string(), case.state.word().into(), takes, case.folder.clone()]);
+        cells.extend([case.seed.to_string(), case.word().into(), takes, case.folder.clone()]);
         cells
     };
     Table {
@@ -52,9 +53,9 @@ pub fn built(definition: &Definition, gathered: &Gathered) -> String {
 pub fn means(definition: &Definition, gathered: &Gathered) -> Table {
     let axes = definition.axes.iter().map(|axis| axis.label());
     let heads = axes.chain(["runs".to_string()]);
-    let head = |quantity: &&'static Quantity| match quantity.is_frequency() {
-        true => format!("{} [runs]", quantity.label),
-        false => quantity.label_and_unit(),
+    let head = |quantity: &&'static Quantity| match quantity::is_frequency(quantity) {
+        true => format!("{} [runs]", quantity.heading),
+        false => quantity.label(),
     };
     let heads = heads.chain(definition.quantities.iter().map(head));
     let row = |point: usize| {
@@ -97,7 +98,7 @@ pub fn breaks(definition: &Definition, gathered: &Gathered) -> Table {
             let order: Vec<String> = layer.places.iter().chain([&layer.never]).map(usize::to_string).collect();
             let broke = runs - layer.never;
             cells.extend([
-                format!("{} ({} wires)", layer.layer, layer.wires),
+                format!("{} ({})", layer.layer, counted(layer.wires, "wire")),
                 format!("{} of {runs}", layer.places[0]),
                 order.join(" / "),
                 mean(layer.broken_percent, 0),
@@ -118,27 +119,27 @@ pub fn breaks(definition: &Definition, gathered: &Gathered) -> Table {
 
 /// How often what the paper reports happens, over all runs of the study, in a sentence; empty when nothing broke.
 pub fn frequencies(gathered: &Gathered) -> String {
-    let runs: Vec<&Measured> = gathered.cases.iter().filter_map(CaseResult::measured).collect();
-    let broken: Vec<&&Measured> = runs.iter().filter(|run| !run.breaks.is_empty() && run.layers.len() > 1).collect();
+    let runs: Vec<&TensileResult> = gathered.cases.iter().filter_map(CaseResult::result).collect();
+    let broken: Vec<&&TensileResult> =
+        runs.iter().filter(|run| !run.breaks.is_empty() && run.layers.len() > 1).collect();
     if broken.is_empty() {
         return String::new();
     }
-    let count = |holds: &dyn Fn(&Measured) -> bool| broken.iter().filter(|run| holds(run)).count();
+    let count = |holds: &dyn Fn(&TensileResult) -> bool| broken.iter().filter(|run| holds(run)).count();
     let first = |wanted: &dyn Fn(usize, usize) -> bool| {
         count(&|run| quantity::first_layer(run).is_some_and(|layer| wanted(layer, run.layers.len() - 1)))
     };
-    let middle = |run: &Measured| {
+    let middle = |run: &TensileResult| {
         let off = quantity::off_middle(run, run.breaks[0].rest_z_mm);
         off.zip(run.gauge_mm).is_some_and(|(off, [lower, upper])| off.abs() <= (upper - lower) / 6.0)
     };
-    let whole = |name: &str| quantity::find(name).expect("it is one of them").of;
-    let (outer, below) = (whole("outer-broken"), whole("below-broken"));
+    let (outer, below) = (quantity::outer_broken, quantity::below_broken);
     format!(
-        "Over all {} runs in which wires of several layers broke, the first was in the outermost layer in {}, in the innermost in \
+        "Over {} in which wires of several layers broke, the first was in the outermost layer in {}, in the innermost in \
          {}, between in {}; in the middle third of the gauge in {}. At their ends all outer wires were broken in {}, all \
          wires below them in {}, all outer ones with some below still whole in {}, and some outer ones whole with all below \
          broken in {}.\n",
-        broken.len(),
+        counted(broken.len(), "run"),
         first(&|layer, last| layer == last),
         first(&|layer, _| layer == 0),
         first(&|layer, last| layer > 0 && layer < last),
@@ -154,12 +155,12 @@ pub fn frequencies(gathered: &Gathered) -> String {
 pub fn state(definition: &Definition, gathered: &Gathered) -> String {
     let mut text = String::new();
     for case in &gathered.cases {
-        if let Some(cause) = case.state.cause() {
+        if let Some(cause) = case.cause() {
             let name = definition.case_name(case.point, case.seed);
-            let _ = writeln!(text, "case {} ({name}) {}: {cause}", case.number, case.state.word());
+            let _ = writeln!(text, "case {} ({name}) {}: {cause}", case.number, case.word());
         }
     }
-    let count = |word: &str| gathered.cases.iter().filter(|case| case.state.word() == word).count();
+    let count = |word: &str| gathered.cases.iter().filter(|case| case.word() == word).count();
     let kinds: Vec<String> =
         [("ran", "ran"), ("failed", "failed"), ("refused", "have scenes that are refused"), ("missing", "are missing")]
             .iter()
@@ -168,12 +169,12 @@ pub fn state(definition: &Definition, gathered: &Gathered) -> String {
             .collect();
     let _ = writeln!(
         text,
-        "{} cases at {} quality: {}.",
-        gathered.cases.len(),
+        "{} at {} quality: {}.",
+        counted(gathered.cases.len(), "case"),
         definition.quality.word(),
         kinds.join(", ")
     );
-    if gathered.cases.iter().any(|case| case.state == State::Missing) {
+    if gathered.cases.iter().any(|case| case.outcome.is_none()) {
         let _ = writeln!(
             text,
             "What is missing is made by the same command without --collect, or case by case with --case."
@@ -182,8 +183,8 @@ pub fn state(definition: &Definition, gathered: &Gathered) -> String {
     if gathered.other_build > 0 {
         let _ = writeln!(
             text,
-            "{} cases were run by another build with the same physics; --fresh runs them again.",
-            gathered.other_build
+            "Run by another build with the same physics, until --fresh: {}.",
+            counted(gathered.other_build, "case")
         );
     }
     text
@@ -193,18 +194,14 @@ fn level_names(definition: &Definition, point: usize) -> Vec<String> {
     definition.levels(point).map(|(_, level)| level.name.clone()).collect()
 }
 
-fn mean(stat: Option<Stat>, decimals: usize) -> String {
+fn mean(stat: Option<Statistics>, decimals: usize) -> String {
     stat.map_or(String::new(), |stat| format!("{:.decimals$}", stat.mean))
 }
 
-fn with_interval(stat: Option<Stat>, quantity: &Quantity) -> String {
+fn with_interval(stat: Option<Statistics>, quantity: &Quantity) -> String {
     let Some(stat) = stat else { return String::new() };
-    if quantity.is_frequency() {
+    if quantity::is_frequency(quantity) {
         return format!("{:.0} of {}", 0.01 * stat.mean * stat.count as f64, stat.count);
     }
-    let decimals = quantity.decimals;
-    match stat.interval_95.zip(stat.standard_deviation) {
-        Some((half, deviation)) => format!("{:.decimals$} ± {half:.decimals$} ({deviation:.decimals$})", stat.mean),
-        None => format!("{:.decimals$}", stat.mean),
-    }
+    stat.with_deviation(quantity.decimals)
 }

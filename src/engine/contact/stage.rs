@@ -1,0 +1,41 @@
+//! What the engine asks of contacts, whatever their laws and shape.
+
+use super::spheres::second::SecondSides;
+use crate::engine::bytes::Bytes;
+use crate::engine::neighbours::PairList;
+use crate::engine::state::{ChunkSums, State};
+use crate::engine::time_step::Stiffness;
+use crate::strand::assembly::Assembly;
+
+/// Contacts of a run.
+pub trait Contacts: Send {
+    /// Takes a new list of candidates; history of pairs that stay is kept. Returns what was lost with pairs that left.
+    fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums;
+    /// Computes all contacts and adds them up per particle in `state`, but for [`Self::second_sides`]; returns the
+    /// energies of the step.
+    fn compute(&mut self, state: &mut State) -> ChunkSums;
+    /// What contacts do besides what they have added up.
+    fn second_sides(&self) -> Option<SecondSides<'_>>;
+    /// Stored elastic energy at the positions of the last call of `compute` (J).
+    fn elastic_energy(&self, state: &State) -> f64;
+    /// Adds to each particle the normal forces of its contacts, without regard to direction (N).
+    fn add_normal_forces(&self, onto: &mut [f64]);
+    /// Number of touching pairs.
+    fn active(&self) -> usize;
+    /// Number of candidate pairs.
+    fn candidates(&self) -> usize;
+    /// Stiffnesses of touching pairs for the bound on the time step, as they can become within `horizon` (s).
+    fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
+    /// Memory of the stage, among `particles` particles.
+    fn bytes(&self, particles: usize) -> Bytes;
+}
+
+/// By how much the gap of two bodies may close while no particle moves further than 1 (-): 2 for the way of both, the
+/// rest for wires that thicken as they shorten. So a pair that is apart need not be looked at for a while.
+pub fn closing(assembly: &Assembly) -> f64 {
+    let largest = assembly.radius.iter().copied().fold(0.0, f64::max);
+    let shortest = assembly.rest_length.iter().copied().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    // Two ends of a bond that come 2 nearer raise its log strain by 2/l, and its radius by half of that times itself; a
+    // bond may be half as long as at rest.
+    2.0 + 2.0 * (2.0 * largest) / shortest
+}

@@ -1,0 +1,136 @@
+//! What those who draw and record must know before the first step: names, sizes, and ranges that a run will not leave.
+
+use super::estimates::{negligible_energy, nominal_stress, rupture_strain, wave_passage};
+use super::view::{RunInfo, WireInfo};
+use crate::reference::helix;
+use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, Spec};
+use crate::strand::assembly::Assembly;
+
+/// What does not change during a run; `gauge` is z of the two grip faces before loading (m), alike when there are none.
+pub fn info(spec: &Spec, assembly: &Assembly, gauge: [f64; 2]) -> RunInfo {
+    Body { spec, assembly, gauge }.info()
+}
+
+/// A body before loading.
+struct Body<'a> {
+    spec: &'a Spec,
+    assembly: &'a Assembly,
+    gauge: [f64; 2],
+}
+
+impl Body<'_> {
+    /// What does not change during the run.
+    fn info(&self) -> RunInfo {
+        let (a, gauge) = (self.assembly, self.gauge);
+        let (stress_range, plastic_strain_range) = self.ranges();
+        RunInfo {
+            name: self.spec.name.clone(),
+            about: self.spec.about.clone(),
+            layers: a.layers.iter().map(|l| l.name.clone()).collect(),
+            wires: a
+                .wires
+                .iter()
+                .map(|w| WireInfo { layer: w.layer, first: w.first, len: w.len, diameter: w.diameter })
+                .collect(),
+            wire_particles: a.wire_particles,
+            particles: a.len(),
+            radius: a.radius.iter().map(|r| *r as f32).collect(),
+            rest_position: a.position.iter().map(|x| x.as_vec3().to_array()).collect(),
+            gauge: (gauge[1] > gauge[0]).then_some(gauge),
+            stress_range,
+            plastic_strain_range,
+            speed_range: [0.0, self.greatest_speed()],
+            contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
+            strain_end: self.strain_end(),
+            negligible_energy: negligible_energy(self.spec, a),
+            wave_passage: wave_passage(self.spec, a),
+        }
+    }
+
+    fn strain_end(&self) -> Option<f64> {
+        let gauge = self.gauge;
+        if gauge[1] <= gauge[0] {
+            return None;
+        }
+        let DriveSpec::Speed(speed) = self.spec.grip.as_ref()?.drive else { return self.spec.stop.strain };
+        if speed == 0.0 {
+            return self.spec.stop.strain;
+        }
+        // An adaptive pull comes at most this far in its time.
+        let speed = self.spec.grip.as_ref()?.adaptive.as_ref().map_or(speed, |adaptive| adaptive.fastest);
+        let timed = self.spec.stop.time.map_or(f64::INFINITY, |t| t * speed.abs() / (gauge[1] - gauge[0]));
+        let stop = self.spec.stop.strain.unwrap_or(f64::INFINITY).min(timed);
+        if speed < 0.0 {
+            // Compression ends where it is told to: nothing foretells at which strain a wire breaks in it.
+            return stop.is_finite().then_some(-stop);
+        }
+        let ends_broken = self.spec.stop.stress_fraction.is_some() || self.spec.stop.strain_after_drop.is_some();
+        let end = if ends_broken { stop.min(1.1 * rupture_strain(self.spec)) } else { stop };
+        end.is_finite().then_some(end)
+    }
+
+    /// Fixed ranges of true axial stress (Pa) and plastic strain (-) that the run will not leave.
+    fn ranges(&self) -> ([f64; 2], [f64; 2]) {
+        let strain = self.strain_end().unwrap_or(0.0).min(rupture_strain(self.spec));
+        match &self.spec.bond.law {
+            BondLawSpec::ElastoPlastic(h) => {
+                let p = if strain > 0.0 { strain.ln_1p() } else { 0.01 };
+                ([0.0, round_up(h.stress(p))], [0.0, round_up(p)])
+            }
+            BondLawSpec::Elastic => {
+                let impact = self.spec.material.young * self.greatest_speed()
+                    / (self.spec.material.young / self.spec.material.density).sqrt();
+                let pulled = self.spec.material.young * strain.abs();
+                let top = round_up(pulled.max(impact).max(1e6));
+                ([-top, top], [0.0, 1.0])
+            }
+        }
+    }
+
+    /// Upper end of a range of contact pressure (Pa); `stress` is that of the range of axial stress (Pa).
+    ///
+    /// A wire under tension N presses inwards with N κ per length, κ = sin²β/R its curvature; a layer carries what
+    /// all layers from itself outwards press, and feels it from both sides. As the strand stretches by λ its lay
+    /// radii shrink as λ^(−1/2) and its pitch grows as λ, so κ ≈ R (2π/h)² falls as λ^(−5/2), and each particle
+    /// answers for a length that grows as λ: the pressure goes with the nominal stress over λ^(3/2). A jaw adds its
+    /// own pressure.
+    fn contact_pressure_range(&self, stress: f64) -> f64 {
+        let a = self.assembly;
+        let end = self.strain_end().unwrap_or(0.0).min(rupture_strain(self.spec)).max(0.0);
+        let pressing = |strain: f64| nominal_stress(self.spec, strain) / (1.0 + strain).powf(1.5);
+        let tension = (0..=50).map(|k| pressing(end * f64::from(k) / 50.0)).fold(0.0, f64::max);
+        let (mut press, mut deepest) = (0.0, 0.0f64);
+        for (k, layer) in a.layers.iter().enumerate().rev() {
+            let wires = a.wires.iter().filter(|w| w.layer == k);
+            let (count, Some(wire)) = (wires.clone().count(), wires.clone().next()) else { continue };
+            if layer.lay_radius > 0.0 && layer.pitch.is_finite() {
+                press += count as f64 * tension * wire.area() * helix::curvature(layer.lay_radius, layer.pitch);
+            }
+            deepest = deepest.max(2.0 * press / (count as f64 * wire.diameter));
+        }
+        let jaw = match self.spec.grip.as_ref().map(|g| g.kind) {
+            Some(GripKind::Jaw { pressure }) => 2.0 * pressure,
+            _ => 0.0,
+        };
+        let top = deepest.max(jaw);
+        round_up(if top > 0.0 { top } else { 0.1 * stress.abs() })
+    }
+
+    fn greatest_speed(&self) -> f64 {
+        let prescribed = self.spec.grip.as_ref().map_or(0.0, |g| match g.drive {
+            DriveSpec::Speed(v) => g.adaptive.as_ref().map_or(v.abs(), |adaptive| adaptive.fastest),
+            DriveSpec::Cyclic { amplitude, frequency } => std::f64::consts::TAU * frequency * amplitude,
+        });
+        let free = self.assembly.velocity.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let held = self.spec.holds.iter().map(|h| h.velocity.length()).fold(0.0, f64::max);
+        let fastest = prescribed.max(free).max(held);
+        if fastest > 0.0 { fastest } else { 1.0 }
+    }
+}
+
+/// The next round number (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 × a power of ten) at or above `value`.
+fn round_up(value: f64) -> f64 {
+    let scale = 10f64.powf(value.log10().floor());
+    let round = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 10.0];
+    round.into_iter().map(|r| r * scale).find(|r| *r >= value * (1.0 - 1e-9)).unwrap_or(value)
+}

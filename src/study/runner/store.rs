@@ -1,0 +1,171 @@
+//! Finished cases, each kept in a folder named by the hash of its identity: a study that was interrupted goes on where it
+//! stopped.
+
+use crate::base::error::{Error, Result};
+use crate::engine::REVISION;
+use crate::observe::files::write_whole;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Folder of the cases within that of the study.
+const CASES: &str = "cases";
+/// The record, in the folder of its case.
+const RECORD: &str = "case.json";
+
+/// What decides the result of a case: two cases that agree in this are the same.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// Revision of the engine ([`REVISION`]): one that computes something else is not served an old result.
+    revision: u32,
+    /// Threads of the engine where the cost of a case is what is studied; `None` where only its answer is, which has the
+    /// same bits on any number.
+    threads: Option<usize>,
+    /// Whether the run was written to disk.
+    writes: bool,
+    /// The resolved scene, points of centreline files included; or the name of a case that is code, with its build.
+    definition: String,
+}
+
+impl Identity {
+    /// The identity of what `definition` defines.
+    pub fn new(definition: String, threads: Option<usize>, writes: bool) -> Self {
+        Self { revision: REVISION, threads, writes, definition }
+    }
+
+    /// Name of its folder: FNV-1a over all of it. The record holds the whole identity, so that a clash of names is seen.
+    pub fn name(&self) -> String {
+        let text = format!("{} {:?} {} {}", self.revision, self.threads, self.writes, self.definition);
+        let fnv = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
+        let hash = text.bytes().fold(0xCBF2_9CE4_8422_2325, fnv);
+        format!("{hash:016x}")
+    }
+}
+
+/// The result of a case that is over.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record<T> {
+    /// Which case.
+    pub identity: Identity,
+    /// Which build ran it, see [`build`].
+    pub build: String,
+    /// Its result.
+    pub result: T,
+}
+
+/// The finished cases of a study.
+#[derive(Debug, Clone)]
+pub struct CaseStore {
+    folder: PathBuf,
+}
+
+impl CaseStore {
+    /// Those in the folder of a study, which need not exist.
+    pub fn of(study: &Path) -> Self {
+        Self { folder: study.join(CASES) }
+    }
+
+    /// The same, ready to take more; `fresh` removes the records that are there.
+    ///
+    /// # Errors
+    /// When the folder cannot be made or a record cannot be removed.
+    pub fn open(study: &Path, fresh: bool) -> Result<Self> {
+        let store = Self::of(study);
+        let cases = &store.folder;
+        std::fs::create_dir_all(cases).map_err(|e| Error::io("cannot make the folder", cases, e))?;
+        if fresh {
+            let entries = std::fs::read_dir(cases).map_err(|e| Error::io("cannot read the folder", cases, e))?;
+            for path in entries.flatten().map(|entry| entry.path().join(RECORD)).filter(|path| path.is_file()) {
+                std::fs::remove_file(&path).map_err(|e| Error::io("cannot remove", &path, e))?;
+            }
+        }
+        Ok(store)
+    }
+
+    /// The folder of all cases.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The record of a case, if one is kept. One that is damaged, or of another case, is none.
+    pub fn find<T: DeserializeOwned>(&self, identity: &Identity) -> Option<Record<T>> {
+        let text = std::fs::read_to_string(self.folder.join(identity.name()).join(RECORD)).ok()?;
+        let record: Record<T> = serde_json::from_str(&text).ok()?;
+        (record.identity == *identity).then_some(record)
+    }
+
+    /// Keeps a result, with the text that defines its case beside it under the name `file`. Gives the record as it will be
+    /// read: a study that goes on must write the same numbers as one that was never interrupted, and reading may change
+    /// the last bit.
+    ///
+    /// # Errors
+    /// When the folder cannot be written.
+    pub fn keep<T: Serialize + DeserializeOwned>(
+        &self,
+        identity: &Identity,
+        file: &str,
+        result: T,
+    ) -> Result<Record<T>> {
+        let folder = self.folder.join(identity.name());
+        std::fs::create_dir_all(&folder).map_err(|e| Error::io("cannot make the folder", &folder, e))?;
+        write_whole(&folder.join(file), &identity.definition)?;
+        let path = folder.join(RECORD);
+        let record = Record { identity: identity.clone(), build: build(), result };
+        let text = serde_json::to_string(&record).expect("a record holds nothing that JSON lacks");
+        write_whole(&path, &text)?;
+        serde_json::from_str(&text).map_err(|e| Error::io("cannot read back", &path, std::io::Error::other(e)))
+    }
+}
+
+/// Which build of the program this is, by length and time of its file: one revision may be built many times while it is
+/// worked on.
+pub fn build() -> String {
+    let told = std::env::current_exe().and_then(|path| path.metadata()).and_then(|file| {
+        let since = file.modified()?.duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+        Ok(format!("{} bytes of {} s", file.len(), since.as_secs()))
+    });
+    told.unwrap_or_else(|_| "unknown".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identity(definition: &str, threads: usize) -> Identity {
+        Identity::new(definition.into(), Some(threads), false)
+    }
+
+    fn found(store: &CaseStore, identity: &Identity) -> Option<f64> {
+        store.find(identity).map(|record| record.result)
+    }
+
+    #[test]
+    fn a_record_is_found_by_what_was_run_and_by_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = CaseStore::open(folder.path(), false).unwrap();
+        let one = identity("a scene", 1);
+        assert_eq!(found(&store, &one), None);
+        store.keep(&one, "scene.toml", 1.5).unwrap();
+        assert_eq!(found(&store, &one), Some(1.5));
+        let text = std::fs::read_to_string(store.folder().join(one.name()).join("scene.toml")).unwrap();
+        assert_eq!(text, "a scene");
+        let later = Identity { revision: one.revision + 1, ..one.clone() };
+        for other in [identity("another", 1), identity("a scene", 2), later] {
+            assert_eq!(found(&store, &other), None);
+        }
+        let cleared = CaseStore::open(folder.path(), true).unwrap();
+        assert_eq!(found(&cleared, &one), None);
+    }
+
+    #[test]
+    fn half_a_record_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = CaseStore::open(folder.path(), false).unwrap();
+        let one = identity("a scene", 1);
+        store.keep(&one, "scene.toml", 1.5).unwrap();
+        let path = store.folder().join(one.name()).join(RECORD);
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, &text[..text.len() / 2]).unwrap();
+        assert_eq!(found(&store, &one), None);
+    }
+}
