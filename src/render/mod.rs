@@ -35,17 +35,15 @@ mod panel;
 mod panels;
 pub mod png;
 mod sides;
-mod solid;
 pub mod stage;
 mod style;
 mod target;
 mod unrolled;
-mod viewpoint;
 mod wires;
 mod writer;
 
 pub use adapter::check;
 pub use frame::Renderer;
-pub use solid::SHADER;
+pub use painter::SHADER;
 pub use style::{Rgb, SIGNAL, Style};
 pub use writer::FrameWriter;
