@@ -376,7 +376,7 @@ fn a_folder_that_vanishes_is_reported_with_its_path() {
     let frames = folder.path().join("frames");
     let info = Arc::new(ka4_like());
     let options = OutputSpec { frame_size: [320, 180], ..Default::default() };
-    let mut writer = FrameWriter::new(&frames, options).expect("the adapter opens");
+    let mut writer = FrameWriter::new(&frames, &options).expect("the adapter opens");
     writer.start(&info).expect("started");
     std::fs::remove_dir(&frames).expect("removed");
     let snapshot = Arc::new(stretched(&info, 0.1));

@@ -96,3 +96,32 @@ pub fn place(info: &RunInfo, rupture: &Rupture) -> f64 {
         None => bonds(info, rupture.wire).get(rupture.bond_in_wire).copied().unwrap_or(0.0),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::view::WireInfo;
+
+    #[test]
+    fn rows_follow_the_order_of_layers_with_a_gap_between() {
+        let wires = [0, 1, 1].map(|layer| WireInfo { layer, ..WireInfo::default() }).to_vec();
+        let info = RunInfo { layers: vec!["core".into(), "outer".into(), "bare".into()], wires, ..RunInfo::default() };
+        let inwards = Unrolled::new(&info, 1.5, (0..3).rev());
+        assert_eq!((inwards.row, inwards.rows), (vec![4.0, 0.5, 1.5], 4.5), "a layer without wires takes no room");
+        let outwards = Unrolled::new(&info, 1.5, 0..3);
+        assert_eq!(outwards.row, [0.5, 3.0, 4.0]);
+        let layers: Vec<_> = outwards.layers.iter().map(|of| (of.layer, of.numbers(), of.row)).collect();
+        assert_eq!(layers, [(0, "1".to_owned(), 0.5), (1, "2–3".to_owned(), 3.5)]);
+    }
+
+    #[test]
+    fn bonds_of_a_free_wire_lie_along_it_and_those_between_grips_along_the_axis() {
+        let rest_position = vec![[0.0; 3], [3e-3, 0.0, 4e-3], [3e-3, 2e-3, 4e-3]];
+        let wires = vec![WireInfo { len: 3, ..WireInfo::default() }];
+        let mut info = RunInfo { wires, rest_position, ..RunInfo::default() };
+        let near = |found: Vec<f64>, right: [f64; 2]| found.iter().zip(right).all(|(a, b)| (a - b).abs() < 1e-5);
+        assert!(near(bonds(&info, 0), [2.5, 6.0]), "{:?}", bonds(&info, 0));
+        info.gauge = Some([0.0, 1.0]);
+        assert!(near(bonds(&info, 0), [2.0, 4.0]), "{:?}", bonds(&info, 0));
+    }
+}

@@ -1,6 +1,6 @@
-//! The body before loading, and where its sections are later.
+//! The body before loading.
 
-use crate::engine::view::{RunInfo, Snapshot, WireInfo};
+use crate::engine::view::{RunInfo, WireInfo};
 use glam::Vec3;
 
 /// Strain for which views leave room when the run does not know where it will end (-).
@@ -70,25 +70,4 @@ fn wire_depth(info: &RunInfo, axis: Vec3) -> Vec<f32> {
     let all: Vec<f32> = info.wires.iter().map(distance).collect();
     let greatest = all.iter().copied().fold(0.0, f32::max);
     all.iter().map(|d| if greatest > 1e-9 { d / greatest } else { 1.0 }).collect()
-}
-
-/// Where the material section that was at `rest_z` is now (m): the median over wires, which a wire that sprang
-/// back does not move.
-pub fn current_z(info: &RunInfo, snapshot: &Snapshot, rest_z: f32) -> f32 {
-    let mut places: Vec<f32> = info
-        .wires
-        .iter()
-        .filter_map(|wire| {
-            let at = |i: usize| info.rest_position[i][2];
-            let nearest =
-                wire.particles().min_by(|&a, &b| (at(a) - rest_z).abs().total_cmp(&(at(b) - rest_z).abs()))?;
-            Some(snapshot.position[nearest][2] + rest_z - at(nearest))
-        })
-        .collect();
-    if places.is_empty() {
-        return rest_z;
-    }
-    places.sort_by(f32::total_cmp);
-    let middle = places.len() / 2;
-    0.5 * (places[middle] + places[(places.len() - 1) / 2])
 }

@@ -1,6 +1,6 @@
 //! What the panels of one frame are drawn from.
 
-use super::body::{self, Body};
+use super::body::Body;
 use super::colour::ColourScale;
 use super::style::{Rgb, Style};
 use super::wires::Looks;
@@ -65,8 +65,25 @@ impl Data<'_> {
         self.camera.focus_z.or(first).unwrap_or(0.5 * (low + high)) as f32
     }
 
-    /// Where the material section that was at `rest_z` before loading is now (m).
+    /// Where the material section that was at `rest_z` is now (m): the median over wires, which a wire that sprang
+    /// back does not move.
     pub fn current_z(&self, rest_z: f32) -> f32 {
-        body::current_z(self.info, self.snapshot, rest_z)
+        let mut places: Vec<f32> = self
+            .info
+            .wires
+            .iter()
+            .filter_map(|wire| {
+                let at = |i: usize| self.info.rest_position[i][2];
+                let nearest =
+                    wire.particles().min_by(|&a, &b| (at(a) - rest_z).abs().total_cmp(&(at(b) - rest_z).abs()))?;
+                Some(self.snapshot.position[nearest][2] + rest_z - at(nearest))
+            })
+            .collect();
+        if places.is_empty() {
+            return rest_z;
+        }
+        places.sort_by(f32::total_cmp);
+        let middle = places.len() / 2;
+        0.5 * (places[middle] + places[(places.len() - 1) / 2])
     }
 }

@@ -6,9 +6,10 @@ use super::data::Data;
 use super::labels::{self, Mark};
 use super::panel::{Panel, Shot};
 use super::sides::{FRONT, Side, facing, sides};
-use super::viewpoint::{around, section};
+use crate::base::units::mm;
 use crate::engine::view::Rupture;
 use crate::scene::spec::View;
+use glam::Vec3;
 
 /// The panel.
 pub struct Midsection;
@@ -34,6 +35,26 @@ impl Panel for Midsection {
     fn annotate(&self, canvas: &mut Canvas, shot: &Shot, data: &Data, _frame: &[Shot]) {
         break_numbers(canvas, &shot.camera, data);
     }
+}
+
+/// Camera of a close-up on the section that is now at `z` (m), its eye turned about the vertical and the horizontal
+/// (rad).
+pub fn section(data: &Data, [azimuth, elevation]: [f64; 2], panel: Rect, z: f32) -> Camera {
+    let body = data.body;
+    // The strand fills a little more than half of the height: the rest is for wires that spring out.
+    let scale = data.camera.zoom as f32 * (panel.h / 3.5).min(panel.w / 5.0) / body.radius;
+    Camera {
+        rotation: Camera::orientation(azimuth, elevation),
+        centre: Vec3::new(body.axis.x, body.axis.y, z),
+        panel,
+        scale,
+        depth: body.depth_of_view(),
+    }
+}
+
+/// Which section that is, in words.
+pub fn around(data: &Data) -> String {
+    format!("around z {:.1} mm before loading", mm(data.focus().into()))
 }
 
 /// Numbers, in order of break, of the wires that broke on the side that this camera sees, with a line to the place.

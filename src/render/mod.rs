@@ -10,7 +10,7 @@
 //! (`canvas`). A view of a frame is a file that implements `panel::Panel`, and a row of the table in `panels`. Everything
 //! is in SI; lengths become millimetres where they are written.
 
-mod adapter;
+pub mod adapter;
 pub mod animation;
 pub(crate) mod body;
 pub(crate) mod camera;
@@ -35,17 +35,15 @@ mod panel;
 mod panels;
 pub mod png;
 mod sides;
-pub(crate) mod solid;
 pub mod stage;
 pub(crate) mod style;
 mod target;
 mod unrolled;
-mod viewpoint;
 pub(crate) mod wires;
 mod writer;
 
 pub use adapter::check;
 pub use frame::Renderer;
-pub use solid::SHADER;
+pub use painter::SHADER;
 pub use style::{Rgb, SIGNAL, Style};
 pub use writer::FrameWriter;

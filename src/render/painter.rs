@@ -1,30 +1,65 @@
-//! Wires drawn on the graphics adapter into memory: what frames and the interactive stage share.
+//! Draws segments through cameras into memory: the only pipeline there is.
 
-use super::adapter::Gpu;
-use super::solid::{Drawing, SolidPipeline};
+use super::adapter::{Gpu, failure};
+use super::camera::Camera;
+use super::canvas::Rect;
 use super::style::Style;
-use super::target::Target;
+use super::target::{COLOUR, DEPTH, SAMPLES, Target};
 use super::wires::Segment;
 use crate::base::error::{Error, Result};
+use std::ops::Range;
+use wgpu::util::DeviceExt;
 
-/// The adapter, ready to draw pictures of one size.
+/// Source of the shader.
+pub const SHADER: &str = include_str!("wires.wgsl");
+
+/// What the shader knows of a view; the layout of `View` in `wires.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ViewUniform {
+    rotation: [[f32; 4]; 3],
+    centre: [f32; 4],
+    scale: [f32; 4],
+    rim: [f32; 4],
+    fade: [f32; 4],
+    signal: [f32; 4],
+    cut: [f32; 4],
+}
+
+/// Segments `instances` of the list, seen through a camera into its panel.
+pub struct Drawing {
+    /// The camera; its panel is in pixels of the frame.
+    pub camera: Camera,
+    /// Which segments.
+    pub instances: Range<u32>,
+    /// Depth over which things darken (m).
+    pub fade: f32,
+}
+
+/// The adapter, ready to draw wires into memory: what frames and the interactive stage share. Its functions fail when the
+/// adapter is lost or cannot draw the size that is asked for.
 pub struct Painter {
     gpu: Gpu,
-    pipeline: SolidPipeline,
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
     target: Target,
 }
 
 impl Painter {
-    /// Opens the adapter for pictures of `size` (px).
-    ///
-    /// # Errors
-    /// When there is no adapter, or it cannot draw that size.
+    /// Opens the adapter for pictures of `size` (px), and compiles the shader.
     pub fn open(size: [u32; 2]) -> Result<Self> {
         let gpu = Gpu::open()?;
         check(&gpu, size)?;
-        let pipeline = SolidPipeline::new(&gpu)?;
         let target = Target::new(&gpu, size);
-        Ok(Self { gpu, pipeline, target })
+        // Two scopes, because what a backend cannot translate is reported as an internal error, not a validation one.
+        let internal = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let validation = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let (pipeline, layout) = compile(&gpu);
+        let errors = [pollster::block_on(validation.pop()), pollster::block_on(internal.pop())];
+        match errors.into_iter().flatten().next() {
+            Some(e) => Err(failure(format!("the graphics adapter {} refused a shader: {e}", gpu.name))),
+            None => Ok(Self { gpu, pipeline, layout, target }),
+        }
     }
 
     /// Name of the adapter.
@@ -33,9 +68,6 @@ impl Painter {
     }
 
     /// From now on draws pictures of `size` (px).
-    ///
-    /// # Errors
-    /// When the adapter cannot draw that size.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         if size != self.target.size {
             check(&self.gpu, size)?;
@@ -46,23 +78,66 @@ impl Painter {
 
     /// Copies segments to the adapter, to be drawn any number of times.
     pub fn upload(&self, segments: &[Segment]) -> wgpu::Buffer {
-        self.pipeline.upload(&self.gpu, segments)
+        self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("segments"),
+            contents: bytemuck::cast_slice(segments),
+            usage: wgpu::BufferUsages::VERTEX,
+        })
     }
 
     /// Draws into a picture whose top left corner is pixel `origin` of the panels.
-    ///
-    /// # Errors
-    /// When the adapter is lost.
     pub fn draw(&self, origin: [f32; 2], style: &Style, segments: &wgpu::Buffer, drawings: &[Drawing]) -> Result<()> {
-        self.pipeline.draw(&self.gpu, &self.target, origin, style, segments, drawings)
+        let views: Vec<_> = drawings.iter().map(|d| self.bind(d, style)).collect();
+        self.target.draw(&self.gpu, super::colour::linear4(style.panel), |pass| {
+            pass.set_pipeline(&self.pipeline);
+            for (drawing, view) in drawings.iter().zip(&views).filter(|(d, _)| !d.instances.is_empty()) {
+                let Rect { x, y, w, h } = drawing.camera.panel;
+                let (x, y) = (x - origin[0], y - origin[1]);
+                pass.set_viewport(x, y, w, h, 0.0, 1.0);
+                pass.set_scissor_rect(x as u32, y as u32, w as u32, h as u32);
+                pass.set_bind_group(0, view, &[]);
+                pass.set_vertex_buffer(0, segments.slice(..));
+                pass.draw(0..4, drawing.instances.clone());
+            }
+            // On the GL backend the last scissor also cuts what is resolved when the pass ends.
+            pass.set_scissor_rect(0, 0, self.target.size[0], self.target.size[1]);
+        })
     }
 
     /// Hands the rows of the picture, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
-    ///
-    /// # Errors
-    /// When the adapter is lost.
     pub fn read(&self, row: impl FnMut(u32, &[u8])) -> Result<()> {
         self.target.read(&self.gpu, row)
+    }
+
+    fn bind(&self, drawing: &Drawing, style: &Style) -> wgpu::BindGroup {
+        let camera = &drawing.camera;
+        let [rx, ry, rz] = camera.rotation.to_cols_array_2d();
+        let column = |c: [f32; 3]| [c[0], c[1], c[2], 0.0];
+        let [r, g, b] = style.rim;
+        let uniform = ViewUniform {
+            rotation: [column(rx), column(ry), column(rz)],
+            centre: camera.centre.extend(0.0).to_array(),
+            scale: [
+                2.0 * camera.scale / camera.panel.w,
+                2.0 * camera.scale / camera.panel.h,
+                camera.depth,
+                1.0 / camera.scale,
+            ],
+            rim: [r, g, b, style.edge],
+            fade: [0.0, drawing.fade, 0.0, 0.0],
+            signal: super::colour::signal4(),
+            cut: super::colour::linear4(style.cut),
+        };
+        let buffer = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("view"),
+            contents: bytemuck::bytes_of(&uniform),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("view"),
+            layout: &self.layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        })
     }
 }
 
@@ -73,4 +148,67 @@ fn check(gpu: &Gpu, [w, h]: [u32; 2]) -> Result<()> {
         return Err(Error::input(what, format!("choose a size from 1 × 1 to {limit} × {limit} pixels")));
     }
     Ok(())
+}
+
+fn compile(gpu: &Gpu) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
+    let device = &gpu.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("wires"),
+        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+    });
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("view"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        }],
+    });
+    let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4,
+        4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4];
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("wires"),
+        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        })),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vs"),
+            compilation_options: Default::default(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<Segment>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &attributes,
+            })],
+        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Less),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(if gpu.samples_shaded { "fs_sampled" } else { "fs_whole" }),
+            compilation_options: Default::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: COLOUR,
+                blend: None,
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    (pipeline, layout)
 }

@@ -54,9 +54,6 @@ impl Target {
     }
 
     /// Clears to `background` (linear RGB), lets `draw` record, and waits until it is drawn.
-    ///
-    /// # Errors
-    /// When the adapter is lost.
     pub fn draw(&self, gpu: &Gpu, background: [f32; 4], draw: impl FnOnce(&mut wgpu::RenderPass)) -> Result<()> {
         let [r, g, b, a] = background.map(f64::from);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -87,9 +84,6 @@ impl Target {
     }
 
     /// Copies the picture back and hands its rows, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
-    ///
-    /// # Errors
-    /// When the adapter is lost.
     pub fn read(&self, gpu: &Gpu, mut row: impl FnMut(u32, &[u8])) -> Result<()> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_texture_to_buffer(

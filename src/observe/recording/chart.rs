@@ -2,7 +2,7 @@
 //! cent and MPa, and room to name the first break. The view shows all times up to the cursor, so the curve grows with
 //! it and every piece is sent once.
 
-use super::paint::{self, distinct};
+use super::paint::{self, distinct, labels};
 use super::stream::{Instant, Stream, strips, texts, vectors};
 use super::{curve, names};
 use crate::base::error::Result;
@@ -50,9 +50,6 @@ impl Chart {
     }
 
     /// Sends axes, ticks and legend.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_fixed(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
         let [along, up] = self.end.map(|end| ticks(0.0, end, 6));
         let [right, top] = self.end;
@@ -89,9 +86,6 @@ impl Chart {
     }
 
     /// Sends the next pieces of the curves.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&mut self, stream: &Stream, info: &RunInfo, samples: &[Sample]) -> Result<()> {
         let all = series(info);
         let row = |sample: &Sample| all.iter().map(|of| self.place(point(of, sample))).collect();
@@ -110,9 +104,6 @@ impl Chart {
     }
 
     /// Marks ruptures on the curve of the strand, and names the first.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_ruptures(&self, stream: &Stream, info: &RunInfo, ruptures: &[Rupture]) -> Result<()> {
         let instants: Vec<_> = ruptures.iter().map(Instant::from).collect();
         let place = |r: &Rupture| self.place(mark(r));
@@ -167,14 +158,4 @@ fn path(part: &str) -> EntityPath {
 
 fn shift([x, y]: [f32; 2], [dx, dy]: [f32; 2]) -> [f32; 2] {
     [x + dx, y + dy]
-}
-
-/// Texts without visible points.
-fn labels(all: impl IntoIterator<Item = ([f32; 2], String)>, colour: u32) -> Points2D {
-    let (places, words): (Vec<_>, Vec<_>) = all.into_iter().unzip();
-    Points2D::new(places)
-        .with_labels(words)
-        .with_show_labels(true)
-        .with_colors([Color::from_u32(colour)])
-        .with_radii([Radius::new_ui_points(0.1)])
 }

@@ -25,9 +25,6 @@ const ENERGY_NAMES: [&str; 10] = [
 ];
 
 /// Sends the names of all series.
-///
-/// # Errors
-/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
 pub(super) fn send_names(stream: &Stream, info: &RunInfo) -> Result<()> {
     let body = SeriesLines::new().with_names(["nominal stress [MPa]"]).with_colors([Color::from_rgb(255, 255, 255)]);
     stream.fixed(names::BODY_STRESS, &body.with_widths([2.5]))?;
@@ -45,9 +42,6 @@ pub(super) fn send_names(stream: &Stream, info: &RunInfo) -> Result<()> {
 }
 
 /// Sends rows of the curve.
-///
-/// # Errors
-/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
 pub(super) fn send(stream: &Stream, info: &RunInfo, samples: &[Sample]) -> Result<()> {
     let instants: Vec<_> = samples.iter().map(instant).collect();
     let series = |path: EntityPath, values: &dyn Fn(&Sample) -> Vec<f64>| {

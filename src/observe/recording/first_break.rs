@@ -74,9 +74,6 @@ impl FirstBreak {
     }
 
     /// Sends mark, leader and label for the close view and for the view of the whole strand; `from` counts places.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&self, stream: &Stream, info: &RunInfo, gaze: Gaze, from: usize) -> Result<()> {
         let [low, high] = ends(info).map(|z| z as f32);
         self.send_at(names::FIRST_BREAK, NEAR * thickness(info), stream, info, gaze, from)?;

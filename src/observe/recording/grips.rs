@@ -9,9 +9,6 @@ use std::sync::Arc;
 
 /// Sends a box per grip and snapshot. A grip is where the particles of the outermost layer are that lay beyond its
 /// face before loading: that layer is held by every kind of grip.
-///
-/// # Errors
-/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
 pub(super) fn send(stream: &Stream, info: &RunInfo, instants: &[Instant], snapshots: &[Arc<Snapshot>]) -> Result<()> {
     let Some([lower, upper]) = info.gauge.map(|faces| faces.map(|z| z as f32)) else { return Ok(()) };
     let held = [held(info, |z| z <= lower), held(info, |z| z >= upper)];
@@ -31,9 +28,6 @@ pub(super) fn send(stream: &Stream, info: &RunInfo, instants: &[Instant], snapsh
 }
 
 /// Sends the colour of the boxes.
-///
-/// # Errors
-/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
 pub(super) fn send_style(stream: &Stream) -> Result<()> {
     stream.fixed(names::GRIPS, &Boxes3D::update_fields().with_colors([Color::from_u32(paint::NEUTRAL)]))
 }

@@ -45,9 +45,6 @@ impl Headline {
 
     /// Sends the words when they have changed. They hold at all times, so that they can be read
     /// wherever the cursor is.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&mut self, stream: &Stream, info: &RunInfo) -> Result<()> {
         if std::mem::take(&mut self.changed) {
             return send(stream, &self.text(info, None));
@@ -56,9 +53,6 @@ impl Headline {
     }
 
     /// Sends the final words, with the result.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_end(&self, stream: &Stream, info: &RunInfo, summary: &RunSummary) -> Result<()> {
         send(stream, &self.text(info, Some(summary)))
     }

@@ -48,9 +48,6 @@ pub(super) struct Scenery<'a> {
 
 /// Sends a layout with the recording under an id of its own. A viewer that is open takes it up at once when `active`;
 /// otherwise when the user asks for the default.
-///
-/// # Errors
-/// [`crate::base::error::Error::Io`] when Rerun refuses it.
 pub(super) fn send(
     stream: &stream::Stream,
     id: &str,

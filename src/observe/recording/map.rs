@@ -2,7 +2,7 @@
 //! each wire is loaded and where it broke. Places are those before loading, so that only colours change.
 
 use super::names;
-use super::paint::{FIRST, NEUTRAL, Scale};
+use super::paint::{FIRST, NEUTRAL, Scale, labels};
 use super::stream::{Stream, in_mm};
 use crate::base::error::Result;
 use crate::base::ticks::{label, ticks};
@@ -13,6 +13,8 @@ use rerun::{Color, LineStrips2D, Points2D, Radius};
 
 /// Height of the map over its width (-): wires are far thinner than they are long.
 const ASPECT: f32 = 0.5;
+/// Colour of the layers' names.
+const NAMES: u32 = 0xC8CDD4FF;
 /// Gap between layers, in rows.
 const LAYER_GAP: f64 = 1.5;
 
@@ -53,9 +55,6 @@ impl Map {
     }
 
     /// Sends what does not change: places of bonds, names of layers.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
         for layer in 0..info.layers.len() {
             let places = info.wires_of(layer).flat_map(|(number, wire)| {
@@ -94,9 +93,6 @@ impl Map {
     }
 
     /// Leads from the first break to the axis of z, where its place is written.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_first_break(&self, stream: &Stream, info: &RunInfo, first: &Rupture) -> Result<()> {
         let [z, y] = self.place(first);
         let colour = Color::from_u32(FIRST);
@@ -108,29 +104,19 @@ impl Map {
                 .with_draw_order(15.0);
         stream.row(path.clone(), first.into(), &cross)?;
         let words = format!("{}, z = {z:.1} mm", names::first_break(info, first));
-        let label = Points2D::new([[z, -2.6 * self.row]])
-            .with_labels([words])
-            .with_show_labels(true)
-            .with_colors([colour])
-            .with_radii([Radius::new_ui_points(0.1)]);
-        stream.row(format!("{path}/label"), first.into(), &label)
+        stream.row(format!("{path}/label"), first.into(), &labels([([z, -2.6 * self.row], words)], FIRST))
     }
 
     fn send_ticks(&self, stream: &Stream) -> Result<()> {
         let [low, high] = self.map.ends;
         let ticks = ticks(low, high, 6);
-        let points = Points2D::new(ticks.values.iter().map(|z| [*z as f32, self.height + 0.5 * self.row]))
-            .with_labels(ticks.values.iter().map(|z| format!("z = {} mm", label(*z, ticks.decimals))))
-            .with_show_labels(true)
-            .with_colors([Color::from_u32(NEUTRAL)])
-            .with_radii([Radius::new_ui_points(1.0)]);
+        let y = self.height + 0.5 * self.row;
+        let words = ticks.values.iter().map(|z| ([*z as f32, y], format!("z = {} mm", label(*z, ticks.decimals))));
+        let points = labels(words, NEUTRAL).with_radii([Radius::new_ui_points(1.0)]);
         stream.fixed(format!("{}/ticks", names::MAP), &points)
     }
 
     /// Sends a bar of colours with the values at its ends, below the map.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_colour_bar(&self, stream: &Stream, scale: &Scale) -> Result<()> {
         let length = self.z[1] - self.z[0];
         let y = self.height + 4.0 * self.row;
@@ -141,23 +127,14 @@ impl Map {
             .with_colors(scale.colours.iter().map(|c| Color::from_u32(*c)))
             .with_radii([Radius::new_scene_units(0.6 * self.row)]);
         stream.fixed(format!("{}/colour_bar", names::MAP), &bar)?;
-        let ends = Points2D::new([[at(-0.3), y - self.row], [at(1.16), y - self.row]])
-            .with_labels(scale.ends.clone())
-            .with_show_labels(true)
-            .with_colors([Color::from_u32(NEUTRAL)])
-            .with_radii([Radius::new_ui_points(0.1)]);
-        stream.fixed(format!("{}/colour_bar/ends", names::MAP), &ends)
+        let ends = [-0.3, 1.16].map(|t| [at(t), y - self.row]).into_iter().zip(scale.ends.clone());
+        stream.fixed(format!("{}/colour_bar/ends", names::MAP), &labels(ends, NEUTRAL))
     }
 
     fn send_names(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
         let x = self.z[0] - 0.07 * (self.z[1] - self.z[0]);
-        let places = self.map.layers.iter().map(|of| [x, self.y(of.row)]);
-        let labels = self.map.layers.iter().map(|of| format!("{} {}", info.layers[of.layer], of.numbers()));
-        let points = Points2D::new(places)
-            .with_labels(labels)
-            .with_show_labels(true)
-            .with_colors([Color::from_rgb(200, 205, 212)])
-            .with_radii([Radius::new_ui_points(0.5)]);
-        stream.fixed(format!("{}/names", names::MAP), &points)
+        let of = self.map.layers.iter();
+        let words = of.map(|of| ([x, self.y(of.row)], format!("{} {}", info.layers[of.layer], of.numbers())));
+        stream.fixed(format!("{}/names", names::MAP), &labels(words, NAMES))
     }
 }

@@ -51,9 +51,6 @@ impl Marks {
     }
 
     /// Sends what is new, and gives the ruptures in it.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&mut self, stream: &Stream, info: &RunInfo, map: &Map) -> Result<Vec<Rupture>> {
         self.send_log(stream)?;
         for (number, wire) in self.wires.iter_mut().filter(|(_, wire)| wire.sent < wire.all.len()) {
@@ -111,9 +108,9 @@ impl WireMarks {
     /// What a wire gets with its first rupture only: the style of its marks, and its place in the order of break.
     fn send_first_time(&self, stream: &Stream, info: &RunInfo, number: usize, map: &Map) -> Result<()> {
         let first = &self.all[0];
-        let colour = Color::from_u32(if first.order == 1 { paint::FIRST } else { paint::MARK });
+        let colour = if first.order == 1 { paint::FIRST } else { paint::MARK };
         let in_space = Points3D::update_fields()
-            .with_colors([colour])
+            .with_colors([Color::from_u32(colour)])
             .with_radii([Radius::new_ui_points(2.0)])
             .with_show_labels(false);
         stream.fixed(names::marks(names::STRAND, info, number), &in_space)?;
@@ -125,12 +122,10 @@ impl WireMarks {
         let marks = names::marks(names::MAP, info, number);
         stream.fixed(marks.clone(), &on_map)?;
         let order = map.order(first);
-        let leader = LineStrips2D::new([order.leader]).with_colors([colour]).with_radii([Radius::new_ui_points(0.5)]);
-        let words = Points2D::new([order.label])
-            .with_labels([label(first)])
-            .with_show_labels(true)
-            .with_colors([colour])
-            .with_radii([Radius::new_ui_points(0.1)]);
+        let leader = LineStrips2D::new([order.leader])
+            .with_colors([Color::from_u32(colour)])
+            .with_radii([Radius::new_ui_points(0.5)]);
+        let words = paint::labels([(order.label, label(first))], colour);
         let path = marks.join(&names::ORDER.into());
         stream.row(path.clone(), first.into(), &leader)?;
         stream.row(path.join(&"label".into()), first.into(), &words)?;

@@ -4,6 +4,7 @@ use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use crate::observe::colouring::{range, shown};
 use crate::scene::spec::ColourBy;
 use colorous::{CIVIDIS, Gradient, PLASMA, TABLEAU10, VIRIDIS};
+use rerun::{Color, Points2D, Radius};
 
 /// Particles at a broken bond (0xRRGGBBAA): none of the maps comes near this red.
 pub(super) const BROKEN: u32 = 0xFF2A4DFF;
@@ -116,6 +117,16 @@ pub(super) fn distinct(i: usize) -> u32 {
     /// Tableau's ten without orange and red.
     const APART: [usize; 8] = [0, 3, 6, 4, 5, 7, 8, 9];
     rgba(TABLEAU10[APART[i % APART.len()]])
+}
+
+/// Texts without visible points.
+pub(super) fn labels(all: impl IntoIterator<Item = ([f32; 2], String)>, colour: u32) -> Points2D {
+    let (places, words): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    Points2D::new(places)
+        .with_labels(words)
+        .with_show_labels(true)
+        .with_colors([Color::from_u32(colour)])
+        .with_radii([Radius::new_ui_points(0.1)])
 }
 
 fn at(gradient: Gradient, i: usize) -> u32 {

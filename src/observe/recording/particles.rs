@@ -25,9 +25,6 @@ pub(super) struct Batch<'a> {
 
 impl Batch<'_> {
     /// Sends wires, free spheres, grips and the colours of the map.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&self, stream: &Stream) -> Result<()> {
         for number in 0..self.info.wires.len() {
             stream.rows(names::wire(names::STRAND, self.info, number), self.instants, self.wire(number))?;
@@ -100,9 +97,6 @@ impl Batch<'_> {
 }
 
 /// Sends the style of tubes.
-///
-/// # Errors
-/// [`crate::base::error::Error::Io`] when Rerun refuses the data.
 pub(super) fn send_styles(stream: &Stream, info: &RunInfo) -> Result<()> {
     let solid = Capsules3D::update_fields().with_fill_mode(FillMode::Solid);
     (0..info.wires.len()).try_for_each(|w| stream.fixed(names::tube(names::STRAND, info, w), &solid))

@@ -53,9 +53,6 @@ impl Sections {
     }
 
     /// Makes the eye follow the section at `rest_z` (mm) before loading; `from` counts snapshots.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_focus(&self, stream: &Stream, info: &RunInfo, rest_z: f32, from: usize) -> Result<()> {
         let Some(history) = self.history.get(from..).filter(|h| !h.is_empty() && info.wire_particles > 0) else {
             return Ok(());
@@ -72,9 +69,6 @@ impl Sections {
     }
 
     /// Sends the style of what the eye follows.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_style(stream: &Stream) -> Result<()> {
         stream.fixed(names::FOCUS, &Points3D::update_fields().with_radii([Radius::new_scene_units(1e-4)]))
     }

@@ -38,9 +38,6 @@ impl States {
     }
 
     /// Sends the colours of the states.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send_style(stream: &Stream, info: &RunInfo) -> Result<()> {
         let style = StateConfiguration::new().with_values(STATE_NAMES[..3].iter().copied()).with_colors([
             0x3E6F8EFFu32,
@@ -51,9 +48,6 @@ impl States {
     }
 
     /// Sends what is new.
-    ///
-    /// # Errors
-    /// [`crate::base::error::Error::Io`] when Rerun refuses the data.
     pub fn send(&mut self, stream: &Stream, info: &RunInfo) -> Result<()> {
         for (number, changes) in self.unsent.iter_mut().enumerate().filter(|(_, changes)| !changes.is_empty()) {
             let instants: Vec<_> = changes.iter().map(|(instant, _)| *instant).collect();

@@ -1,4 +1,5 @@
-//! A thin layer over Rerun's stream: everything goes out as columns, so that a run always gives the same chunks.
+//! A thin layer over Rerun's stream: everything goes out as columns, so that a run always gives the same chunks. Whatever
+//! sends gives [`Error::Io`] when Rerun refuses the data.
 
 use crate::base::error::{Error, Result};
 use crate::base::units::{mm, mpa};
