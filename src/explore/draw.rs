@@ -6,10 +6,11 @@ use super::view::View;
 use crate::base::error::{Error, Result};
 use crate::base::units::mm;
 use crate::engine::view::{RunInfo, Snapshot};
-use crate::render::body::{self, Body};
+use crate::render::body::Body;
 use crate::render::camera::Camera;
 use crate::render::canvas::Rect;
 use crate::render::colour::ColourScale;
+use crate::render::data::current_z;
 use crate::render::occlusion::occlusion;
 use crate::render::painter::{Drawing, Painter};
 use crate::render::style::Rgb;
@@ -274,7 +275,7 @@ fn check_size(size: [u32; 2]) -> Result<()> {
 
 /// Where the material section that a view rides on is now (m); 0 where it rides on none.
 pub fn ridden(info: &RunInfo, snapshot: &Snapshot, view: &View) -> f32 {
-    view.follow.map_or(0.0, |z| body::current_z(info, snapshot, (z / mm(1.0)) as f32))
+    view.follow.map_or(0.0, |z| current_z(info, snapshot, (z / mm(1.0)) as f32))
 }
 
 /// Which particles are left out of a view.

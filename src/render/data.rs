@@ -65,25 +65,29 @@ impl Data<'_> {
         self.camera.focus_z.or(first).unwrap_or(0.5 * (low + high)) as f32
     }
 
-    /// Where the material section that was at `rest_z` is now (m): the median over wires, which a wire that sprang
-    /// back does not move.
+    /// [`current_z`] of this state.
     pub fn current_z(&self, rest_z: f32) -> f32 {
-        let mut places: Vec<f32> = self
-            .info
-            .wires
-            .iter()
-            .filter_map(|wire| {
-                let at = |i: usize| self.info.rest_position[i][2];
-                let nearest =
-                    wire.particles().min_by(|&a, &b| (at(a) - rest_z).abs().total_cmp(&(at(b) - rest_z).abs()))?;
-                Some(self.snapshot.position[nearest][2] + rest_z - at(nearest))
-            })
-            .collect();
-        if places.is_empty() {
-            return rest_z;
-        }
-        places.sort_by(f32::total_cmp);
-        let middle = places.len() / 2;
-        0.5 * (places[middle] + places[(places.len() - 1) / 2])
+        current_z(self.info, self.snapshot, rest_z)
     }
+}
+
+/// Where the material section that was at `rest_z` is now (m): the median over wires, which a wire that sprang back does
+/// not move.
+pub fn current_z(info: &RunInfo, snapshot: &Snapshot, rest_z: f32) -> f32 {
+    let mut places: Vec<f32> = info
+        .wires
+        .iter()
+        .filter_map(|wire| {
+            let at = |i: usize| info.rest_position[i][2];
+            let nearest =
+                wire.particles().min_by(|&a, &b| (at(a) - rest_z).abs().total_cmp(&(at(b) - rest_z).abs()))?;
+            Some(snapshot.position[nearest][2] + rest_z - at(nearest))
+        })
+        .collect();
+    if places.is_empty() {
+        return rest_z;
+    }
+    places.sort_by(f32::total_cmp);
+    let middle = places.len() / 2;
+    0.5 * (places[middle] + places[(places.len() - 1) / 2])
 }

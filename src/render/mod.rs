@@ -19,7 +19,7 @@ pub mod colour;
 mod cross_section;
 mod curve;
 mod cutaway;
-mod data;
+pub(crate) mod data;
 mod everything;
 mod exploded;
 mod frame;
