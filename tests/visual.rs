@@ -5,13 +5,12 @@
 mod common;
 
 use common::{bond_at, curve, ka4_like, snapped, stretched, two_spheres};
-use image::{RgbImage, RgbaImage};
+use image::RgbImage;
 use std::io::Write;
 use std::sync::Arc;
 use strandsnap::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use strandsnap::observe::Observer;
 use strandsnap::render::colour::DARKEST;
-use strandsnap::render::stage::{Eye, Open, Shown, Stage};
 use strandsnap::render::{FrameWriter, Renderer};
 use strandsnap::scene::spec::{CameraSpec, ColourBy, OutputSpec, Theme, View};
 
@@ -425,55 +424,4 @@ fn a_single_wire_and_a_bent_one_are_drawn() {
     let curved = draw(&bent, &OutputSpec::default(), &snapshot, &[]);
     keep("bent", &curved);
     assert!(straight != curved);
-}
-
-#[test]
-fn the_stage_draws_a_state_through_any_camera_and_knows_what_lies_under_a_pixel() {
-    if !adapter("the_stage_draws_a_state_through_any_camera_and_knows_what_lies_under_a_pixel") {
-        return;
-    }
-    let info = Arc::new(ka4_like());
-    let mut stage = Stage::new(info.clone()).expect("the adapter opens");
-    let snapshot = stretched(&info, 0.1);
-    let size = [640, 360];
-    let ground = Theme::Dark.style().panel;
-    let covered = |picture: &RgbaImage| picture.pixels().filter(|p| p.0[..3] != ground).count();
-    let eye = Eye { width: 6e-3, ..stage.fitting() };
-    assert_eq!(covered(&stage.draw(&eye, size).expect("drawn")), 0, "nothing is shown yet");
-
-    let by_layer = Shown { colour: ColourBy::Layer, ..Shown::default() };
-    stage.show(&snapshot, &by_layer);
-    let whole = stage.draw(&eye, size).expect("drawn");
-    assert_eq!(whole.dimensions(), (640, 360));
-    assert!(whole == stage.draw(&eye, size).expect("drawn"), "the same camera gave different pictures");
-    let larger = stage.draw(&eye, [1280, 720]).expect("drawn");
-    let ratio = covered(&larger) as f64 / covered(&whole) as f64;
-    assert!((ratio - 4.0).abs() < 0.1, "twice the size shows the same: {ratio}");
-    // What is picked is what is seen: an outer wire on the axis, the ground far above it.
-    let middle = [320.0, 180.0];
-    let outer = stage.pick(&eye, size, middle).expect("the strand is in the middle");
-    let wire = &info.wires[outer.wire.expect("a strand has no free spheres")];
-    assert_eq!(wire.layer, 2);
-    assert!(wire.particles().contains(&outer.particle));
-    let centre = snapshot.position[outer.particle];
-    assert!((f64::from(centre[2]) - eye.centre[2]).abs() < 0.4e-3, "{centre:?}");
-    assert_eq!(stage.pick(&eye, size, [320.0, 5.0]), None);
-    // From the back it is another wire.
-    let behind = Eye { elevation: std::f64::consts::PI, ..eye };
-    assert_ne!(stage.pick(&behind, size, middle).map(|p| p.wire), Some(outer.wire));
-    assert!(stage.draw(&behind, size).expect("drawn") != whole);
-
-    stage.show(&snapshot, &Shown { hidden: vec![2], ..by_layer.clone() });
-    let bare = stage.draw(&eye, size).expect("drawn");
-    keep("stage-bare", &image::DynamicImage::ImageRgba8(bare.clone()).into_rgb8());
-    assert!(covered(&bare) < covered(&whole));
-    let inner = stage.pick(&eye, size, middle).and_then(|p| p.wire).expect("the next layer is in the middle");
-    assert_eq!(info.wires[inner].layer, 1);
-
-    let open = Open { rest_z: eye.centre[2], towards: [0.0, 0.0], first_broken: None };
-    stage.show(&snapshot, &Shown { open: Some(open), ..by_layer });
-    let opened = stage.draw(&eye, size).expect("drawn");
-    keep("stage-open", &image::DynamicImage::ImageRgba8(opened).into_rgb8());
-    let seen = stage.pick(&eye, size, middle).and_then(|p| p.wire).expect("an inner layer is in the middle");
-    assert_eq!(info.wires[seen].layer, 0, "the opening shows the innermost layer");
 }

@@ -186,13 +186,7 @@ impl Artist {
             position: position.clone(),
             removed: removed.clone(),
         };
-        let mut segments = wires::segments(info, &snapshot, &looks, *stride);
-        // Free spheres are drawn by the renderer whether they are removed or not.
-        if removed[info.wire_particles..].contains(&true) {
-            let spheres = removed[info.wire_particles..].iter();
-            let kept = segments.split_off(segments.len() - spheres.len());
-            segments.extend(kept.into_iter().zip(spheres).filter(|(_, gone)| !**gone).map(|(sphere, _)| sphere));
-        }
+        let segments = wires::segments(info, &snapshot, &looks, *stride);
         Ready { snapshot, position, removed, segments, colours }
     }
 
@@ -246,8 +240,8 @@ impl Artist {
         let shown = |i: usize| !ready.removed[i];
         let mut cones = Vec::new();
         for (number, wire) in info.wires.iter().enumerate() {
-            for i in wire.first..wire.first + wire.len {
-                let bonded = i + 1 < wire.first + wire.len && ready.snapshot.bond_state[i].holds() && shown(i + 1);
+            for i in wire.particles() {
+                let bonded = i + 1 < wire.particles().end && ready.snapshot.bond_state[i].holds() && shown(i + 1);
                 if shown(i) {
                     let j = if bonded { i + 1 } else { i };
                     cones.push(Cone { ends: [place(i), place(j)], what: [(i, Some(number)), (j, Some(number))] });
@@ -282,7 +276,7 @@ pub fn ridden(info: &RunInfo, snapshot: &Snapshot, view: &View) -> f32 {
 fn removed(info: &RunInfo, snapshot: &Snapshot, view: &View) -> Vec<bool> {
     let mut removed = vec![false; info.particles];
     for (number, wire) in info.wires.iter().enumerate() {
-        removed[wire.first..wire.first + wire.len].fill(view.hides(number, wire.layer));
+        removed[wire.particles()].fill(view.hides(number, wire.layer));
     }
     if let Some(cut) = view.cut {
         let beyond = |p: &[f32; 3]| mm(f64::from(p[2])) > cut;

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | frames of a run, with all panels, titles and charts | [`Renderer`], one snapshot to one picture |
 //! | a numbered PNG sequence, and an animation of it, while a run goes on | [`FrameWriter`] |
-//! | wires alone, through any camera, into memory, and what lies under a pixel | [`stage::Stage`] |
+//! | wires alone, through any camera, into memory, and what lies under a pixel | `explore::draw::Artist` (feature `explore`), with `painter::Painter` and `wires::segments` |
 //!
 //! Wires are drawn on the graphics adapter (`painter`, `wires`); charts and text are drawn over them on the processor
 //! (`canvas`). A view of a frame is a file that implements `panel::Panel`, and a row of the table in `panels`. Everything
@@ -35,7 +35,6 @@ mod panel;
 mod panels;
 pub mod png;
 mod sides;
-pub mod stage;
 pub(crate) mod style;
 mod target;
 mod unrolled;

@@ -36,7 +36,7 @@ pub struct Drawing {
     pub fade: f32,
 }
 
-/// The adapter, ready to draw wires into memory: what frames and the interactive stage share. Its functions fail when the
+/// The adapter, ready to draw wires into memory: what frames and the explorer share. Its functions fail when the
 /// adapter is lost or cannot draw the size that is asked for.
 pub struct Painter {
     gpu: Gpu,

@@ -86,9 +86,8 @@ pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks, stride: usiz
         let chain = Chain { info, snapshot, looks, wire, shade: *shade };
         chain.segments(stride, &mut all);
     }
-    for i in info.wire_particles..snapshot.position.len() {
-        all.push(sphere(snapshot, looks, i));
-    }
+    let spheres = (info.wire_particles..snapshot.position.len()).filter(|i| looks.shows(*i));
+    all.extend(spheres.map(|i| sphere(snapshot, looks, i)));
     all
 }
 
