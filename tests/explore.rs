@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use strandsnap::explore::{Options, Server, View, picture};
+use strandsnap::observe::origin::Origin;
 use strandsnap::observe::trajectory::TrajectoryWriter;
 use strandsnap::scene;
 use synthetic::Run;
@@ -28,7 +29,9 @@ const SIZE: [u32; 2] = [320, 200];
 /// The folder of a run that was not simulated.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    Run::new(12).show(&mut TrajectoryWriter::new(&folder.path().join("trajectory.bin")).unwrap()).unwrap();
+    Run::new(12)
+        .show(&mut TrajectoryWriter::new(&folder.path().join("trajectory.bin"), Origin::default()).unwrap())
+        .unwrap();
     let spec = scene::load("ka4", &[]).unwrap().spec;
     std::fs::write(folder.path().join("scene.toml"), scene::write::to_toml(&spec)).unwrap();
     folder
