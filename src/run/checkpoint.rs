@@ -344,7 +344,7 @@ mod tests {
             records: 3,
             tail: Vec::new(),
             driver: vec![1; 1000],
-            engine: (0..100_000_u32).map(|k| (k * k >> 7) as u8).collect(),
+            engine: (0..100_000_u32).map(|k| ((k * k) >> 7) as u8).collect(),
             step: 7,
             spent: Spent::default(),
         }
