@@ -24,7 +24,7 @@ pub mod view;
 pub use crate::base::finding::StopReason;
 pub use crate::observe::summary::RunSummary;
 pub use drive::{Outcome, simulate, simulate_engine};
-pub use options::RunOptions;
+pub use options::{Outputs, RunOptions};
 pub use schedule::{Due, Schedule};
 pub use stop::StopRule;
 

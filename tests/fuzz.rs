@@ -233,7 +233,7 @@ fn scene_is_harmless(text: &str) {
         Err(error) => return is_for_people(&error),
     };
     let _ = cautions::of_scene(&scene, &assembly);
-    match Engine::new(&scene.spec, assembly) {
+    match Engine::new(&scene.spec, &scene.plan, assembly) {
         Ok(mut engine) => {
             for _ in 0..3 {
                 if let Err(error) = engine.step() {

@@ -227,7 +227,7 @@ fn shipped_scenes_are_as_large_as_foretold() {
         assert_eq!(size.wires, assembly.wires.len() as f64);
         assert!((size.particles / particles - 1.0).abs() < 0.01, "{name}: {size:?}, {particles}");
         assert!((size.bonds - bonds).abs() <= 0.01 * bonds, "{name}: {size:?}, {bonds}");
-        let kept = Engine::new(&spec, assembly).unwrap().bytes().kept() as f64;
+        let kept = Engine::new(&spec, &Plan::new(&spec), assembly).unwrap().bytes().kept() as f64;
         assert!((1.0..3.0).contains(&(size.memory / kept)) || particles < 10.0, "{name}: {size:?}, {kept}");
     }
 }

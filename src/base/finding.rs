@@ -474,17 +474,19 @@ pub struct Kept {
     pub earlier: usize,
 }
 
-mod json {
-    use super::Finding;
-    use serde::de::Error as _;
+/// For serde's `with`: a value as JSON text, where a binary format cannot hold its untagged enums.
+pub mod json {
+    use serde::de::{DeserializeOwned, Error as _};
     use serde::ser::Error as _;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub fn serialize<S: Serializer>(finding: &Finding, serializer: S) -> Result<S::Ok, S::Error> {
-        serde_json::to_string(finding).map_err(S::Error::custom)?.serialize(serializer)
+    /// Writes the text.
+    pub fn serialize<T: Serialize, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
+        serde_json::to_string(value).map_err(S::Error::custom)?.serialize(serializer)
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Finding, D::Error> {
+    /// Reads the text.
+    pub fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
         serde_json::from_str(&String::deserialize(deserializer)?).map_err(D::Error::custom)
     }
 }

@@ -1,6 +1,6 @@
 //! Ctrl-C: the first ends the run cleanly; one that comes [`PATIENCE`] later or more ends the program.
 
-use super::Ended;
+use super::ended::Ended;
 use crate::base::error::{Error, Result};
 use std::io::Write;
 use std::sync::OnceLock;

@@ -112,7 +112,7 @@ pub fn bytes(text: &str) -> std::result::Result<u64, String> {
         _ => return Err(wrong()),
     };
     let size = number.parse::<f64>().map_err(|_| wrong())? * factor;
-    if size >= 1.0 && size <= 1e18 { Ok(size as u64) } else { Err(wrong()) }
+    if (1.0..=1e18).contains(&size) { Ok(size as u64) } else { Err(wrong()) }
 }
 
 /// A number within a range, both ends included; `words` say what it is, in its unit.

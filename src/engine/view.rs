@@ -229,6 +229,7 @@ pub struct DeepestContact {
     /// Overlap over the smaller of the two radii (-).
     pub ratio: f64,
     /// The two bodies.
+    #[serde(with = "crate::base::finding::json")]
     pub bodies: [Body; 2],
     /// Where (m).
     pub position: [f64; 3],
@@ -256,6 +257,7 @@ pub struct StepAt {
     /// Strain of the body (-); `None` without grips.
     pub strain: Option<f64>,
     /// What limited it.
+    #[serde(with = "crate::base::finding::json")]
     pub limit: StepLimit,
 }
 

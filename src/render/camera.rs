@@ -28,12 +28,12 @@ impl Camera {
     }
 
     /// Direction from the scene to the eye, of unit length.
-    pub fn to_eye(&self) -> Vec3 {
+    pub fn to_eye(self) -> Vec3 {
         self.rotation.transpose() * Vec3::Z
     }
 
     /// View coordinates of a point (m), relative to the centre.
-    pub fn to_view(&self, p: Vec3) -> Vec3 {
+    pub fn to_view(self, p: Vec3) -> Vec3 {
         self.rotation * (p - self.centre)
     }
 

@@ -9,7 +9,8 @@
 //! always whole. Format: magic bytes, a version (u32, little endian), then an LZ4 frame, with a checksum per block and one
 //! over all of it, of a [`Checkpoint`] in postcard.
 
-use super::folder;
+use super::folder::{self, SLOTS};
+use super::options::Outputs;
 use crate::base::error::{Error, Result};
 use crate::engine;
 use crate::observe::partial;
@@ -25,8 +26,6 @@ use std::time::{Duration, Instant};
 const MAGIC: [u8; 12] = *b"strandsnap\0C";
 /// Raised whenever what is written changes its meaning or order.
 const VERSION: u32 = 1;
-/// The two slots.
-pub const SLOTS: [&str; 2] = ["checkpoint-1.bin", "checkpoint-2.bin"];
 /// Share of the run's time that checkpoints may take where the scene does not say how often (-).
 const SHARE: f64 = 0.01;
 /// Least wall time between two of them there (s).
@@ -92,17 +91,6 @@ impl Identity {
         });
         other.or_else(|| (lines.next().is_some()).then(|| "its scene was longer".into()))
     }
-}
-
-/// What a run writes besides its tables.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Outputs {
-    /// Frames.
-    pub frames: bool,
-    /// A recording.
-    pub recording: bool,
-    /// File and width (px) of an animation.
-    pub animation: Option<(PathBuf, Option<u32>)>,
 }
 
 /// Time spent on a run before it was resumed.
@@ -249,7 +237,7 @@ impl Keeper {
         self.tail = checkpoint.tail;
         if std::mem::take(&mut self.resumed) {
             // The new trajectory holds all of the old one now.
-            remove(&self.folder.join(folder::RESUMED_FROM))?;
+            folder::remove_if_there(&self.folder.join(folder::RESUMED_FROM))?;
         }
         (self.last, self.last_step, self.cost) = (Instant::now(), now.step, begin.elapsed());
         Ok(())
@@ -260,26 +248,7 @@ impl Keeper {
     /// # Errors
     /// [`Error::Io`] when a slot cannot be removed.
     pub fn clear(&self) -> Result<()> {
-        clear(&self.folder)
-    }
-}
-
-/// Removes the checkpoints of a run, and the trajectory that it was resumed from.
-///
-/// # Errors
-/// [`Error::Io`] when one cannot be removed.
-pub fn clear(folder: &Path) -> Result<()> {
-    for name in SLOTS {
-        remove(&partial::name(&folder.join(name)))?;
-        remove(&folder.join(name))?;
-    }
-    remove(&folder.join(folder::RESUMED_FROM))
-}
-
-fn remove(file: &Path) -> Result<()> {
-    match fs::remove_file(file) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io("cannot remove", file, e)),
-        _ => Ok(()),
+        folder::clear_checkpoints(&self.folder)
     }
 }
 
@@ -375,7 +344,7 @@ mod tests {
             records: 3,
             tail: Vec::new(),
             driver: vec![1; 1000],
-            engine: (0..100_000_u32).map(|k| (k * k >> 7) as u8).collect(),
+            engine: (0..100_000_u32).map(|k| ((k * k) >> 7) as u8).collect(),
             step: 7,
             spent: Spent::default(),
         }
@@ -383,11 +352,11 @@ mod tests {
 
     #[test]
     fn the_later_slot_is_taken_and_a_damaged_one_passed_over() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |slot: usize| folder.path().join(SLOTS[slot]);
+        let run = tempfile::tempdir().unwrap();
+        let at = |slot: usize| run.path().join(SLOTS[slot]);
         write(&at(0), &checkpoint(4)).unwrap();
         write(&at(1), &checkpoint(5)).unwrap();
-        let (latest_whole, damaged) = latest(folder.path()).unwrap();
+        let (latest_whole, damaged) = latest(run.path()).unwrap();
         assert_eq!((latest_whole.number, latest_whole.engine, damaged.len()), (5, checkpoint(5).engine, 0));
         // Any byte: damage is seen by the checksums, a cut by the end of the frame.
         let whole = fs::read(at(1)).unwrap();
@@ -395,18 +364,18 @@ mod tests {
             let mut bytes = whole.clone();
             bytes[place] ^= 1;
             fs::write(at(1), &bytes).unwrap();
-            let (other, damaged) = latest(folder.path()).unwrap();
+            let (other, damaged) = latest(run.path()).unwrap();
             assert_eq!(other.number, 4, "byte {place}");
             assert!(damaged[0].contains(SLOTS[1]), "{damaged:?}");
         }
         for length in [0, 5, whole.len() / 3, whole.len() - 1] {
             fs::write(at(1), &whole[..length]).unwrap();
-            assert_eq!(latest(folder.path()).unwrap().0.number, 4, "cut at {length}");
+            assert_eq!(latest(run.path()).unwrap().0.number, 4, "cut at {length}");
         }
         fs::write(at(0), "").unwrap();
-        assert!(latest(folder.path()).unwrap_err().to_string().contains("damaged"));
-        clear(folder.path()).unwrap();
-        assert!(latest(folder.path()).unwrap_err().to_string().contains("no checkpoint"));
+        assert!(latest(run.path()).unwrap_err().to_string().contains("damaged"));
+        folder::clear_checkpoints(run.path()).unwrap();
+        assert!(latest(run.path()).unwrap_err().to_string().contains("no checkpoint"));
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! The output folder: checked before the simulation, cleared only when nothing else can fail.
 
-use super::checkpoint;
 use super::lock::{self, LOCK, Lock};
 use crate::base::error::{Error, Result};
 use crate::base::regular;
@@ -17,6 +16,8 @@ pub const SUMMARY: &str = "summary.json";
 pub const RECORDING: &str = "recording.rrd";
 /// Snapshots for drawing again.
 pub const TRAJECTORY: &str = "trajectory.bin";
+/// The two slots of checkpoints.
+pub const SLOTS: [&str; 2] = ["checkpoint-1.bin", "checkpoint-2.bin"];
 /// Trajectory that a run is being resumed from.
 pub const RESUMED_FROM: &str = "trajectory.before-resume.bin";
 /// The page for people, which is made from all the others.
@@ -127,7 +128,7 @@ impl OutFolder {
     /// [`Error::Io`]; [`Error::Input`] when another process has been faster.
     pub fn open(&self) -> Result<Lock> {
         let lock = self.take()?;
-        checkpoint::clear(&self.path)?;
+        clear_checkpoints(&self.path)?;
         remove_if_there(&self.path.join(SCENE))?;
         self.clear_results()?;
         Ok(lock)
@@ -231,7 +232,19 @@ fn probe(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn remove_if_there(file: &Path) -> Result<()> {
+/// Removes the checkpoints of a run, and the trajectory that it was resumed from.
+///
+/// # Errors
+/// [`Error::Io`] when one cannot be removed.
+pub(super) fn clear_checkpoints(folder: &Path) -> Result<()> {
+    for name in SLOTS {
+        remove_if_there(&partial::name(&folder.join(name)))?;
+        remove_if_there(&folder.join(name))?;
+    }
+    remove_if_there(&folder.join(RESUMED_FROM))
+}
+
+pub(super) fn remove_if_there(file: &Path) -> Result<()> {
     match fs::remove_file(file) {
         Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io("cannot remove", file, e)),
         _ => Ok(()),

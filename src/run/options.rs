@@ -1,7 +1,7 @@
 //! What a run is asked for.
 
-use super::checkpoint::Outputs;
 use crate::observe::animation::Animation;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Where a run goes and what it writes.
@@ -54,4 +54,15 @@ impl RunOptions {
         let (overwrite, wait, live) = (true, false, None);
         Self { out: out.into(), overwrite, wait, threads, frames, animation, recording, live }
     }
+}
+
+/// What a run writes besides its tables.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Outputs {
+    /// Frames.
+    pub frames: bool,
+    /// A recording.
+    pub recording: bool,
+    /// File and width (px) of an animation.
+    pub animation: Option<(PathBuf, Option<u32>)>,
 }

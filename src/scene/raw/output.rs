@@ -21,8 +21,8 @@ pub struct RawOutput {
     #[schemars(extend("x-unit" = "-", "x-default" = "40"))]
     pub rupture_density: Option<Scalar>,
     /// How often a run keeps its state, to be resumed from after a crash: a wall time such as "30 s", a number of steps, or
-    /// "none". It changes nothing in the results.
-    #[schemars(extend("x-otherwise" = "what costs at most 1 % of the time, at least 5 s apart"))]
+    /// none. It changes nothing in the results.
+    #[schemars(extend("x-unit" = "s", "x-word" = "none", "x-otherwise" = "what costs at most 1 % of the time, at least 5 s apart"))]
     pub checkpoint: Option<Scalar>,
     /// Width and height of frames in pixels.
     #[schemars(extend("x-default" = "[1280, 720]"))]

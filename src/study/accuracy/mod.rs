@@ -203,9 +203,12 @@ pub fn write(study: &Study, command: &str, folder: &Path) -> Result<Vec<PathBuf>
     Ok([csv, json].into_iter().chain(plots).collect())
 }
 
+/// Place of a run among the rows, `None` for the reference, and its seed.
+type Place = (Option<[usize; 2]>, u64);
+
 /// What became of every run, by place and seed.
 struct Runs {
-    by_place: BTreeMap<(Option<[usize; 2]>, u64), Status<Record<TensileOutcome>>>,
+    by_place: BTreeMap<Place, Status<Record<TensileOutcome>>>,
 }
 
 impl Runs {
