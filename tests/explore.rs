@@ -29,10 +29,9 @@ const SIZE: [u32; 2] = [320, 200];
 /// The folder of a run that was not simulated.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    Run::new(12)
-        .show(&mut TrajectoryWriter::new(&folder.path().join("trajectory.bin"), Origin::default()).unwrap())
-        .unwrap();
     let spec = scene::load("ka4", &[]).unwrap().spec;
+    let file = folder.path().join("trajectory.bin");
+    Run::new(12).show(&mut TrajectoryWriter::new(&file, Origin::of(&spec)).unwrap()).unwrap();
     std::fs::write(folder.path().join("scene.toml"), scene::write::to_toml(&spec)).unwrap();
     folder
 }

@@ -31,8 +31,8 @@ const HOSTILE: &str = "</script><script>window.hacked=1</script><img src=x onerr
 fn folder_of(run: &Run, pictures: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    run.show(&mut TrajectoryWriter::new(&at("trajectory.bin"), Origin::default()).unwrap()).unwrap();
     let scene = scene::load("ka4", &[]).unwrap();
+    run.show(&mut TrajectoryWriter::new(&at("trajectory.bin"), Origin::of(&scene.spec)).unwrap()).unwrap();
     fs::write(at("scene.toml"), scene::write::to_toml(&scene.spec)).unwrap();
     let mut summariser = Summariser::new();
     run.show(&mut summariser).unwrap();

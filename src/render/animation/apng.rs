@@ -1,6 +1,6 @@
 //! Animated PNG: all colours, two to five times the size of a GIF.
 
-use super::{Pictures, Refuse, changed, cut};
+use super::pictures::{Pictures, Refuse, changed, cut};
 use crate::base::error::Result;
 use image::RgbImage;
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, EncodingError};

@@ -1,7 +1,7 @@
 //! GIF: plays everywhere; 255 colours, chosen once for the whole sequence.
 
 use super::palette::{Census, TRANSPARENT};
-use super::{Pictures, Refuse, changed, cut};
+use super::pictures::{Part, Pictures, Refuse, changed, cut};
 use crate::base::error::Result;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::io::Write;
@@ -38,7 +38,7 @@ pub(super) fn write(pictures: &Pictures, out: &mut impl Write, refuse: &Refuse) 
     Ok(())
 }
 
-fn frame(part: super::Part, shown: u32) -> Frame<'static> {
+fn frame(part: Part, shown: u32) -> Frame<'static> {
     // A GIF has at most 65535 pixels a side, and so have the parts of one that was begun.
     let [left, top, width, height] = part.map(|pixels| pixels as u16);
     Frame {
@@ -55,7 +55,7 @@ fn frame(part: super::Part, shown: u32) -> Frame<'static> {
 
 /// The part's pixels, transparent where the picture before shows the same: long runs of one index take next to no
 /// room.
-fn fresh(before: &[u8], now: &[u8], width: u32, part: super::Part) -> Vec<u8> {
+fn fresh(before: &[u8], now: &[u8], width: u32, part: Part) -> Vec<u8> {
     let mut fresh = cut(now, width, part);
     if !before.is_empty() {
         for (now, before) in fresh.iter_mut().zip(cut(before, width, part)) {
