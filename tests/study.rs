@@ -231,11 +231,13 @@ fn what_is_wrong_in_a_study_is_told_with_its_line_and_nothing_is_written() {
         ("base = \"single-wire\"", "base = \"singel-wire\"", "did you mean `single-wire`?"),
         ("base = \"single-wire\"", "", "`base` is missing"),
         ("seeds = 2", "seeds = 0", "there must be at least one"),
+        ("seeds = 2", "seeds = 4294967296", "more than 20000 cases"),
         ("seeds = 2", "seads = 2", "unknown key `seads` in a study"),
         ("fits = [\"elongation\"]", "fits = [\"elongaton\"]", "did you mean `elongation`?"),
         ("compare = [\"paper\"", "compare = [\"papper\"", "`papper` is nothing to compare with"),
         ("to = \"20 m/s\"", "to = \"20 mm/s\"", "give both in one unit"),
         ("points = 4", "points = 1", "a range has at least 2"),
+        ("points = 4", "points = 9223372036854775807", "more than 20000 cases"),
         ("key = \"grip.speed\"", "", "the axis does not say what it varies"),
         ("points = 4", "points = 4\nvalues = [\"5 m/s\"]", "does not go with a range"),
         (
