@@ -169,10 +169,10 @@ fn hear(socket: &mut WebSocket<TcpStream>) -> Heard {
 /// The next picture of a kind.
 fn next_picture(socket: &mut WebSocket<TcpStream>, wanted: u32) -> (u32, [u32; 2], Vec<u8>) {
     loop {
-        if let Heard::Picture { kind, number, size, bytes } = hear(socket) {
-            if kind == wanted {
-                return (number, size, bytes);
-            }
+        if let Heard::Picture { kind, number, size, bytes } = hear(socket)
+            && kind == wanted
+        {
+            return (number, size, bytes);
         }
     }
 }
@@ -180,10 +180,10 @@ fn next_picture(socket: &mut WebSocket<TcpStream>, wanted: u32) -> (u32, [u32; 2
 /// The next message with a key.
 fn next_words(socket: &mut WebSocket<TcpStream>, key: &str) -> Value {
     loop {
-        if let Heard::Words(mut value) = hear(socket) {
-            if value.get(key).is_some() {
-                return value[key].take();
-            }
+        if let Heard::Words(mut value) = hear(socket)
+            && value.get(key).is_some()
+        {
+            return value[key].take();
         }
     }
 }

@@ -299,7 +299,7 @@ fn points(count: u32) {
 fn studies(count: u32) {
     // Looking for a good design takes minutes without optimisation.
     let quick = |text: &&str| !cfg!(debug_assertions) || !text.contains("[design]");
-    let all: Vec<String> = definition::list().iter().map(|(_, text)| *text).filter(quick).map(str::to_owned).collect();
+    let all: Vec<String> = definition::STUDIES.iter().map(|(_, text)| *text).filter(quick).map(str::to_owned).collect();
     let text = |(of, changes): &(Index, Vec<Change>)| changed(&all[of.index(all.len())], &all, changes);
     let strategy = (any::<Index>(), prop::collection::vec(change(), 1..5));
     each(count, strategy, text, |input| {

@@ -32,7 +32,8 @@ fn folder_of(run: &Run, pictures: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let scene = scene::load("ka4", &[]).unwrap();
-    run.show(&mut TrajectoryWriter::new(&at("trajectory.bin"), Origin::of(&scene.spec)).unwrap()).unwrap();
+    let origin = Origin::of(&scene.spec);
+    run.show(&mut TrajectoryWriter::new(&at("trajectory.bin"), origin).unwrap()).unwrap();
     fs::write(at("scene.toml"), scene::write::to_toml(&scene.spec)).unwrap();
     let mut summariser = Summariser::new();
     run.show(&mut summariser).unwrap();
@@ -40,7 +41,8 @@ fn folder_of(run: &Run, pictures: usize) -> TempDir {
     let cost = Cost { steps, wall_s: 12.5, threads: 2, ..Cost::default() };
     let closing = Closing { stopped: StopReason::Steps { limit: 7, reached: 7 }, cost, ..Closing::default() };
     let summary = summariser.summary(&scene.spec, 10_000, closing);
-    fs::write(at("summary.json"), serde_json::to_string_pretty(&summary).unwrap()).unwrap();
+    let text = serde_json::to_string_pretty(&summary).unwrap();
+    fs::write(at("summary.json"), run::identity::seal(&text, origin, folder.path()).unwrap()).unwrap();
     fs::create_dir(at("frames")).unwrap();
     for number in 0..pictures {
         let shade = |x: u32, y: u32| image::Rgb([x as u8, y as u8, number as u8 * 9]);
@@ -342,7 +344,7 @@ fn browser(test: &str) -> Option<Browser> {
 
 /// Writes a page and opens it; it must have drawn all its charts without a complaint.
 fn shown(browser: &mut Browser, folder: &TempDir, scheme: &str) -> PathBuf {
-    let written = page::write(folder.path(), None, None, true, true).unwrap();
+    let written = page::write(folder.path(), None, None, true, false).unwrap();
     browser.open(&written.path, scheme);
     let trouble = browser.value("document.getElementById('trouble').textContent");
     assert!(browser.value("document.documentElement.dataset.troubles ?? null").is_null(), "{trouble}");

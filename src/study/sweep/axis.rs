@@ -1,5 +1,6 @@
 //! Axes of a study: their levels, each with what it changes in the scene.
 
+use super::definition::MOST_CASES;
 use super::raw::{RawAxis, RawLevel};
 use crate::base::error::Result;
 use crate::base::units::{self, Dimension};
@@ -253,6 +254,10 @@ fn range(from: &Value, to: &Value, points: i64, at: &str, source: &SceneSource) 
     }
     if points < 2 {
         let what = format!("`points` is {points}, but a range has at least 2");
+        return Err(source.error(&format!("{at}.points"), what, "for example points = 7"));
+    }
+    if points as usize > MOST_CASES {
+        let what = format!("`points` is {points}, more than {MOST_CASES} cases");
         return Err(source.error(&format!("{at}.points"), what, "for example points = 7"));
     }
     let value = |k: i64| {

@@ -19,7 +19,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 /// Most cases of a study: more is a typing error.
-const MOST_CASES: usize = 100_000;
+pub(super) const MOST_CASES: usize = 20_000;
 
 macro_rules! studies {
     ($($name:literal),* $(,)?) => {
@@ -305,6 +305,9 @@ fn seeds(raw: Option<&RawSeeds>, own: u64, source: &SceneSource) -> Result<Vec<u
         None => Ok(vec![own]),
         Some(RawSeeds::Count(count)) if *count < 1 => {
             Err(wrong("seeds", format!("`seeds` is {count}, but there must be at least one")))
+        }
+        Some(RawSeeds::Count(count)) if *count as usize > MOST_CASES => {
+            Err(wrong("seeds", format!("{count} seeds are more than {MOST_CASES} cases")))
         }
         Some(RawSeeds::Count(count)) => Ok((1..=*count as u64).collect()),
         Some(RawSeeds::List(list)) if list.is_empty() => Err(wrong("seeds", "`seeds` lists none".into())),
