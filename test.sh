@@ -10,19 +10,15 @@ get_browser || printf '\nNo Chromium is here and none can be installed; tests of
 get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that need it will be SKIPPED.\n'
 
 say "Shell syntax"
-for script in demo.sh test.sh .ci/run .ci/prepare.sh examples/peers/compare.sh; do
+for script in demo.sh test.sh .ci/run .ci/features .ci/prepare.sh examples/peers/compare.sh; do
     bash -n "$script"
 done
 
 say "Format"
 cargo fmt --check
 
-# The lean program is built first: the full one must be what is left in target/release.
-say "Every feature by itself, and none"
-for feature in "" report study cli record render; do
-    cargo clippy --release --locked --lib --no-default-features --features "$feature" -- -D warnings
-done
-
+# The lean program is built first: the full one must be what is left in target/release. .ci/features checks every
+# feature by itself, which takes long.
 say "Without recording and frames"
 cargo clippy --release --locked --no-default-features --features cli --all-targets -- -D warnings
 cargo build --release --locked --no-default-features --features cli

@@ -35,7 +35,6 @@ use crate::engine::Engine;
 use crate::observe::Observer;
 use crate::observe::files::write_whole;
 use crate::observe::origin::Origin;
-use crate::observe::partial;
 use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
 use crate::observe::timings::Timings;
@@ -45,7 +44,7 @@ use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
 use checkpoint::{Checkpoint, Identity, Keeper, Spent};
-use drive::Resumed;
+use drive::{LoopState, Resumed};
 use folder::OutFolder;
 use std::path::Path;
 use std::sync::PoisonError;
@@ -136,24 +135,26 @@ impl Resumable {
         let clock = Clock::after(&checkpoint.spent);
         let assembly = assemble(&scene)?;
         let bonds = assembly.bond_count();
-        let engine = Engine::new(&scene.spec, &scene.plan, assembly)?;
+        let mut engine = Engine::new(&scene.spec, &scene.plan, assembly)?;
+        let info = engine.info();
         let _lock = folder.take_over()?;
-        // The old trajectory is kept until the first checkpoint of the new one; it is there already when an earlier attempt
-        // to go on has ended before that.
-        let before = folder.file(folder::RESUMED_FROM);
-        if !before.exists() {
-            let trajectory = folder.file(folder::TRAJECTORY);
-            let growing = partial::name(&trajectory);
-            let source = if growing.exists() { growing } else { trajectory };
-            std::fs::rename(&source, &before).map_err(|e| Error::io("cannot rename", &source, e))?;
+        // Nothing is touched before all of the state has been taken up.
+        let state = LoopState::restore(&scene.spec, &info, &checkpoint.driver);
+        let state = state.and_then(|state| engine.restore(&checkpoint.engine).map(|()| state));
+        let state = state.map_err(|unfit| checkpoint::not_its(&unfit.to_string()))?;
+        let before = checkpoint.find_trajectory(&options.out, &info)?;
+        // It is kept until the first checkpoint of the new one.
+        let kept = folder.file(folder::RESUMED_FROM);
+        if before != kept {
+            std::fs::rename(&before, &kept).map_err(|e| Error::io("cannot rename", &before, e))?;
         }
-        let trajectory = Trajectory::open(&before)?;
+        let trajectory = Trajectory::open(&kept)?;
         folder.clear_results()?;
         let written = outputs::open(&options, &scene.spec, &folder)?;
         let every = scene.spec.output.checkpoint;
         let keeper = Keeper::new(&options.out, every, identity, options.outputs(), Some(&checkpoint));
         let job = Job { scene: &scene, options: &options, folder: &folder, clock, bonds, keeper };
-        drive_and_summarise(job, engine, written, watchers, stop, Some(Resumed { checkpoint, trajectory }))
+        drive_and_summarise(job, engine, written, watchers, stop, Some(Resumed { checkpoint, state, trajectory }))
     }
 }
 

@@ -15,6 +15,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+use strandsnap::base::units::{mm, mpa};
 use strandsnap::explore::{Options, Server, View, picture};
 use strandsnap::observe::origin::Origin;
 use strandsnap::observe::trajectory::TrajectoryWriter;
@@ -258,8 +259,9 @@ fn what_is_under_the_pointer_is_in_the_picture() {
     let (i, wire) = (found["particle"].as_u64().unwrap() as usize, found["wire"].as_u64().unwrap() as usize);
     let last = run.snapshots()[11];
     assert_eq!(run.info.wires[wire].layer, 2, "the outer layer lies in front");
-    assert_eq!(found["position"][2].as_f64().unwrap() as f32, last.position[i][2]);
-    assert_eq!(found["contact_pressure"].as_f64().unwrap() as f32, last.contact_pressure[i]);
+    // The browser is told of mm and MPa.
+    assert_eq!(found["position"][2].as_f64().unwrap() as f32, mm(last.position[i][2].into()) as f32);
+    assert_eq!(found["contact_pressure"].as_f64().unwrap() as f32, mpa(last.contact_pressure[i].into()) as f32);
     view.hidden_layers = vec![2];
     let found = pick(&view, [0.5, 0.5]);
     assert_eq!(run.info.wires[found["wire"].as_u64().unwrap() as usize].layer, 1, "what is hidden is not picked");

@@ -1,5 +1,9 @@
 //! Folders that cannot lie: whatever is in one is whole and its own run's, or says so; nothing but results is replaced.
 
+#[path = "common/disk.rs"]
+mod disk;
+
+use disk::Disk;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -215,28 +219,12 @@ fn files_that_cannot_grow() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_disk_that_is_full() {
-    struct Disk(PathBuf);
-    impl Disk {
-        fn mount(folder: &Path, size: usize) -> Option<Self> {
-            let option = format!("size={size}");
-            let mount = Command::new("mount").args(["-t", "tmpfs", "-o", &option, "tmpfs"]).arg(folder).output();
-            mount.is_ok_and(|output| output.status.success()).then(|| Self(folder.into()))
-        }
-    }
-    impl Drop for Disk {
-        fn drop(&mut self) {
-            let _ = Command::new("umount").arg(&self.0).status();
-        }
-    }
     let folder = two_runs();
     let whole: usize = bytes_in(&folder.path().join("a")).iter().sum();
     for (k, size) in sizes(whole).into_iter().enumerate() {
         let place = folder.path().join(format!("disk{k}"));
         fs::create_dir(&place).unwrap();
-        let Some(disk) = Disk::mount(&place, size) else {
-            println!("SKIPPED (a_disk_that_is_full: no file system can be mounted here)");
-            return;
-        };
+        let Some(disk) = Disk::mount(&place, size, "a_disk_that_is_full") else { return };
         let output = strandsnap(&place, &[&SHORT[..], &["out"]].concat());
         assert_nothing_looks_whole(&output, &place.join("out"), size);
         drop(disk);

@@ -455,10 +455,11 @@ fn a_browser_shows_runs_that_have_little_to_show() {
     let mut run = Run::new(1);
     run.events.truncate(1);
     let folder = tempfile::tempdir().unwrap();
-    let mut writer = TrajectoryWriter::new(&folder.path().join("trajectory.bin"), Origin::default()).unwrap();
+    let scene = scene::load("ka4", &[]).unwrap();
+    let trajectory = folder.path().join("trajectory.bin");
+    let mut writer = TrajectoryWriter::new(&trajectory, Origin::of(&scene.spec)).unwrap();
     run.show_unfinished(&mut writer).unwrap();
     writer.finish().unwrap();
-    let scene = scene::load("ka4", &[]).unwrap();
     fs::write(folder.path().join("scene.toml"), scene::write::to_toml(&scene.spec)).unwrap();
     assert!(matches!(run.events[0], Event::Sample(_)));
     shown(&mut browser, &folder, "light");

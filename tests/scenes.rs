@@ -134,7 +134,7 @@ fn every_key_arrives_in_si() {
     assert_close(limiting_pressure, 3.0 * 400e6 * 0.09f64.powf(0.3));
     assert_eq!((contact.tangential, contact.shape), (Some(TangentialSpec::MindlinDeresiewicz), Shape::Wire));
     let layers = &spec.strand.as_ref().unwrap().layers;
-    assert_eq!((layers[0].name.as_str(), layers[0].lay_radius, layers[0].lay), ("layer 1", Some(0.0), -1.0));
+    assert_eq!((layers[0].name.as_str(), layers[0].lay_radius, layers[0].lay), ("1st", Some(0.0), -1.0));
     assert_close(layers[0].wire_diameter, 0.39e-3);
     assert_close(layers[1].phase, 10f64.to_radians());
     assert_eq!((layers[1].pitch, layers[1].lay), (f64::INFINITY, 1.0));

@@ -68,6 +68,7 @@ impl Painter {
     }
 
     /// From now on draws pictures of `size` (px).
+    #[cfg(feature = "explore")]
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         if size != self.target.size {
             check(&self.gpu, size)?;

@@ -13,8 +13,9 @@ use super::folder::{self, SLOTS};
 use super::options::Outputs;
 use crate::base::error::{Error, Result};
 use crate::engine;
+use crate::engine::view::RunInfo;
 use crate::observe::partial;
-use crate::observe::trajectory::Record;
+use crate::observe::trajectory::{Record, Trajectory};
 use crate::scene::spec::CheckpointSpec;
 use lz4_flex::frame::{FrameDecoder, FrameEncoder, FrameInfo};
 use serde::{Deserialize, Serialize};
@@ -299,6 +300,11 @@ pub fn latest(folder: &Path) -> Result<(Checkpoint, Vec<String>)> {
     }
 }
 
+/// A checkpoint that does not fit what lies beside it.
+pub(super) fn not_its(what: &str) -> Error {
+    Error::input(format!("the run cannot be resumed from its checkpoint: {what}"), "run the scene again")
+}
+
 fn read(path: &Path) -> std::io::Result<Checkpoint> {
     let damaged = |what: String| std::io::Error::new(std::io::ErrorKind::InvalidData, what);
     let mut reader = BufReader::new(File::open(path)?);
@@ -317,6 +323,32 @@ fn read(path: &Path) -> std::io::Result<Checkpoint> {
 }
 
 impl Checkpoint {
+    /// The trajectory in `folder` that tells all that had been told up to here: of the run that was ended, whole or not, or
+    /// the one that an earlier attempt to go on has put aside. Whichever was being written when the power went, one does.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when none does.
+    pub fn find_trajectory(&self, folder: &Path, info: &RunInfo) -> Result<PathBuf> {
+        let whole = folder.join(folder::TRAJECTORY);
+        let all = [partial::name(&whole), whole, folder.join(folder::RESUMED_FROM)];
+        let mut known = "there is none".to_owned();
+        for file in all.into_iter().filter(|file| file.exists()) {
+            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            known = match Trajectory::open(&file) {
+                Ok(trajectory) if **trajectory.info() != *info => format!("{name} tells of other wires"),
+                Ok(trajectory) => {
+                    let records = trajectory.take(self.records as usize).take_while(|record| record.is_ok()).count();
+                    if records as u64 == self.records {
+                        return Ok(file);
+                    }
+                    format!("{name} has {records} records of {}", self.records)
+                }
+                Err(error) => error.to_string(),
+            };
+        }
+        Err(not_its(&format!("no trajectory of the run is whole up to it ({known})")))
+    }
+
     /// Refuses to go on as another run.
     ///
     /// # Errors

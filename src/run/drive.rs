@@ -79,12 +79,64 @@ pub fn simulate_engine(engine: Engine, observers: &mut [&mut dyn Observer], stop
     }
 }
 
-/// A run that goes on.
+/// A run that goes on with an engine that was restored.
 pub(super) struct Resumed {
     /// From here.
     pub checkpoint: Checkpoint,
+    /// The state of the loop there.
+    pub state: LoopState,
     /// What it has told up to then.
     pub trajectory: Trajectory,
+}
+
+/// All that a run remembers beside its engine.
+pub(super) struct LoopState {
+    schedule: Schedule,
+    rule: StopRule,
+    guard: Guard,
+    monitor: Monitor,
+    /// Step of the last snapshot.
+    shown: Option<u64>,
+    /// Step of the last row: a run may end at one, and its last snapshot must not repeat it.
+    told: Option<u64>,
+    /// The state at the last row and when that was, in case the next thing to happen is a rupture: which one is the
+    /// last before it shows only afterwards.
+    kept: Option<(f64, Arc<Snapshot>)>,
+}
+
+impl LoopState {
+    /// Before the first step.
+    fn new(spec: &Spec, info: &RunInfo) -> Self {
+        let mut guard = Guard::new(&spec.time);
+        guard.start(info);
+        let (schedule, rule) = (Schedule::new(&spec.output), StopRule::new(&spec.stop, info.wave_passage));
+        Self { schedule, rule, guard, monitor: Monitor::default(), shown: None, told: None, kept: None }
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let mut out = Writer::default();
+        out.put(&(&self.schedule, &self.monitor, self.shown, self.told));
+        out.put(&self.kept.as_ref().map(|(at, snapshot)| (*at, &**snapshot)));
+        self.rule.save(&mut out);
+        self.guard.save(&mut out);
+        out.into_bytes()
+    }
+
+    /// The state that a checkpoint holds ([`Checkpoint::driver`]).
+    ///
+    /// # Errors
+    /// [`Unfit`] when the bytes are something else.
+    pub(super) fn restore(spec: &Spec, info: &RunInfo, bytes: &[u8]) -> std::result::Result<Self, Unfit> {
+        let mut state = Self::new(spec, info);
+        let mut from = Reader::new(bytes);
+        (state.schedule, state.monitor, state.shown, state.told) = from.take()?;
+        let kept: Option<(f64, Snapshot)> = from.take()?;
+        state.kept = kept.map(|(at, snapshot)| (at, Arc::new(snapshot)));
+        state.rule.restore(&mut from)?;
+        state.guard.restore(&mut from)?;
+        from.end()?;
+        Ok(state)
+    }
 }
 
 /// [`simulate`] from an engine that is set up; the error that ended the run comes beside its outcome. `keeper` keeps its
@@ -105,24 +157,21 @@ pub(super) fn drive(
             "give at least one of stop.strain, stop.time or stop.steps",
         ));
     }
-    let guard = Guard::new(&spec.time);
+    let before = resumed.as_ref().map(|resumed| resumed.checkpoint.spent).unwrap_or_default();
+    let (state, told) = match resumed {
+        Some(Resumed { checkpoint, state, trajectory }) => (state, Some((checkpoint, trajectory))),
+        None => (LoopState::new(spec, &info), None),
+    };
     let mut driver = Driver {
         engine,
         end,
-        schedule: Schedule::new(&spec.output),
-        rule: StopRule::new(&spec.stop, info.wave_passage),
-        guard,
-        monitor: Monitor::default(),
+        state,
         audience: Audience { observers, started: 0, time: Duration::ZERO, keeper },
-        shown: None,
-        told: None,
         breaks: spec.bond.rupture.is_some(),
-        kept: None,
         begin: Instant::now(),
         broke: false,
     };
-    let before = resumed.as_ref().map(|resumed| resumed.checkpoint.spent).unwrap_or_default();
-    let ended = driver.go(&info, stop, resumed);
+    let ended = driver.go(&info, stop, told);
     let stepping = before.stepping + driver.stepping();
     let observing = before.observing + driver.audience.time;
     let finished = driver.audience.finish();
@@ -135,8 +184,8 @@ pub(super) fn drive(
         steps: driver.engine.steps(),
         time: driver.engine.time(),
         strain: driver.engine.strain(),
-        quasi_static: driver.guard.quasi_static(),
-        limits: Limits::new(driver.engine.findings(), driver.guard.greatest_residual()),
+        quasi_static: driver.state.guard.quasi_static(),
+        limits: Limits::new(driver.engine.findings(), driver.state.guard.greatest_residual()),
         stepping,
         observing,
     };
@@ -146,20 +195,10 @@ pub(super) fn drive(
 struct Driver<'a, 'b> {
     engine: Engine,
     end: PlannedEnd,
-    schedule: Schedule,
-    rule: StopRule,
-    guard: Guard,
-    monitor: Monitor,
+    state: LoopState,
     audience: Audience<'a, 'b>,
-    /// Step of the last snapshot.
-    shown: Option<u64>,
-    /// Step of the last row: a run may end at one, and its last snapshot must not repeat it.
-    told: Option<u64>,
     /// Bonds can break.
     breaks: bool,
-    /// The state at the last row and when that was, in case the next thing to happen is a rupture: which one is the
-    /// last before it shows only afterwards.
-    kept: Option<(f64, Arc<Snapshot>)>,
     begin: Instant,
     /// A bond broke in the step just done.
     broke: bool,
@@ -167,27 +206,31 @@ struct Driver<'a, 'b> {
 
 impl Driver<'_, '_> {
     /// Runs to the end; a failure is told as a notice before it is returned.
-    fn go(&mut self, info: &Arc<RunInfo>, stop: &AtomicBool, resumed: Option<Resumed>) -> Result<StopReason> {
-        self.guard.start(info);
+    fn go(
+        &mut self,
+        info: &Arc<RunInfo>,
+        stop: &AtomicBool,
+        told: Option<(Checkpoint, Trajectory)>,
+    ) -> Result<StopReason> {
         self.audience.start(info)?;
-        match resumed {
-            Some(resumed) => self.resume(info, resumed)?,
+        match told {
+            Some((checkpoint, trajectory)) => self.tell_again(&checkpoint, trajectory)?,
             None => {
                 self.monitor_step();
                 self.show()?;
             }
         }
         let ended = self.run(stop);
-        self.guard.finish(matches!(ended, Ok(reason) if reason != StopReason::Interrupted));
+        self.state.guard.finish(matches!(ended, Ok(reason) if reason != StopReason::Interrupted));
         self.notices()?;
         // What became worse after it was told of, as it was at its worst.
-        let worse = [self.engine.take_worse(), self.guard.take_worse()];
+        let worse = [self.engine.take_worse(), self.state.guard.take_worse()];
         worse.iter().flatten().try_for_each(|notice| self.audience.notice(notice))?;
         if let Err(Error::Simulation(stopped)) = &ended {
             let finding = Finding::Failed { failure: stopped.failure.clone() };
             self.audience.notice(&Notice { at: stopped.at, finding })?;
         }
-        self.audience.peaks(self.monitor.peaks())?;
+        self.audience.peaks(self.state.monitor.peaks())?;
         ended
     }
 
@@ -199,7 +242,7 @@ impl Driver<'_, '_> {
                 break StopReason::Interrupted;
             }
             let engine = &self.engine;
-            if let Some(reason) = self.rule.reached(engine.strain(), engine.time(), engine.steps()) {
+            if let Some(reason) = self.state.rule.reached(engine.strain(), engine.time(), engine.steps()) {
                 break reason;
             }
             self.engine.step()?;
@@ -210,7 +253,7 @@ impl Driver<'_, '_> {
             }
         };
         self.engine.check_crossings()?;
-        if self.shown != Some(self.engine.steps()) {
+        if self.state.shown != Some(self.engine.steps()) {
             self.show()?;
         }
         self.judge()?;
@@ -227,12 +270,7 @@ impl Driver<'_, '_> {
         if !self.audience.keeper.as_ref().is_some_and(|keeper| keeper.keeps()) {
             return Ok(());
         }
-        let mut driver = Writer::default();
-        driver.put(&(&self.schedule, &self.monitor, self.shown, self.told));
-        driver.put(&self.kept.as_ref().map(|(at, snapshot)| (*at, &**snapshot)));
-        self.rule.save(&mut driver);
-        self.guard.save(&mut driver);
-        let (driver, engine, step) = (driver.into_bytes(), self.engine.save(), self.engine.steps());
+        let (driver, engine, step) = (self.state.save(), self.engine.save(), self.engine.steps());
         let (stepping, observing) = (self.stepping(), self.audience.time);
         match &mut self.audience.keeper {
             Some(keeper) => keeper.keep(Now { step, driver, engine, stepping, observing }),
@@ -240,48 +278,31 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// Tells again what was told up to a checkpoint, and takes up the state at it.
-    fn resume(&mut self, info: &Arc<RunInfo>, resumed: Resumed) -> Result<()> {
-        let Resumed { checkpoint, trajectory } = resumed;
-        if trajectory.info() != info {
-            return Err(not_its("the trajectory tells of other wires"));
-        }
-        let mut told = 0;
+    /// Tells again what was told up to a checkpoint.
+    fn tell_again(&mut self, checkpoint: &Checkpoint, trajectory: Trajectory) -> Result<()> {
         for record in trajectory.take(checkpoint.records as usize) {
             self.audience.tell(&record?)?;
-            told += 1;
         }
-        if told < checkpoint.records {
-            return Err(not_its(&format!("the trajectory has {told} records of {}", checkpoint.records)));
-        }
-        checkpoint.tail.iter().try_for_each(|record| self.audience.tell(record))?;
-        self.restore(&checkpoint).map_err(|unfit| not_its(&unfit.to_string()))
-    }
-
-    fn restore(&mut self, checkpoint: &Checkpoint) -> std::result::Result<(), Unfit> {
-        let mut from = Reader::new(&checkpoint.driver);
-        (self.schedule, self.monitor, self.shown, self.told) = from.take()?;
-        let kept: Option<(f64, Snapshot)> = from.take()?;
-        self.kept = kept.map(|(at, snapshot)| (at, Arc::new(snapshot)));
-        self.rule.restore(&mut from)?;
-        self.guard.restore(&mut from)?;
-        from.end()?;
-        self.engine.restore(&checkpoint.engine)
+        checkpoint.tail.iter().try_for_each(|record| self.audience.tell(record))
     }
 
     /// What decides on the end of the run and on its result, seen at every step whatever is written.
     fn monitor_step(&mut self) {
         let engine = &self.engine;
         let (strain, stress) = (engine.strain(), engine.stress());
-        self.rule.step(engine.time(), strain, stress);
-        self.monitor.see(strain, stress, (0..engine.assembly().wires.len()).map(|w| engine.view().wire_stress(w)));
+        self.state.rule.step(engine.time(), strain, stress);
+        self.state.monitor.see(
+            strain,
+            stress,
+            (0..engine.assembly().wires.len()).map(|w| engine.view().wire_stress(w)),
+        );
     }
 
     /// The guard's look at the present state; a failure is told before it is returned.
     fn judge(&mut self) -> Result<()> {
         let sample = self.engine.sample();
-        self.guard.check(&sample)?;
-        let judged = self.guard.row(&sample);
+        self.state.guard.check(&sample)?;
+        let judged = self.state.guard.row(&sample);
         self.notices()?;
         judged
     }
@@ -292,17 +313,17 @@ impl Driver<'_, '_> {
         let ruptures = self.engine.take_ruptures();
         self.broke = !ruptures.is_empty();
         if !ruptures.is_empty() {
-            self.rule.rupture();
-            self.monitor.rupture();
-            let kept = self.kept.take();
-            if self.schedule.rupture(kept.as_ref().map(|(at, _)| *at), now)
+            self.state.rule.rupture();
+            self.state.monitor.rupture();
+            let kept = self.state.kept.take();
+            if self.state.schedule.rupture(kept.as_ref().map(|(at, _)| *at), now)
                 && let Some((_, snapshot)) = kept
             {
                 self.audience.snapshot(&snapshot)?;
             }
         }
         for rupture in &ruptures {
-            self.guard.rupture(rupture);
+            self.state.guard.rupture(rupture);
             self.audience.rupture(rupture)?;
         }
         self.notices()?;
@@ -310,13 +331,13 @@ impl Driver<'_, '_> {
         if self.engine.steps().is_multiple_of(GUARD_INTERVAL) {
             self.judge()?;
         }
-        let due = self.schedule.due(now);
+        let due = self.state.schedule.due(now);
         if due.snapshot {
             self.show()
         } else if due.row && self.breaks {
             let snapshot = Arc::new(self.engine.snapshot());
             self.row(&snapshot.sample)?;
-            self.kept = Some((now, snapshot));
+            self.state.kept = Some((now, snapshot));
             Ok(())
         } else if due.row {
             let sample = self.engine.sample();
@@ -330,23 +351,23 @@ impl Driver<'_, '_> {
     fn show(&mut self) -> Result<()> {
         let snapshot = Arc::new(self.engine.snapshot());
         self.row(&snapshot.sample)?;
-        self.shown = Some(snapshot.sample.step);
-        self.kept = None;
+        self.state.shown = Some(snapshot.sample.step);
+        self.state.kept = None;
         self.audience.snapshot(&snapshot)
     }
 
     fn row(&mut self, sample: &Sample) -> Result<()> {
-        if self.told.replace(sample.step) == Some(sample.step) {
+        if self.state.told.replace(sample.step) == Some(sample.step) {
             return Ok(());
         }
         // A row that is not finite must not reach the files.
-        self.guard.check(sample)?;
+        self.state.guard.check(sample)?;
         self.audience.sample(sample)
     }
 
     /// Passes on what engine and guard have to say.
     fn notices(&mut self) -> Result<()> {
-        let notices = [self.engine.take_notices(), self.guard.take_notices()];
+        let notices = [self.engine.take_notices(), self.state.guard.take_notices()];
         notices.iter().flatten().try_for_each(|notice| self.audience.notice(notice))
     }
 }
@@ -430,9 +451,4 @@ impl Audience<'_, '_> {
         self.time += begin.elapsed();
         answers.into_iter().collect()
     }
-}
-
-/// A checkpoint that does not fit what lies beside it.
-fn not_its(what: &str) -> Error {
-    Error::input(format!("the run cannot be resumed from its checkpoint: {what}"), "run the scene again")
 }

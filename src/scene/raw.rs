@@ -319,7 +319,7 @@ pub enum RawConstruction {
 #[serde(deny_unknown_fields)]
 pub struct RawLayer {
     /// Name, used in tables.
-    #[schemars(extend("x-otherwise" = "layer N, N from 1"))]
+    #[schemars(extend("x-otherwise" = "1st, 2nd, ..., inside out"))]
     pub name: Option<String>,
     /// Number of wires.
     #[schemars(extend("x-required" = true))]

@@ -8,7 +8,7 @@ use super::spec::{LayerSpec, PathSpec, SphereSpec, StrandSpec, WireSpec};
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::base::units::{self, Dimension};
-use crate::base::wording::counted;
+use crate::base::wording::{counted, ordinal};
 use std::path::{Path, PathBuf};
 
 /// Relative difference up to which two diameters are one, written with other units (-).
@@ -55,7 +55,7 @@ fn layer(at: &At, strand: &At, raw: &RawLayer, defaults: &RawStrand, index: usiz
     let diameter =
         layer_or_strand(at, strand, "wire_diameter", &raw.wire_diameter, &defaults.wire_diameter, Range::Positive)?;
     Ok(LayerSpec {
-        name: raw.name.clone().unwrap_or_else(|| format!("layer {}", index + 1)),
+        name: raw.name.clone().unwrap_or_else(|| ordinal(index + 1)),
         wires,
         wire_diameter: diameter.ok_or_else(|| at.missing("wire_diameter", "\"0.39 mm\""))?,
         lay_radius,

@@ -1,11 +1,13 @@
 //! Axes of a study: their levels, each with what it changes in the scene.
 
-use super::definition::MOST_CASES;
 use super::raw::{RawAxis, RawLevel};
 use crate::base::error::Result;
 use crate::base::units::{self, Dimension};
 use crate::scene::SceneSource;
 use toml::Value;
+
+/// Most cases of a study: more is a typing error.
+pub(super) const MOST_CASES: usize = 20_000;
 
 /// Something that a study varies.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! A study as it was read: base scene, axes, points and cases.
 
-use super::axis::{self, Axis, Merged};
+use super::axis::{self, Axis, MOST_CASES, Merged};
 use super::conflicts;
 use super::quantity::{self, Quantity};
 use super::raw::{RawDesign, RawSeeds, RawStudy};
@@ -17,9 +17,6 @@ use crate::study::screening::{self, Model};
 use crate::study::tensile::{TensileCase, definition};
 use std::collections::HashMap;
 use std::path::Path;
-
-/// Most cases of a study: more is a typing error.
-pub(super) const MOST_CASES: usize = 20_000;
 
 macro_rules! studies {
     ($($name:literal),* $(,)?) => {

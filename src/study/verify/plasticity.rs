@@ -69,7 +69,7 @@ fn wire_pulled(context: &Context) -> Result<Vec<Comparison>> {
             let point = tension_at(strain, |p| law.stress(p), young);
             let shot = engine.snapshot();
             let p = f64::from(shot.plastic_strain[middle]);
-            let true_stress = f64::from(shot.bond_stress[middle]) * 1e6;
+            let true_stress = f64::from(shot.bond_stress[middle]);
             let none = Spent::default();
             let at = |what: &str| format!("{what}, worst of five: at {:.0} %", 100.0 * strain);
             comparisons[0].push(
