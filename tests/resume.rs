@@ -238,7 +238,7 @@ fn a_damaged_checkpoint_falls_back_to_the_other_and_says_so() {
     let scene = folder.path().join("small.toml");
     succeeds(&["run", text(&scene), "--out", text(&whole), "--quiet", "--no-frames", "--no-recording"]);
     let newest = run::checkpoint::latest(&out).unwrap().0.number;
-    let slot = out.join(if newest % 2 == 0 { "checkpoint-1.bin" } else { "checkpoint-2.bin" });
+    let slot = out.join(if newest.is_multiple_of(2) { "checkpoint-1.bin" } else { "checkpoint-2.bin" });
     let mut bytes = fs::read(&slot).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 0x10;

@@ -1,7 +1,7 @@
 //! The floor over studies: an interactive picture of a run (feature `explore`), drawn by [`crate::render`] on the machine
 //! where the run lies and steered from a browser.
 //!
-//! [`Server`] answers one page and its socket at a local address; [`session`] is one browser that looks, with a [`View`] of
+//! [`Server`] answers one page and its socket at a local address; a `session` is one browser that looks, with a [`View`] of
 //! its own; [`record`] holds the run and tells it to the page; [`draw`] is all that knows the renderer.
 
 pub mod draw;

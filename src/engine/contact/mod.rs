@@ -1,4 +1,4 @@
-//! Contacts: one folder per shape of bodies ([`spheres`], [`wires`]), what a touching pair does ([`pair`]), and the one
+//! Contacts: one folder per shape of bodies (`spheres`, `wires`), what a touching pair does ([`pair`]), and the one
 //! place where laws and shape are chosen.
 
 pub mod pair;
