@@ -125,6 +125,14 @@ impl Resumable {
         Ok(Self { scene, options, folder: out, identity, checkpoint })
     }
 
+    /// Refuses to go on as another run than that of `scene`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names what differs.
+    pub fn check_scene(&self, scene: &Scene) -> Result<()> {
+        self.checkpoint.check(&Identity::new(write::to_toml(&scene.spec)))
+    }
+
     /// Goes on, in the present thread pool and shown to `watchers` too: when the run has ended, its files are those that an
     /// uninterrupted run writes.
     ///

@@ -231,6 +231,43 @@ fn of_two_trajectories_the_one_that_reaches_the_checkpoint_is_taken() {
 }
 
 #[test]
+fn one_command_starts_a_run_and_starts_it_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, whole) = (folder.path().join("out"), folder.path().join("whole"));
+    let scene = scene(folder.path(), STRAND);
+    let run = |out: &Path, others: &[&str]| {
+        let lean = ["run", text(&scene), "--out", text(out), "--quiet", "--no-frames", "--no-recording"];
+        program(&[&lean[..], others].concat()).output().unwrap()
+    };
+    assert!(run(&whole, &["--resume"]).status.success());
+    assert_eq!(run(&whole, &["--resume"]).status.code(), Some(2), "a finished run is not replaced");
+
+    // A time limit ends it as Ctrl-C does.
+    let limited = run(&out, &["--resume", "--time-limit", "0.1s", "--threads", "1", "--set", "output.checkpoint=20"]);
+    let said = String::from_utf8_lossy(&limited.stderr).into_owned();
+    assert_eq!(limited.status.code(), Some(130), "{said}");
+    assert!(said.contains("the time limit of 0.1 s is reached"), "{said}");
+    let other = run(&out, &["--resume", "--seed", "4", "--set", "output.checkpoint=20"]);
+    let said = String::from_utf8_lossy(&other.stderr).into_owned();
+    assert_eq!(other.status.code(), Some(2), "{said}");
+    assert!(said.contains("another run"), "{said}");
+    let again = run(&out, &["--resume", "--set", "output.checkpoint=20"]);
+    let said = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert!(again.status.success() && said.contains("going on from step"), "{said}");
+    for table in ["curve.csv", "wires.csv", "ruptures.csv"] {
+        assert!(fs::read(whole.join(table)).unwrap() == fs::read(out.join(table)).unwrap(), "{table} differs");
+    }
+
+    // Killed before its first checkpoint: it begins anew.
+    fs::remove_dir_all(&out).unwrap();
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("trajectory.bin.partial"), "").unwrap();
+    assert_eq!(run(&out, &[]).status.code(), Some(2));
+    assert!(run(&out, &["--resume"]).status.success());
+    assert_same(&whole, &out, "anew");
+}
+
+#[test]
 fn a_damaged_checkpoint_falls_back_to_the_other_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let (out, whole) = (folder.path().join("out"), folder.path().join("whole"));

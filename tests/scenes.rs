@@ -319,6 +319,12 @@ fn errors_in_an_option_point_at_it() {
         ("strand.layer.0=", "cannot be removed one by one", "whole array", "strand.layer.0"),
         ("strand.lenth=", "there is no `strand.lenth` to remove", "did you mean `length`?", "strand.lenth"),
         ("output.frame_size=[640,", "is not TOML", "close every bracket", "[640,"),
+        (
+            "seed=9223372036854775808",
+            "is too large for a whole number",
+            "the largest is 9223372036854775807",
+            "9223372036854775808",
+        ),
         ("grip.length=60 mm", "leave nothing of a body of 120 mm", "gauge length", "60 mm"),
         (
             "hold=[{ body = 34, fix = ['x'] }]",

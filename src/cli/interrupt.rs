@@ -51,6 +51,21 @@ pub fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
     Ok(&STOP)
 }
 
+/// Sets the flag of [`install`] when `limit` has passed, and says so: a batch system that ends jobs at their time then finds
+/// one that has ended by itself, with its results and a checkpoint.
+pub fn after(limit: Duration) {
+    std::thread::spawn(move || {
+        std::thread::sleep(limit);
+        if !STOP.swap(true, Ordering::Relaxed) {
+            let _ = writeln!(
+                std::io::stderr(),
+                "\nthe time limit of {} s is reached: stopping; results so far are kept.",
+                limit.as_secs_f64()
+            );
+        }
+    });
+}
+
 /// How a command ended that `stop` may have ended early, with its results kept.
 ///
 /// # Errors

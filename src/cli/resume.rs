@@ -4,10 +4,12 @@ use super::ended::Ended;
 use super::interrupt;
 use super::progress::Progress;
 use super::run::print;
+use super::values::duration;
 use crate::base::error::Result;
 use crate::observe::Observer;
 use crate::run::{self, Resumable};
 use std::path::PathBuf;
+use std::time::Duration;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -16,6 +18,9 @@ pub struct Args {
     /// Threads [default: one per core]; the results are the same on any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    time_limit: Option<Duration>,
     /// Show no progress, and one line at the end
     #[arg(long)]
     quiet: bool,
@@ -23,14 +28,25 @@ pub struct Args {
 
 pub fn resume(args: &Args) -> Result<Ended> {
     let threads = args.threads.map(usize::from);
+    let resumable = Resumable::open(&args.run, threads, &mut note)?;
+    go_on(resumable, args.time_limit, args.quiet)
+}
+
+/// Tells what is remarkable about a run that goes on.
+pub(super) fn note(what: &str) {
+    eprintln!("note: {what}");
+}
+
+/// Goes on with a run to its end, and says how it ended.
+pub(super) fn go_on(resumable: Resumable, time_limit: Option<Duration>, quiet: bool) -> Result<Ended> {
     let stop = interrupt::install()?;
-    let resumable = Resumable::open(&args.run, threads, &mut |what| eprintln!("note: {what}"))?;
+    time_limit.into_iter().for_each(interrupt::after);
     let options = resumable.options.clone();
-    let summary = run::in_pool(threads, || {
-        let mut progress = (!args.quiet).then(|| Progress::new(&resumable.scene.spec.stop));
+    let summary = run::in_pool(options.threads, || {
+        let mut progress = (!quiet).then(|| Progress::new(&resumable.scene.spec.stop));
         let watchers = progress.iter_mut().map(|bar| bar as &mut dyn Observer).collect();
         resumable.go_on(watchers, stop)
     })??;
-    print(&summary, &options, args.quiet);
+    print(&summary, &options, quiet);
     interrupt::ended(stop)
 }

@@ -5,14 +5,16 @@ use super::ended::Ended;
 use super::interrupt;
 use super::look::LookArgs;
 use super::progress::Progress;
+use super::resume::{go_on, note};
 use super::say::say;
-use super::values::SceneArgs;
+use super::values::{SceneArgs, duration};
 use crate::base::error::Result;
 use crate::observe::Observer;
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{ANIMATION, FRAMES, RECORDING};
-use crate::run::{self, RunOptions, RunSummary, cautions, outputs};
+use crate::run::{self, Resumable, RunOptions, RunSummary, cautions, outputs};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Where a Rerun viewer listens when nobody says otherwise.
 pub(super) const DEFAULT_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
@@ -30,6 +32,13 @@ pub struct Args {
     /// Wait for another process that writes into that folder, instead of refusing
     #[arg(long)]
     wait: bool,
+    /// Go on from the last checkpoint in that folder, if it holds an unfinished run of this scene: one command to start
+    /// a job and to start it again
+    #[arg(long)]
+    resume: bool,
+    /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    time_limit: Option<Duration>,
     /// Threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -56,10 +65,16 @@ pub fn run(args: Args) -> Result<Ended> {
     note_what_was_not_built(&args);
     args.look.apply(&mut scene.spec.output);
     let out = args.out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name));
+    if args.resume && run::folder::has_checkpoint(&out) {
+        let resumable = Resumable::open(&out, args.threads.map(usize::from), &mut note)?;
+        resumable.check_scene(&scene)?;
+        return go_on(resumable, args.time_limit, args.quiet);
+    }
     let options = RunOptions {
         animation: args.animation.resolve(&out.join(ANIMATION)),
+        // What was ended before its first checkpoint begins anew.
+        overwrite: args.overwrite || (args.resume && run::folder::is_unfinished(&out)),
         out,
-        overwrite: args.overwrite,
         wait: args.wait,
         threads: args.threads.map(usize::from),
         frames: outputs::HAS_RENDER && !args.no_frames,
@@ -69,6 +84,7 @@ pub fn run(args: Args) -> Result<Ended> {
     let before = cautions::of_run(&scene, &run::assemble(&scene)?)?;
     before.iter().for_each(|caution| eprintln!("WARNING: {caution}"));
     let stop = interrupt::install()?;
+    args.time_limit.into_iter().for_each(interrupt::after);
     let summary = run::in_pool(options.threads, || {
         let mut progress = (!args.quiet).then(|| Progress::new(&scene.spec.stop));
         let watchers = progress.iter_mut().map(|bar| bar as &mut dyn Observer).collect();

@@ -8,6 +8,9 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::time::Duration;
 
+/// Whole numbers of TOML end here.
+const MOST_SEED: u64 = i64::MAX as u64;
+
 /// The scene and changes to it: what every command that loads a scene takes.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
@@ -20,7 +23,7 @@ pub struct SceneArgs {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Seed of the scatter; the same as --set seed=N
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MOST_SEED))]
     pub seed: Option<u64>,
     /// Refuse what needs more memory than this, such as 4GB [default: what is free]
     #[arg(long, value_name = "SIZE", value_parser = bytes)]

@@ -56,6 +56,16 @@ pub fn calibration(scene: &str) -> PathBuf {
     Path::new("out").join("calibration").join(scene)
 }
 
+/// Whether a run has kept a checkpoint in `run`, whole or not.
+pub fn has_checkpoint(run: &Path) -> bool {
+    SLOTS.iter().any(|slot| run.join(slot).is_file())
+}
+
+/// Whether a run was ended in `run` before it came to its end.
+pub fn is_unfinished(run: &Path) -> bool {
+    has_checkpoint(run) || partial::name(&run.join(TRAJECTORY)).is_file()
+}
+
 /// Every file that a run writes into its folder.
 fn files() -> impl Iterator<Item = &'static str> {
     tables::FILES.into_iter().chain([SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT])

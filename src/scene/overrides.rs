@@ -7,6 +7,7 @@ use super::place::{Part, scene_error};
 use super::suggest::nearest;
 use crate::base::error::{Error, Result};
 use crate::base::wording::counted;
+use std::num::IntErrorKind;
 use std::ops::Range;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
@@ -83,6 +84,10 @@ impl Override {
                 format!("this value is not TOML: {}", error.message()),
                 "close every bracket and quote; quote the whole option for the shell".into(),
             )),
+            Err(_) if text.parse::<i64>().is_err_and(|e| *e.kind() == IntErrorKind::PosOverflow) => {
+                let what = format!("{text} is too large for a whole number");
+                Err(self.error(Part::Value, what, format!("the largest is {}", i64::MAX)))
+            }
             Err(_) => Ok(Some(Value::from(text))),
         }
     }
