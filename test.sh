@@ -8,6 +8,7 @@ need_rust
 get_vulkan || printf '\n%s\nTests of frames will be SKIPPED.\n' "$WITHOUT_VULKAN"
 get_browser || printf '\nNo Chromium is here and none can be installed; tests of pages in a browser will be SKIPPED.\n'
 get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that need it will be SKIPPED.\n'
+get_readers || printf '\nPrograms that read exports cannot be installed here; tests that need them will be SKIPPED.\n'
 
 say "Shell syntax"
 for script in demo.sh test.sh .ci/run .ci/prepare.sh examples/peers/compare.sh; do
@@ -19,7 +20,7 @@ cargo fmt --check
 
 # The lean program is built first: the full one must be what is left in target/release.
 say "Every feature by itself, and none"
-for feature in "" report study cli record render; do
+for feature in "" report study cli export record render; do
     cargo clippy --release --locked --lib --no-default-features --features "$feature" -- -D warnings
 done
 
