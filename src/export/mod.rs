@@ -6,7 +6,7 @@
 
 mod lammps;
 #[cfg(feature = "export")]
-pub mod parquet;
+mod parquet;
 mod staged;
 #[cfg(feature = "export")]
 mod vtk;

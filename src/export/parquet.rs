@@ -186,7 +186,7 @@ impl Observer for Writer {
     }
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
-        for open in &mut self.open {
+        if let Some(open) = &mut self.open {
             open.wires.rupture(rupture);
             open.ruptures.push(rupture.clone());
         }
@@ -222,16 +222,20 @@ struct Table {
 impl Table {
     fn create<R>(path: &Path, run: &str, id: &str, columns: &[Column<R>]) -> Result<Self> {
         let file = File::create(path).map_err(|e| Error::io("cannot write", path, e))?;
-        let schema = Arc::new(Schema::new(columns.iter().map(field).collect::<Vec<_>>()));
         let units: BTreeMap<&str, &str> =
             columns.iter().filter(|c| !c.unit.is_empty()).map(|c| (&*c.name, &*c.unit)).collect();
         let units = serde_json::to_string(&units).expect("text is JSON");
         let version = env!("CARGO_PKG_VERSION");
-        let about = [("run", run), ("run_id", id), ("version", version), ("units", &units)]
-            .map(|(key, value)| KeyValue::new(format!("strandsnap.{key}"), value.to_owned()));
+        let about: BTreeMap<String, String> = [("run", run), ("run_id", id), ("version", version), ("units", &units)]
+            .map(|(key, value)| (format!("strandsnap.{key}"), value.to_owned()))
+            .into();
+        // Arrow's readers see what the schema carries, all others what the file does.
+        let pairs = about.iter().map(|(key, value)| KeyValue::new(key.clone(), value.clone())).collect();
+        let fields: Vec<Field> = columns.iter().map(field).collect();
+        let schema = Arc::new(Schema::new(fields).with_metadata(about.into_iter().collect()));
         let properties = WriterProperties::builder()
             .set_compression(Compression::LZ4_RAW)
-            .set_key_value_metadata(Some(about.to_vec()))
+            .set_key_value_metadata(Some(pairs))
             .build();
         let writer = ArrowWriter::try_new(BufWriter::new(file), schema.clone(), Some(properties));
         let writer = writer.map_err(|e| refused(path, e))?;

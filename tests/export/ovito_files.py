@@ -1,13 +1,13 @@
 """LAMMPS files and extended XYZ in OVITO: trajectories, bonds, broken ones. Writes a picture. Arguments: folder of the run,
-of the LAMMPS export, of the XYZ export, the picture."""
+of the LAMMPS export, of the XYZ export, the picture. Ends with 3 where all is well but nothing can be drawn."""
 
 import csv
 import sys
 
 import numpy
 from ovito.io import import_file
-from ovito.modifiers import ColorCodingModifier, DeleteSelectedModifier, ExpressionSelectionModifier, LoadTrajectoryModifier
-from ovito.vis import BondsVis, TachyonRenderer, Viewport
+from ovito.modifiers import AssignColorModifier, ColorCodingModifier, ExpressionSelectionModifier, LoadTrajectoryModifier
+from ovito.vis import TachyonRenderer, Viewport
 
 run, lammps, xyz, picture = sys.argv[1:]
 
@@ -71,23 +71,26 @@ assert set(numpy.flatnonzero(numpy.asarray(other.particles["broken"]))) == touch
 assert abs(other.attributes["time_s"] - end.attributes["Time"]) < 1e-9
 assert {kind.name for kind in other.particles.particle_types.types} >= {row["layer"] for row in wires}
 
-# A picture without a screen and without OpenGL: bonds as thick as the wires, coloured by stress; broken ones gone, the
-# particles beside them red.
-pipeline.modifiers.append(ExpressionSelectionModifier(operate_on="bonds", expression="state == 2"))
-pipeline.modifiers.append(DeleteSelectedModifier(operate_on={"bonds"}))
+# A picture without a screen: bonds as thick as the wires, coloured by stress, the broken ones red.
 pipeline.modifiers.append(ColorCodingModifier(operate_on="bonds", property="stress", gradient=ColorCodingModifier.Viridis()))
-shown = pipeline.compute(frames - 1).particles
-shown_bonds = shown.bonds
-assert shown_bonds.count == bonds - len(ruptures)
-pipeline.add_to_scene()
-pipeline.compute(frames - 1)
-start.particles.vis.enabled = False
-start.particles.bonds.vis.width = float(2 * radius.max())
+pipeline.modifiers.append(ExpressionSelectionModifier(operate_on="bonds", expression="state == 2"))
+pipeline.modifiers.append(AssignColorModifier(operate_on="bonds", color=(1, 0.1, 0.1)))
+shown = pipeline.compute(frames - 1).particles.bonds
+assert numpy.count_nonzero(shown.selection) == len(ruptures)
 pipeline.source.data.particles.vis.enabled = False
 pipeline.source.data.particles.bonds.vis.width = float(2 * radius.max())
-pipeline.source.data.particles.bonds.vis.color_mode = BondsVis.ColorMode.ByBondType if False else BondsVis.ColorMode.Uniform
 pipeline.source.data.cell.vis.enabled = False
+pipeline.add_to_scene()
 view = Viewport(type=Viewport.Type.Ortho, camera_dir=(-3, -1, 0), camera_up=(0, 1, 0))
-view.zoom_all()
-view.render_image(filename=picture, size=(1200, 600), frame=frames - 1, background=(1, 1, 1), renderer=TachyonRenderer())
+view.zoom_all(size=(1200, 300))
+# The strand has become longer since the first frame.
+view.fov *= 1.15
+try:
+    view.render_image(
+        filename=picture, size=(1200, 300), frame=frames - 1, background=(1, 1, 1), renderer=TachyonRenderer()
+    )
+except RuntimeError as error:
+    # OVITO asks for a Vulkan driver even where Tachyon draws.
+    print(f"no picture: {error}")
+    sys.exit(3)
 print(f"{frames} frames, {len(ruptures)} broken bonds, picture in {picture}")
