@@ -67,6 +67,17 @@ get_browser() {
     install_packages "No browser: installing Chromium, which opens the pages of runs in tests" chromium
 }
 
+# Programs that read exports, as Python packages in .venv; sets READERS_PYTHON when they are there.
+get_readers() {
+    local packages=(pyarrow==26.0.1 pandas==3.1.1 polars==2.1.0 duckdb==2.0.1 vtk==9.7.2 ovito==3.17.2)
+    local try="import pyarrow, pandas, polars, duckdb, vtk, ovito"
+    if ! .venv/bin/python -c "$try" 2>/dev/null; then
+        say "Installing programs that read exports into .venv (${packages[*]})"
+        python3 -m venv .venv && .venv/bin/pip install -q "${packages[@]}" && .venv/bin/python -c "$try" || return 1
+    fi
+    export READERS_PYTHON="$PWD/.venv/bin/python"
+}
+
 # Rerun's own tool in .venv, in the version that Cargo.lock names; sets RERUN_CLI when it is there.
 get_rerun() {
     local version

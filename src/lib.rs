@@ -25,6 +25,7 @@
 //! - [`run`]: one run from scene to results
 //! - [`page`]: the HTML page of a run (feature `report`)
 //! - [`study`]: many runs (feature `study`)
+//! - [`export`]: a run in files that other programs open (feature `export`: Parquet and VTK)
 //! - `explore`: an interactive picture of a run (feature `explore`)
 //! - [`cli`]: the command line (feature `cli`)
 //!
@@ -65,6 +66,8 @@ pub mod cli;
 pub mod engine;
 #[cfg(feature = "explore")]
 pub mod explore;
+#[warn(missing_docs)]
+pub mod export;
 #[warn(missing_docs)]
 pub mod law;
 pub mod manual;

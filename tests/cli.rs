@@ -186,13 +186,13 @@ fn a_plan_names_size_step_and_cost() {
 }
 
 #[test]
-fn centre_lines_are_exported_once() {
+fn centre_lines_are_written_once() {
     let folder = tempfile::tempdir().unwrap();
-    assert_code(&strandsnap(folder.path(), &["export", "strand-1x7", "lines.txt"]), 0);
+    assert_code(&strandsnap(folder.path(), &["scene", "centrelines", "strand-1x7", "lines.txt"]), 0);
     let text = fs::read_to_string(folder.path().join("lines.txt")).unwrap();
     assert!(text.lines().count() > 7, "{text}");
-    assert_code(&strandsnap(folder.path(), &["export", "strand-1x7", "lines.txt"]), 2);
-    assert_code(&strandsnap(folder.path(), &["export", "strand-1x7", "lines.txt", "--overwrite"]), 0);
+    assert_code(&strandsnap(folder.path(), &["scene", "centrelines", "strand-1x7", "lines.txt"]), 2);
+    assert_code(&strandsnap(folder.path(), &["scene", "centrelines", "strand-1x7", "lines.txt", "--overwrite"]), 0);
 }
 
 #[test]

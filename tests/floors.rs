@@ -19,7 +19,7 @@ const FLOORS: [&[&str]; 13] = [
     &["observe"],
     &["render"],
     &["run"],
-    &["page"],
+    &["page", "export"],
     &["study"],
     &["explore"],
     &["cli"],

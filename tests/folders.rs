@@ -164,7 +164,7 @@ fn what_is_no_file_is_neither_read_nor_replaced() {
     symlink(at("b/curve.csv"), at("link.txt")).unwrap();
     let curve = fs::read(at("b/curve.csv")).unwrap();
     for (file, kind) in [("pipe", "a pipe"), ("link.txt", "a link"), ("a", "a folder"), ("/dev/full", "a device")] {
-        assert_refused(&call(&["export", "single-wire", file, "--overwrite"]), &[kind]);
+        assert_refused(&call(&["scene", "centrelines", "single-wire", file, "--overwrite"]), &[kind]);
         assert_refused(&call(&["report", "b", "--overwrite", "--out", file]), &[kind]);
     }
     assert!(fs::symlink_metadata("/dev/full").unwrap().file_type().is_char_device());
@@ -261,10 +261,9 @@ fn sizes_beyond_memory_are_refused_at_their_key() {
     assert_refused(&check("ka4", &["--memory", "10MB"]), &["of 10 MB"]);
     let long = "wire.0.to=[\"0 mm\", \"0 mm\", \"1e18 mm\"]";
     assert_refused(&check("single-wire", &["--set", long]), &["at most 100 km"]);
-    for command in ["run", "plan", "export"] {
-        let more: &[&str] = if command == "export" { &["points.txt"] } else { &[] };
+    for (command, more) in [(&["run"][..], &[][..]), (&["plan"], &[]), (&["scene", "centrelines"], &["points.txt"])] {
         let huge = ["ka4", "--set", "strand.length=9 km", "--memory", "4GB"];
-        assert_refused(&strandsnap(folder.path(), &[&[command], &huge[..], more].concat()), &["`strand.length`"]);
+        assert_refused(&strandsnap(folder.path(), &[command, &huge, more].concat()), &["`strand.length`"]);
     }
 }
 

@@ -414,6 +414,9 @@ fn commands(count: u32) {
         "fine",
         "--json",
         "--anyway",
+        "--format",
+        "lammps",
+        "centrelines",
     ];
     // A command first, or hardly anything is looked at.
     let strategy = (0..13_usize, prop::collection::vec(0..words.len(), 0..8));

@@ -9,6 +9,7 @@ mod accuracy;
 mod animation;
 mod calibrate;
 mod cases;
+mod centrelines;
 mod check_run;
 #[cfg(feature = "render")]
 mod counted;
@@ -70,7 +71,7 @@ enum Command {
     Render(render::Args),
     /// Write the recording of a finished run again, without simulating
     Record(record::Args),
-    /// Write the wires' centre lines of a scene to a text file
+    /// Write a finished run in files that other programs open: Parquet, VTK, LAMMPS, extended XYZ
     Export(export::Args),
     /// Fit a pulled scene's hardening and rupture strain to the strength and elongation of one tensile test
     Calibrate(calibrate::Args),
@@ -129,7 +130,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Resume(args) => resume::resume(&args),
         Command::Plan(args) => plan::plan(&args).map(|()| Ended::Well),
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
-        Command::Export(args) => export::export(&args).map(|()| Ended::Well),
+        Command::Export(args) => export::export(args),
         Command::Calibrate(args) => calibrate::run(&args),
         Command::Accuracy(args) => accuracy::accuracy(&args),
         Command::Study(args) => study::study(&args),

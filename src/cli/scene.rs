@@ -1,8 +1,8 @@
-//! `strandsnap scene list|show|check|keys|new`.
+//! `strandsnap scene list|show|check|keys|new|centrelines`.
 
-use super::keys;
 use super::say::{self, say};
 use super::values::SceneArgs;
+use super::{centrelines, keys};
 use crate::base::error::{Error, Result};
 use crate::base::wording::counted;
 use crate::run::{self, cautions};
@@ -28,6 +28,8 @@ pub enum Command {
     Check(SceneArgs),
     /// List the keys of a scene, each with what may be written, its unit, default and meaning
     Keys(keys::Args),
+    /// Write the wires' centre lines of a scene to a text file, which a scene can read back
+    Centrelines(centrelines::Args),
     /// Start a scene of one's own from a built-in one, comments included
     New {
         /// The file to write, such as my-strand or my-strand.toml; never replaces one
@@ -44,6 +46,7 @@ pub fn scene(command: &Command) -> Result<()> {
         Command::Show { name } => show(name),
         Command::Check(args) => check(args),
         Command::Keys(args) => keys::print(args),
+        Command::Centrelines(args) => centrelines::write(args),
         Command::New { name, from } => new(name, from),
     }
 }

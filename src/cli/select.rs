@@ -1,4 +1,4 @@
-//! The options that choose among the snapshots of a finished run, for `render` and `record` alike.
+//! The options that choose among the snapshots of a finished run, for `render`, `record` and `export` alike.
 
 use super::values::strain_range;
 use crate::run::replay::Selection;
@@ -7,13 +7,13 @@ use crate::run::replay::Selection;
 #[derive(Debug, clap::Args)]
 pub struct SelectArgs {
     /// Only snapshots in this range of strain, in per cent, such as 20..26
-    #[arg(long, value_name = "A..B", value_parser = strain_range)]
+    #[arg(long, visible_alias = "strain", value_name = "A..B", value_parser = strain_range)]
     strain_range: Option<[f64; 2]>,
     /// Only the last state before and the first one after each rupture, the first and the last
     #[arg(long)]
     events: bool,
     /// Only every Nth of the snapshots
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, visible_alias = "stride", value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
 }
 

@@ -2,6 +2,7 @@
 
 pub mod animation;
 pub mod colouring;
+pub mod column;
 pub mod files;
 pub mod guard;
 pub mod limits;

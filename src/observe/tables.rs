@@ -1,13 +1,15 @@
 //! `curve.csv`, `wires.csv` and `ruptures.csv`.
 //!
-//! Wires and bonds are numbered from 1, layers by name; units stand in the column names.
+//! Wires and bonds are numbered from 1, layers by name; units stand in the column names. What the columns are is said once,
+//! in [`curve`], [`wires`] and [`ruptures`], from which other formats take them too.
 
 use super::Observer;
+use super::column::{Column, Value};
 use super::files::LiveTable;
 use super::peaks::{Peak, Peaks};
 use crate::base::error::Result;
 use crate::base::units::{mm, mpa, newton_mm, percent};
-use crate::engine::view::{Energy, RunInfo, Rupture, RuptureCause, Sample};
+use crate::engine::view::{Energy, RunInfo, Rupture, RuptureCause, Sample, WireInfo};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -22,18 +24,61 @@ pub struct Tables {
 }
 
 struct Open {
+    curve: (LiveTable, Vec<Column<'static, Sample>>),
+    ruptures: (LiveTable, Vec<Column<'static, Rupture>>),
+    wires: Wires,
+}
+
+/// What the rows of `wires.csv` are gathered from.
+pub struct Wires {
     info: Arc<RunInfo>,
-    curve: LiveTable,
-    ruptures: LiveTable,
-    wires: Vec<WireRecord>,
+    first_rupture: Vec<Option<Rupture>>,
     /// Greatest stress of each wire over all steps.
     peaks: Vec<Peak>,
 }
 
-/// What `wires.csv` says of a wire.
-#[derive(Default, Clone)]
-struct WireRecord {
-    first_rupture: Option<Rupture>,
+/// A row of `wires.csv`.
+pub struct WireRow<'a> {
+    /// Wire, from 0.
+    pub number: usize,
+    /// What it is.
+    pub wire: &'a WireInfo,
+    /// Name of its layer.
+    pub layer: &'a str,
+    /// Its greatest stress at mid-gauge; `None` where none was measured.
+    pub peak: Option<&'a Peak>,
+    /// Where it broke first.
+    pub first_rupture: Option<&'a Rupture>,
+}
+
+impl Wires {
+    /// Of a run that begins.
+    pub fn new(info: &Arc<RunInfo>) -> Self {
+        Self { info: info.clone(), first_rupture: vec![None; info.wires.len()], peaks: Vec::new() }
+    }
+
+    /// A bond broke.
+    pub fn rupture(&mut self, rupture: &Rupture) {
+        if let Some(first) = self.first_rupture.get_mut(rupture.wire) {
+            first.get_or_insert_with(|| rupture.clone());
+        }
+    }
+
+    /// The greatest stresses are known.
+    pub fn peaks(&mut self, peaks: &Peaks) {
+        self.peaks.clone_from(&peaks.wires);
+    }
+
+    /// A row per wire.
+    pub fn rows(&self) -> impl Iterator<Item = WireRow<'_>> {
+        self.info.wires.iter().enumerate().map(|(number, wire)| WireRow {
+            number,
+            wire,
+            layer: layer_name(&self.info, wire.layer),
+            peak: self.peaks.get(number),
+            first_rupture: self.first_rupture[number].as_ref(),
+        })
+    }
 }
 
 impl Tables {
@@ -45,37 +90,30 @@ impl Tables {
 
 impl Observer for Tables {
     fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
-        let create = |name: &str, header: Vec<String>| LiveTable::create(self.folder.join(name), &header);
+        let at = |name: &str| self.folder.join(name);
         self.open = Some(Open {
-            info: info.clone(),
-            curve: create(FILES[0], curve_header(info))?,
-            ruptures: create(FILES[2], rupture_header())?,
-            wires: vec![WireRecord::default(); info.wires.len()],
-            peaks: Vec::new(),
+            curve: table(at(FILES[0]), curve(info))?,
+            ruptures: table(at(FILES[2]), ruptures(info))?,
+            wires: Wires::new(info),
         });
         Ok(())
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
-        let Some(open) = &mut self.open else {
-            return Ok(());
-        };
-        open.curve.row(&curve_row(sample, open.info.layers.len()))
+        self.open.as_mut().map_or(Ok(()), |open| row(&mut open.curve, sample))
     }
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
         let Some(open) = &mut self.open else {
             return Ok(());
         };
-        if let Some(record) = open.wires.get_mut(rupture.wire) {
-            record.first_rupture.get_or_insert_with(|| rupture.clone());
-        }
-        open.ruptures.row(&rupture_row(rupture, &open.info))
+        open.wires.rupture(rupture);
+        row(&mut open.ruptures, rupture)
     }
 
     fn peaks(&mut self, peaks: &Peaks) -> Result<()> {
         if let Some(open) = &mut self.open {
-            open.peaks = peaks.wires.clone();
+            open.wires.peaks(peaks);
         }
         Ok(())
     }
@@ -84,13 +122,28 @@ impl Observer for Tables {
         let Some(open) = self.open.take() else {
             return Ok(());
         };
-        let mut wires = LiveTable::create(self.folder.join(FILES[1]), &wire_header())?;
-        for (w, record) in open.wires.iter().enumerate() {
-            wires.row(&wire_row(w, record, open.peaks.get(w), &open.info))?;
-        }
-        open.curve.finish()?;
-        wires.finish()?;
-        open.ruptures.finish()
+        let mut wires = table(self.folder.join(FILES[1]), wires())?;
+        open.wires.rows().try_for_each(|wire| row(&mut wires, &wire))?;
+        open.curve.0.finish()?;
+        wires.0.finish()?;
+        open.ruptures.0.finish()
+    }
+}
+
+/// A table with its columns, created with its header.
+fn table<R>(path: PathBuf, columns: Vec<Column<'static, R>>) -> Result<(LiveTable, Vec<Column<'static, R>>)> {
+    let header: Vec<String> = columns.iter().map(|column| column.name.to_string()).collect();
+    Ok((LiveTable::create(path, &header)?, columns))
+}
+
+fn row<R>((table, columns): &mut (LiveTable, Vec<Column<R>>), of: &R) -> Result<()> {
+    table.row(&columns.iter().map(|column| cell(column.value(of))).collect::<Vec<_>>())
+}
+
+fn cell(value: Value) -> String {
+    match value {
+        Value::Number(value) => number(value),
+        other => other.in_csv(),
     }
 }
 
@@ -119,140 +172,104 @@ fn number(value: f64) -> String {
     }
 }
 
-fn owned<const N: usize>(cells: [&str; N]) -> Vec<String> {
-    cells.map(String::from).to_vec()
-}
+/// What becomes of energy: name, meaning, value.
+type EnergyTerm = (&'static str, &'static str, fn(&Energy) -> f64);
 
-fn energies(e: &Energy) -> [(&'static str, f64); 11] {
-    [
-        ("work_j", e.work),
-        ("kinetic_j", e.kinetic),
-        ("elastic_bonds_j", e.elastic_bonds),
-        ("elastic_contacts_j", e.elastic_contacts),
-        ("plastic_bonds_j", e.plastic_bonds),
-        ("plastic_contacts_j", e.plastic_contacts),
-        ("plastic_thinning_j", e.plastic_thinning),
-        ("friction_j", e.friction),
-        ("damping_j", e.damping),
-        ("released_j", e.released),
-        ("residual_j", e.residual()),
-    ]
-}
+const ENERGIES: [EnergyTerm; 11] = [
+    ("work_j", "work done by grips, holds and applied loads, and the energy at the start", |e| e.work),
+    ("kinetic_j", "kinetic energy", |e| e.kinetic),
+    ("elastic_bonds_j", "elastic energy in bonds", |e| e.elastic_bonds),
+    ("elastic_contacts_j", "elastic energy in contacts", |e| e.elastic_contacts),
+    ("plastic_bonds_j", "plastic work in bonds", |e| e.plastic_bonds),
+    ("plastic_contacts_j", "plastic work in contacts", |e| e.plastic_contacts),
+    ("plastic_thinning_j", "work of contact pressure on wires that thin", |e| e.plastic_thinning),
+    ("friction_j", "lost to friction", |e| e.friction),
+    ("damping_j", "lost to viscous damping", |e| e.damping),
+    ("released_j", "released by rupture", |e| e.released),
+    ("residual_j", "what the ledger does not account for", Energy::residual),
+];
 
-fn curve_header(info: &RunInfo) -> Vec<String> {
-    let mut header = owned([
-        "step",
-        "time_s",
-        "strain_percent",
-        "stress_mpa",
-        "grip_force_lower_n",
-        "grip_force_upper_n",
-        "torque_n_mm",
-    ]);
-    header.extend(info.layers.iter().map(|name| format!("stress_{}_mpa", name.replace(' ', "_"))));
-    header.extend(owned(["wires_broken", "bonds_broken", "contacts", "time_step_s"]));
-    header.extend(energies(&Energy::default()).map(|(name, _)| name.to_string()));
-    header
-}
-
-fn curve_row(sample: &Sample, layers: usize) -> Vec<String> {
-    let mut row = vec![
-        sample.step.to_string(),
-        number(sample.time),
-        number(percent(sample.strain)),
-        number(mpa(sample.stress)),
-        number(sample.grip_force[0]),
-        number(sample.grip_force[1]),
-        number(newton_mm(sample.torque)),
+/// The columns of `curve.csv`.
+pub fn curve(info: &RunInfo) -> Vec<Column<'static, Sample>> {
+    type S = Sample;
+    let mut columns = vec![
+        Column::described("step", "", "step of the engine", |s: &S| s.step),
+        Column::described("time_s", "s", "simulated time", |s: &S| s.time),
+        Column::described("strain_percent", "%", "grip displacement over free length", |s: &S| percent(s.strain)),
+        Column::described("stress_mpa", "MPa", "nominal stress of the body", |s: &S| mpa(s.stress)),
+        Column::described("grip_force_lower_n", "N", "force of the lower grip", |s: &S| s.grip_force[0]),
+        Column::described("grip_force_upper_n", "N", "force of the upper grip", |s: &S| s.grip_force[1]),
+        Column::described("torque_n_mm", "N mm", "torque about z on the upper grip", |s: &S| newton_mm(s.torque)),
     ];
-    // Free bodies have layers but no gauge to measure a stress in: the cell stays empty.
-    row.extend((0..layers).map(|k| match sample.layer_stress.get(k) {
-        Some(&stress) => number(mpa(stress)),
-        None => String::new(),
+    columns.extend(info.layers.iter().enumerate().map(|(layer, name)| {
+        let column = format!("stress_{}_mpa", name.replace(' ', "_"));
+        let about = format!("mean nominal stress at mid-gauge of the wires of layer {name}");
+        // Free bodies have layers but no gauge to measure a stress in: the cell stays empty.
+        Column::described(column, "MPa", about, move |s: &S| s.layer_stress.get(layer).map(|stress| mpa(*stress)))
     }));
-    row.extend([
-        sample.wires_broken.to_string(),
-        sample.bonds_broken.to_string(),
-        sample.contacts.to_string(),
-        number(sample.time_step),
+    columns.extend([
+        Column::described("wires_broken", "", "wires broken so far", |s: &S| s.wires_broken),
+        Column::described("bonds_broken", "", "bonds broken so far", |s: &S| s.bonds_broken),
+        Column::described("contacts", "", "active contacts", |s: &S| s.contacts),
+        Column::described("time_step_s", "s", "time step", |s: &S| s.time_step),
     ]);
-    row.extend(energies(&sample.energy).map(|(_, value)| number(value)));
-    row
+    let energy = |(name, about, of): EnergyTerm| Column::described(name, "J", about, move |s: &S| of(&s.energy));
+    columns.extend(ENERGIES.map(energy));
+    columns
 }
 
-fn rupture_header() -> Vec<String> {
-    owned([
-        "order",
-        "step",
-        "time_s",
-        "strain_percent",
-        "wire",
-        "layer",
-        "bond",
-        "z_mm",
-        "rest_z_mm",
-        "cause",
-        "stress_mpa",
-        "body_stress_mpa",
-    ])
-}
-
-fn rupture_row(rupture: &Rupture, info: &RunInfo) -> Vec<String> {
+/// The columns of `ruptures.csv`.
+pub fn ruptures(info: &RunInfo) -> Vec<Column<'static, Rupture>> {
+    type R = Rupture;
+    let layers = info.layers.clone();
+    let layer = move |r: &R| layers.get(r.layer).cloned().unwrap_or_default();
     vec![
-        rupture.order.to_string(),
-        rupture.step.to_string(),
-        number(rupture.time),
-        number(percent(rupture.strain)),
-        (rupture.wire + 1).to_string(),
-        layer_name(info, rupture.layer).to_string(),
-        (rupture.bond_in_wire + 1).to_string(),
-        number(mm(rupture.position[2])),
-        number(mm(rupture.rest_z)),
-        cause(rupture.cause).to_string(),
-        number(mpa(rupture.stress)),
-        number(mpa(rupture.body_stress)),
+        Column::described("order", "", "order of the rupture in the run, from 1", |r: &R| r.order),
+        Column::described("step", "", "step of the engine", |r: &R| r.step),
+        Column::described("time_s", "s", "simulated time", |r: &R| r.time),
+        Column::described("strain_percent", "%", "strain of the body", |r: &R| percent(r.strain)),
+        Column::described("wire", "", "number of the wire, from 1", |r: &R| r.wire + 1),
+        Column::described("layer", "", "layer of the wire", layer),
+        Column::described("bond", "", "number of the bond along its wire, from 1", |r: &R| r.bond_in_wire + 1),
+        Column::described("z_mm", "mm", "z of the bond's centre when it broke", |r: &R| mm(r.position[2])),
+        Column::described("rest_z_mm", "mm", "z of the bond's centre before loading", |r: &R| mm(r.rest_z)),
+        Column::described("cause", "", "why it broke", |r: &R| cause(r.cause)),
+        Column::described("stress_mpa", "MPa", "true axial stress of the bond just before", |r: &R| mpa(r.stress)),
+        Column::described("body_stress_mpa", "MPa", "nominal stress of the body just before", |r: &R| {
+            mpa(r.body_stress)
+        }),
     ]
 }
 
-fn wire_header() -> Vec<String> {
-    owned([
-        "wire",
-        "layer",
-        "diameter_mm",
-        "greatest_stress_mpa",
-        "strain_at_greatest_stress_percent",
-        "broken",
-        "first_rupture_z_mm",
-        "first_rupture_strain_percent",
-        "first_rupture_order",
-        "first_rupture_cause",
-    ])
-}
-
-/// The greatest stress is that of the wire at mid-gauge: a wire that broke elsewhere, or not at all, may carry more.
-fn wire_row(w: usize, record: &WireRecord, peak: Option<&Peak>, info: &RunInfo) -> Vec<String> {
-    let wire = &info.wires[w];
-    let (greatest, strain) = match peak {
-        Some(peak) => (number(mpa(peak.stress)), number(percent(peak.strain))),
-        None => (String::new(), String::new()),
-    };
-    let broken = if record.first_rupture.is_some() { "yes" } else { "no" };
-    let mut row = vec![
-        (w + 1).to_string(),
-        layer_name(info, wire.layer).to_string(),
-        (mm(wire.diameter) as f32).to_string(),
-        greatest,
-        strain,
-        broken.to_string(),
-    ];
-    match &record.first_rupture {
-        Some(r) => row.extend([
-            number(mm(r.position[2])),
-            number(percent(r.strain)),
-            r.order.to_string(),
-            cause(r.cause).to_string(),
-        ]),
-        None => row.extend(owned([""; 4])),
+/// The columns of `wires.csv`. The greatest stress is that of the wire at mid-gauge: a wire that broke elsewhere, or not at
+/// all, may carry more.
+pub fn wires<'a>() -> Vec<Column<'static, WireRow<'a>>> {
+    fn peak(of: fn(&Peak) -> f64) -> impl Fn(&WireRow) -> Option<f64> {
+        move |row| row.peak.map(of)
     }
-    row
+    fn first<T>(of: fn(&Rupture) -> T) -> impl Fn(&WireRow) -> Option<T> {
+        move |row| row.first_rupture.map(of)
+    }
+    vec![
+        Column::described("wire", "", "number of the wire, from 1", |w: &WireRow| w.number + 1),
+        Column::described("layer", "", "its layer", |w: &WireRow| w.layer.to_owned()),
+        Column::described("diameter_mm", "mm", "its diameter before loading", |w: &WireRow| mm(w.wire.diameter)),
+        Column::described(
+            "greatest_stress_mpa",
+            "MPa",
+            "its greatest nominal stress at mid-gauge",
+            peak(|p| mpa(p.stress)),
+        ),
+        Column::described(
+            "strain_at_greatest_stress_percent",
+            "%",
+            "strain of the body then",
+            peak(|p| percent(p.strain)),
+        ),
+        Column::described("broken", "", "whether it broke", |w: &WireRow| w.first_rupture.is_some()),
+        Column::described("first_rupture_z_mm", "mm", "z of its first rupture", first(|r| mm(r.position[2]))),
+        Column::described("first_rupture_strain_percent", "%", "strain of the body then", first(|r| percent(r.strain))),
+        Column::described("first_rupture_order", "", "order of that rupture in the run", first(|r| r.order)),
+        Column::described("first_rupture_cause", "", "why it broke", first(|r| cause(r.cause))),
+    ]
 }

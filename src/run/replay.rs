@@ -4,6 +4,7 @@ use super::folder::TRAJECTORY;
 use super::identity::Doubt;
 use crate::base::error::{Error, Result};
 use crate::engine::view::RunInfo;
+use crate::observe::origin::Origin;
 use crate::observe::trajectory::{Record, Trajectory};
 use crate::observe::{Observer, partial};
 use std::io::ErrorKind;
@@ -65,6 +66,7 @@ impl Selection {
 /// A run whose snapshots were looked through and chosen from.
 pub struct Replay {
     file: PathBuf,
+    origin: Origin,
     shown: Vec<bool>,
     /// Records that can be read: all, unless the run was cut off.
     records: usize,
@@ -86,7 +88,9 @@ impl Replay {
         let file = trajectory_of(run)?;
         let (mut moments, mut records, mut cut_off, mut broke) = (Vec::new(), 0, None, false);
         let mut first_break = None;
-        for record in Trajectory::open(&file)? {
+        let trajectory = Trajectory::open(&file)?;
+        let origin = trajectory.origin();
+        for record in trajectory {
             match record {
                 Ok(Record::Rupture(rupture)) => {
                     broke = true;
@@ -111,7 +115,7 @@ impl Replay {
                 ),
             });
         }
-        Ok(Self { file, shown, records, cut_off, first_break, doubted: false })
+        Ok(Self { file, origin, shown, records, cut_off, first_break, doubted: false })
     }
 
     /// Says with everything that is shown that files of the run are doubtful, if there are such `doubts`.
@@ -127,6 +131,11 @@ impl Replay {
             true => own.clone(),
             false => Arc::new(RunInfo { name: format!("{} ({})", own.name, marks.join(", ")), ..own.as_ref().clone() }),
         }
+    }
+
+    /// Which run it is.
+    pub fn origin(&self) -> Origin {
+        self.origin
     }
 
     /// How many snapshots are selected.
