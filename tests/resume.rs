@@ -28,11 +28,11 @@ hardness_strain = "8 %"
 [strand]
 length = "8 mm"
 [[strand.layer]]
-count = 1
-diameter = "0.39 mm"
+wires = 1
+wire_diameter = "0.39 mm"
 [[strand.layer]]
-count = 5
-diameter = "0.39 mm"
+wires = 5
+wire_diameter = "0.39 mm"
 pitch = "12 mm"
 [grip]
 length = "0.8 mm"
@@ -212,8 +212,8 @@ fn an_engine_goes_on_to_the_bit_whatever_it_computes() {
     );
     goes_on_alike(&change("speed = \"20 m/s\"", "speed = \"20 m/s\"\nfree_rotation = true"), 300, 200);
     // One wire, whose contacts come in when it breaks.
-    let wire = change("count = 1", "count = 1 # alone");
-    let second = wire.find("[[strand.layer]]\ncount = 5").unwrap();
+    let wire = change("wires = 1", "wires = 1 # alone");
+    let second = wire.find("[[strand.layer]]\nwires = 5").unwrap();
     let grip = wire.find("[grip]").unwrap();
     goes_on_alike(&[&wire[..second], &wire[grip..]].concat(), 1300, 400);
 }
