@@ -11,7 +11,7 @@ use strandsnap::run;
 
 /// Two layers that break, rub and yield within seconds, pulled adaptively.
 const STRAND: &str = r#"
-name = "small"
+about = "Six wires pulled to fracture."
 seed = 3
 [material]
 density = "8960 kg/m^3"

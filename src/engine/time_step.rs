@@ -186,7 +186,7 @@ impl Stiffness {
         (0..parts).for_each(|part| elements(part, &mut add));
         let found = (0..parts).into_par_iter().map(|part| {
             let mut worst = Worst::default();
-            elements(part, &mut |e| worst = worst.with(self.worst(e, state, resolution, &held)));
+            elements(part, &mut |e| self.look_at(&e, state, resolution, &held, &mut worst));
             worst
         });
         let found = found.reduce(Worst::default, Worst::with);
@@ -205,14 +205,18 @@ impl Stiffness {
         }
     }
 
-    /// How one element limits the step.
-    fn worst(&self, e: Element, state: &State, resolution: f64, held: &impl Fn(usize) -> bool) -> Worst {
-        let (eigenvalue, mode) = self.element(&e, state, held);
-        let stiffest = (eigenvalue > 0.0).then_some((eigenvalue, mode, e));
+    /// Takes in how one element limits the step; the first of equals stays.
+    fn look_at(&self, e: &Element, state: &State, resolution: f64, held: &impl Fn(usize) -> bool, worst: &mut Worst) {
+        let (eigenvalue, mode) = self.element(e, state, held);
+        if eigenvalue > worst.stiffest.as_ref().map_or(0.0, |(most, ..)| *most) {
+            worst.stiffest = Some((eigenvalue, mode, *e));
+        }
+        worst.damping = worst.damping.max(self.damping(e, state, held));
         // A pair of held particles never moves.
         let frequency = if e.bond { 0.0 } else { e.pair_frequency(state, held) };
-        let shortest = (frequency > 0.0).then_some((resolution / frequency, e));
-        Worst { stiffest, damping: self.damping(&e, state, held), shortest }
+        if frequency > 0.0 && worst.shortest.as_ref().is_none_or(|(least, _)| resolution / frequency < *least) {
+            worst.shortest = Some((resolution / frequency, *e));
+        }
     }
 
     /// Largest eigenvalue of damping over mass that one element can have (1/s), with shares as for stiffness.
