@@ -11,6 +11,7 @@
 //! on a scene whose wires touch from the start, such as `--scene examples/peers/strand.toml --lengths 1,10,100`.
 
 mod counted;
+mod loops;
 mod machine;
 mod measure;
 mod memory;

@@ -3,7 +3,7 @@
 use crate::machine::Machine;
 use crate::roofline::{self, Limits};
 use crate::work::Work;
-use crate::{Args, memory};
+use crate::{Args, loops, memory};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 use strandsnap::base::error::Result;
@@ -33,6 +33,8 @@ pub struct Row {
     /// Processor time of all threads; none where the system does not tell.
     pub cpu_ms_per_step: Option<f64>,
     pub particle_steps_per_s: f64,
+    /// A step's parallel loops with nothing to do in them (ms).
+    pub empty_loops_ms: f64,
     /// Milliseconds per step.
     pub stages: Stages<f64>,
     /// What the machine would need at the least.
@@ -149,9 +151,10 @@ pub fn rows(args: &Args, factor: f64) -> Result<Vec<Row>> {
     // The machine comes last: what it needs for that must not count as the engine's peak.
     let rows = args.threads.iter().zip(measured).map(|(threads, timed)| {
         let machine = Machine::measure(*threads, bytes.kept());
-        row(args, factor, *threads, &scene.spec, &engine, &timed, &bytes, &machine, pull, peak)
+        let empty_loops = loops::empty(*threads, engine.assembly().len())?;
+        Ok(row(args, factor, *threads, &scene.spec, &engine, &timed, &bytes, &machine, empty_loops, pull, peak))
     });
-    Ok(rows.collect())
+    rows.collect()
 }
 
 /// An engine in full contact, and what its way there was like.
@@ -219,6 +222,7 @@ fn row(
     timed: &Timed,
     bytes: &StageBytes,
     machine: &Machine,
+    empty_loops: f64,
     pull: Option<Pull>,
     peak: Option<u64>,
 ) -> Row {
@@ -238,6 +242,7 @@ fn row(
         ms_per_step: timed.seconds * 1e3 * per_step,
         cpu_ms_per_step: timed.cpu.map(|seconds| seconds * 1e3 * per_step),
         particle_steps_per_s: particles as f64 / (timed.seconds * per_step),
+        empty_loops_ms: empty_loops * 1e3,
         stages: Stages {
             integrate: ms(t.integrate),
             bonds: ms(t.bonds),

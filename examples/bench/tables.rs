@@ -34,6 +34,14 @@ fn times(rows: &[Row]) {
         r.stages.named().iter().for_each(|(_, ms)| print!("  {ms:>10.4}"));
         println!();
     }
+    for r in rows {
+        println!(
+            "{:>5}× {:>7} a step's parallel loops take {:.1} µs to start and to end",
+            r.length_factor,
+            r.threads,
+            r.empty_loops_ms * 1e3
+        );
+    }
 }
 
 /// A time per particle-step over that of the first length on as many threads (-).

@@ -44,12 +44,13 @@ use memory::StageBytes;
 use monitor::{Action, Monitor};
 use neighbours::Neighbours;
 use pulp::Arch;
+use rayon::prelude::*;
 use rupture::RuptureCheck;
 use saved::{Reader, Unfit, Writer};
-use state::State;
+use state::{CHUNK, State};
 use std::time::Instant;
 use step_view::StepView;
-use time_step::{Bound, Stiffness};
+use time_step::{Bound, Element, Stiffness};
 pub use timings::Timings;
 use view::{Energy, Findings, RunInfo, Rupture, Sample, Snapshot};
 
@@ -292,16 +293,19 @@ impl Engine {
     /// Follows the bound on the stable step.
     fn choose_step(&mut self) -> Result<()> {
         let began = Instant::now();
-        self.stiffness.clear();
-        if let Some(bonds) = &self.bonds {
-            bonds.stiffness(&self.state, &mut self.stiffness);
-        }
-        if let Some(c) = &self.contacts {
-            let horizon = BOUND_INTERVAL as f64 * self.next_dt;
-            c.stage.stiffness(&self.state, horizon, &mut self.stiffness);
-        }
-        let hold = &self.state.hold;
-        self.bound = self.stiffness.bound(&self.state, self.spec.time.contact_resolution, |p| hold[p] != 0);
+        let (state, bonds, contacts) = (&self.state, self.bonds.as_deref(), self.contacts.as_ref());
+        let (chunks, horizon) = (state.len().div_ceil(CHUNK), BOUND_INTERVAL as f64 * self.next_dt);
+        // The laws of contacts are asked once; what follows from their answers is cheap, and made twice.
+        let stiffness = |chunk: usize| contacts.map_or_else(Vec::new, |c| c.stage.stiffness(state, chunk, horizon));
+        let stiffness: Vec<_> = (0..chunks).into_par_iter().map(stiffness).collect();
+        // All bonds come before all contacts.
+        let elements = |part: usize, each: &mut dyn FnMut(Element)| match (part.checked_sub(chunks), bonds, contacts) {
+            (None, Some(bonds), _) => bonds.elements(state, part, each),
+            (Some(chunk), _, Some(contacts)) => contacts.stage.elements(state, chunk, &stiffness[chunk], each),
+            _ => {}
+        };
+        let (resolution, held) = (self.spec.time.contact_resolution, |p: usize| state.hold[p] != 0);
+        self.bound = self.stiffness.bound(2 * chunks, elements, state, resolution, held);
         self.timings.time_step += began.elapsed();
         self.next_dt = step_choice::choose(&self.view())?;
         self.show(|monitor, view| monitor.look_at_step(view));

@@ -56,16 +56,13 @@ pub struct Neighbours {
     reference: Vectors,
     stretch: Stretch,
     list: PairList,
-    found: Vec<Vec<(u32, u32)>>,
-    cells: Cells,
     /// No pair can come within reach unseen until [`State::travel`] has reached this (m).
     safe_until: f64,
     /// Number of searches so far.
     pub rebuilds: u64,
 }
 
-/// Cell grid by counting sort.
-#[derive(Default)]
+/// Cell grid by counting sort, made for one search.
 struct Cells {
     start: Vec<u32>,
     order: Vec<u32>,
@@ -100,8 +97,6 @@ impl Neighbours {
             reference: Vectors::default(),
             stretch: Stretch::default(),
             list: PairList::default(),
-            found: Vec::new(),
-            cells: Cells::default(),
             safe_until: 0.0,
             rebuilds: 0,
         }
@@ -175,27 +170,27 @@ impl Neighbours {
         self.rebuilds += 1;
         self.longest = longest_bond(state);
         self.margin = self.needed_margin(state);
-        self.cells.fill(state, 2.0 * self.largest + self.margin + self.skin);
+        // The last list goes before this one comes, so that there is memory for one of them alone.
+        self.list.pairs = Vec::new();
+        let cells = Cells::of(state, 2.0 * self.largest + self.margin + self.skin);
         let chunks = state.len().div_ceil(CHUNK);
-        self.found.resize_with(chunks, Vec::new);
         let broken = broken_before(state);
-        let mut found = std::mem::take(&mut self.found);
-        found.par_iter_mut().enumerate().for_each(|(chunk, out)| {
-            out.clear();
+        let around = |chunk: usize| {
+            let mut out = Vec::new();
             let last = ((chunk + 1) * CHUNK).min(state.len());
             for i in chunk * CHUNK..last {
                 let from = out.len();
-                self.cells.around(i, |j| {
+                cells.around(i, |j| {
                     if (j as usize) > i && self.can_touch(i, j as usize, state, &broken) {
                         out.push((i as u32, j));
                     }
                 });
                 out[from..].sort_unstable();
             }
-        });
-        self.found = found;
-        self.list.pairs.clear();
-        self.found.iter().for_each(|f| self.list.pairs.extend_from_slice(f));
+            out
+        };
+        let found: Vec<Vec<(u32, u32)>> = (0..chunks).into_par_iter().map(around).collect();
+        self.list.pairs = found.concat();
         self.add_parted(state);
         &self.list
     }
@@ -244,9 +239,7 @@ impl Neighbours {
 
     /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
-        let found: usize = self.found.iter().map(behind).sum();
-        let cells = behind(&self.cells.start) + behind(&self.cells.order) + behind(&self.cells.of_particle);
-        behind(&self.wire_of) + behind_all(&self.reference) + behind(&self.list.pairs) + found + cells
+        behind(&self.wire_of) + behind_all(&self.reference) + behind(&self.list.pairs)
     }
 
     /// The list, and the positions, of the last search.
@@ -325,41 +318,48 @@ fn broken_before(state: &State) -> Vec<u32> {
 }
 
 impl Cells {
-    fn fill(&mut self, state: &State, size: f64) {
+    /// All particles in cells of `size` (m).
+    fn of(state: &State, size: f64) -> Self {
         let n = state.len();
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for p in state.x.iter() {
             low = low.min(p);
             high = high.max(p);
         }
-        self.origin = low;
-        self.size = size;
         // A far-flung fragment must not blow up the grid: cells grow until there are at most eight per particle.
         let shape = |size: f64| ((high - low) / size).to_array().map(|c| c.floor() + 1.0);
-        while shape(self.size).iter().product::<f64>() > 8.0 * n as f64 + 64.0 {
-            self.size *= 1.25;
+        let mut size = size;
+        while shape(size).iter().product::<f64>() > 8.0 * n as f64 + 64.0 {
+            size *= 1.25;
         }
-        self.shape = shape(self.size).map(|c| c as usize);
-        let count: usize = self.shape.iter().product();
-        self.start.clear();
-        self.start.resize(count + 1, 0);
-        self.of_particle.clear();
+        let shape = shape(size).map(|c| c as usize);
+        let count: usize = shape.iter().product();
+        let mut cells = Self {
+            start: vec![0; count + 1],
+            order: vec![0; n],
+            of_particle: Vec::with_capacity(n),
+            origin: low,
+            size,
+            shape,
+        };
         for p in state.x.iter() {
-            let cell = self.cell(p);
-            let index = ((cell[0] * self.shape[1]) + cell[1]) * self.shape[2] + cell[2];
-            self.of_particle.push(index as u32);
-            self.start[index + 1] += 1;
+            let cell = cells.cell(p);
+            let index = ((cell[0] * shape[1]) + cell[1]) * shape[2] + cell[2];
+            cells.of_particle.push(index as u32);
+            cells.start[index + 1] += 1;
         }
         for c in 0..count {
-            self.start[c + 1] += self.start[c];
+            cells.start[c + 1] += cells.start[c];
         }
-        self.order.clear();
-        self.order.resize(n, 0);
-        let mut next = self.start.clone();
-        for (i, cell) in self.of_particle.iter().enumerate() {
-            self.order[next[*cell as usize] as usize] = i as u32;
-            next[*cell as usize] += 1;
+        // Filling moves every start on to its end, which is the start of the next: so they are put back by one.
+        for (i, cell) in cells.of_particle.iter().enumerate() {
+            let at = &mut cells.start[*cell as usize];
+            cells.order[*at as usize] = i as u32;
+            *at += 1;
         }
+        cells.start.rotate_right(1);
+        cells.start[0] = 0;
+        cells
     }
 
     fn cell(&self, p: DVec3) -> [usize; 3] {
@@ -444,11 +444,9 @@ mod tests {
 
     #[test]
     fn a_far_flung_particle_does_not_blow_up_the_grid() {
-        let (assembly, mut state) = cloud(200, 1.0, 0.04);
+        let (_, mut state) = cloud(200, 1.0, 0.04);
         state.x.set(0, DVec3::splat(1e6));
-        let mut neighbours = Neighbours::new(&assembly, 0.01, Shape::Sphere);
-        neighbours.search(&state, Stretch::default());
-        assert!(neighbours.cells.start.len() < 8 * 200 + 128);
+        assert!(Cells::of(&state, 0.09).start.len() < 8 * 200 + 128);
     }
 
     #[test]

@@ -17,9 +17,9 @@ pub type Criterion = RuptureCause;
 /// Rupture limits of all bonds.
 pub struct RuptureCheck {
     criterion: RuptureCriterion,
-    /// Weibull factor per bond slot (-); empty when there is no scatter.
+    /// Weibull factor per bond slot (-); empty when there is no scatter, and where `plastic_limit` has it.
     factor: Vec<f64>,
-    /// Stress-free lengths (m).
+    /// Stress-free lengths (m); empty under criteria that do not ask for them.
     rest_length: Vec<f64>,
     /// Plastic strain at which each slot breaks (-); empty under criteria that look at something else.
     plastic_limit: Vec<f64>,
@@ -39,13 +39,17 @@ impl RuptureCheck {
                 }
             }
         }
-        let plastic_limit = match spec.criterion {
+        let (mut rest_length, mut plastic_limit) = (Vec::new(), Vec::new());
+        match spec.criterion {
             RuptureCriterion::PlasticStrain { strain } => {
-                (0..assembly.len()).map(|s| strain * factor.get(s).copied().unwrap_or(1.0)).collect()
+                let factor = std::mem::take(&mut factor);
+                let limit = |slot: usize| strain * factor.get(slot).copied().unwrap_or(1.0);
+                plastic_limit = (0..assembly.len()).map(limit).collect();
             }
-            _ => Vec::new(),
-        };
-        Self { criterion: spec.criterion.clone(), factor, rest_length: assembly.rest_length.clone(), plastic_limit }
+            RuptureCriterion::FibreStrain { .. } => rest_length.clone_from(&assembly.rest_length),
+            RuptureCriterion::BeamStress { .. } => {}
+        }
+        Self { criterion: spec.criterion.clone(), factor, rest_length, plastic_limit }
     }
 
     /// Plastic strain at which each slot breaks (-), if that is the criterion: bonds can then tell on their way whether

@@ -30,14 +30,20 @@ impl SharedRows {
         place
     }
 
+    /// No more kinds come: forgets what only these would need.
+    pub fn close(&mut self) {
+        self.places = HashMap::new();
+        self.rows.shrink_to_fit();
+    }
+
     /// All rows.
     pub fn rows(&self) -> &[f64] {
         &self.rows
     }
 
-    /// Memory behind it (bytes).
+    /// Memory behind it once it is closed (bytes).
     pub fn bytes(&self) -> usize {
-        2 * behind(&self.rows) + self.places.capacity() * size_of::<(Box<[u64]>, u32)>()
+        behind(&self.rows)
     }
 }
 
@@ -51,6 +57,8 @@ mod tests {
         let (a, b) = ([1.0, 2.0], [1.0, -0.0]);
         assert_eq!([kinds.place(&a), kinds.place(&b), kinds.place(&a), kinds.place(&[1.0, 0.0])], [0, 2, 0, 4]);
         assert_eq!(kinds.rows(), [1.0, 2.0, 1.0, -0.0, 1.0, 0.0]);
+        kinds.close();
+        assert_eq!((kinds.rows().len(), kinds.bytes()), (6, 48));
         kinds.clear();
         assert_eq!(kinds.place(&b), 0);
     }

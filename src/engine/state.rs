@@ -265,15 +265,7 @@ pub struct ContactSides<'a> {
     pub torque: [&'a mut [f64]; 3],
 }
 
-impl<'a> ContactSides<'a> {
-    /// The first `at` particles, and the others.
-    pub fn split_at(self, at: usize) -> (Self, Self) {
-        let ([f0, f1, f2], [t0, t1, t2]) = (self.force, self.torque);
-        let [f0, f1, f2, t0, t1, t2] = [f0, f1, f2, t0, t1, t2].map(|row| row.split_at_mut(at));
-        let left = Self { force: [f0.0, f1.0, f2.0], torque: [t0.0, t1.0, t2.0] };
-        (left, Self { force: [f0.1, f1.1, f2.1], torque: [t0.1, t1.1, t2.1] })
-    }
-
+impl ContactSides<'_> {
     /// The forces, and with `turn` the torques.
     pub fn rows(&mut self, turn: bool) -> impl Iterator<Item = &mut [f64]> {
         let torque = if turn { &mut self.torque[..] } else { &mut [] };

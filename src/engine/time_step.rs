@@ -5,9 +5,12 @@
 //! eigenvalue bounds the assembly's (Irons & Treharne 1971). With these shares it is a Gershgorin bound whose rows are
 //! scaled by stiffness; for a uniform chain it is exact, 4k/m. Leapfrog with forces that lag by half a step in velocity
 //! is stable to Δt = (2/ω)(√(1+ξ²) − ξ).
+//!
+//! The elements are gone through twice, for the sums of the particles and for the eigenvalues, and are made anew each time:
+//! all of them at once would be as much memory as the contacts themselves.
 
 use super::bytes::behind;
-use super::state::{CHUNK, State};
+use super::state::State;
 use crate::base::finding::{self, StiffnessMode};
 use crate::law::bond::BondStiffness;
 use rayon::prelude::*;
@@ -15,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 /// One bond or contact as the bound sees it.
 #[derive(Debug, Clone, Copy)]
-struct Element {
+pub struct Element {
     nodes: [u32; 3],
     /// Share of the element's displacement that each node carries (-).
     weights: [f64; 3],
@@ -33,6 +36,34 @@ struct Element {
 }
 
 impl Element {
+    /// Bond `slot` of length `length` (m) with its viscous coefficients.
+    pub fn bond(slot: usize, k: &BondStiffness, length: f64, viscosity: [f64; 4], turn: bool) -> Self {
+        let arm = if turn { 0.5 * length } else { 0.0 };
+        let (shear, bend, twist) = if turn { (k.shear, k.bend, k.twist) } else { (0.0, 0.0, 0.0) };
+        let [axial, across, bending, torsion] = viscosity;
+        let turning = (across * arm * arm).max(bending).max(torsion);
+        let viscous = if turn { [axial.max(across), turning] } else { [axial, 0.0] };
+        Self {
+            nodes: [slot as u32, slot as u32 + 1, 0],
+            weights: [1.0, 1.0, 0.0],
+            normal: k.axial,
+            across: shear,
+            arm: [arm; 2],
+            bend,
+            twist,
+            viscous,
+            bond: true,
+        }
+    }
+
+    /// Contact of the first node with the second and third; `weights` are the shares of the point of contact that each
+    /// carries (-), `stiffness` along the normal and across it (N/m), `arm` the lever arms of friction on the two sides (m)
+    /// (0 when nothing turns), `viscosity` the viscous coefficient along the normal (N s/m).
+    pub fn contact(nodes: [u32; 3], weights: [f64; 3], stiffness: [f64; 2], arm: [f64; 2], viscosity: f64) -> Self {
+        let [normal, across] = stiffness;
+        Self { nodes, weights, normal, across, arm, bend: 0.0, twist: 0.0, viscous: [viscosity, 0.0], bond: false }
+    }
+
     /// Share of the element's displacement that a node carries (-).
     fn weight(&self, node: usize) -> f64 {
         self.weights[node]
@@ -81,30 +112,35 @@ impl Bound {
     }
 }
 
-/// Collects stiffnesses and turns them into the bound. Kept between calls so that it does not allocate.
+/// Sums over the elements of each particle. Kept between calls so that it does not allocate.
 #[derive(Default)]
 pub struct Stiffness {
-    elements: Vec<Element>,
-    /// Σ stiffness × weight per particle (N/m).
-    translation: Vec<f64>,
+    particles: Vec<Sums>,
+}
+
+/// Sums of one particle.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    /// Σ stiffness × weight (N/m).
+    translation: f64,
     /// The same for rotation (N m/rad).
-    rotation: Vec<f64>,
-    /// Σ viscous coefficient × weight per particle, translation (N s/m) and rotation (N m s).
-    viscous: Vec<[f64; 2]>,
+    rotation: f64,
+    /// Σ viscous coefficient × weight, translation (N s/m) and rotation (N m s).
+    viscous: [f64; 2],
 }
 
 /// What limits the step.
 #[derive(Default, Clone, Copy)]
-struct Worst<'a> {
+struct Worst {
     /// Greatest eigenvalue of stiffness over mass (1/s²), with its mode and element.
-    stiffest: Option<(f64, StiffnessMode, &'a Element)>,
+    stiffest: Option<(f64, StiffnessMode, Element)>,
     /// Greatest eigenvalue of damping over mass (1/s), bounded element by element like the stiffness.
     damping: f64,
     /// Least step that resolves a contact (s).
-    shortest: Option<(f64, &'a Element)>,
+    shortest: Option<(f64, Element)>,
 }
 
-impl Worst<'_> {
+impl Worst {
     /// The worse of two, where the first comes before the second in the order of elements.
     fn with(self, other: Self) -> Self {
         let stiffest = match (self.stiffest, other.stiffest) {
@@ -122,73 +158,37 @@ impl Worst<'_> {
 impl Stiffness {
     /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
-        behind(&self.elements) + behind(&self.translation) + behind(&self.rotation) + behind(&self.viscous)
+        behind(&self.particles)
     }
 
-    /// Forgets all elements.
-    pub fn clear(&mut self) {
-        self.elements.clear();
-    }
-
-    /// Adds bond `slot` of length `length` (m) with its viscous coefficients.
-    pub fn bond(&mut self, slot: usize, k: &BondStiffness, length: f64, viscosity: [f64; 4], turn: bool) {
-        let arm = if turn { 0.5 * length } else { 0.0 };
-        let (shear, bend, twist) = if turn { (k.shear, k.bend, k.twist) } else { (0.0, 0.0, 0.0) };
-        let [axial, across, bending, torsion] = viscosity;
-        let turning = (across * arm * arm).max(bending).max(torsion);
-        let viscous = if turn { [axial.max(across), turning] } else { [axial, 0.0] };
-        self.elements.push(Element {
-            nodes: [slot as u32, slot as u32 + 1, 0],
-            weights: [1.0, 1.0, 0.0],
-            normal: k.axial,
-            across: shear,
-            arm: [arm; 2],
-            bend,
-            twist,
-            viscous,
-            bond: true,
-        });
-    }
-
-    /// Adds a contact of the first node with the second and third; `weights` are the shares of the point of contact that
-    /// each carries (-), `arm` the lever
-    /// arms of friction on the two sides (m) (0 when nothing turns), `viscosity` the viscous coefficient along the normal
-    /// (N s/m).
-    pub fn contact(&mut self, nodes: [u32; 3], weights: [f64; 3], stiffness: [f64; 2], arm: [f64; 2], viscosity: f64) {
-        let [normal, across] = stiffness;
-        self.elements.push(Element {
-            nodes,
-            weights,
-            normal,
-            across,
-            arm,
-            bend: 0.0,
-            twist: 0.0,
-            viscous: [viscosity, 0.0],
-            bond: false,
-        });
-    }
-
-    /// The bound for what was added; a contact is stepped at least as finely as Δt √(k/m*) = `resolution` (-). Particles
-    /// that are wholly held do not move and do not count.
-    pub fn bound(&mut self, state: &State, resolution: f64, held: impl Fn(usize) -> bool + Sync) -> Bound {
-        let n = state.len();
-        self.translation.clear();
-        self.translation.resize(n, 0.0);
-        self.rotation.clear();
-        self.rotation.resize(n, 0.0);
-        self.viscous.clear();
-        self.viscous.resize(n, [0.0; 2]);
-        for e in &self.elements {
+    /// The bound for the elements that `elements` gives for each of `parts` parts; a contact is stepped at least as finely as Δt √(k/m*) = `resolution`
+    /// (-). Particles that are wholly held do not move and do not count.
+    pub fn bound(
+        &mut self,
+        parts: usize,
+        elements: impl Fn(usize, &mut dyn FnMut(Element)) + Sync,
+        state: &State,
+        resolution: f64,
+        held: impl Fn(usize) -> bool + Sync,
+    ) -> Bound {
+        self.particles.clear();
+        self.particles.resize(state.len(), Sums::default());
+        let mut add = |e: Element| {
+            let (translation, rotation) = (e.translation(), e.rotation());
             for k in 0..3 {
-                let node = e.nodes[k] as usize;
-                self.translation[node] += e.translation() * e.weight(k);
-                self.rotation[node] += e.rotation() * e.weight(k);
-                self.viscous[node][0] += e.viscous[0] * e.weight(k);
-                self.viscous[node][1] += e.viscous[1] * e.weight(k);
+                let (sums, weight) = (&mut self.particles[e.nodes[k] as usize], e.weight(k));
+                sums.translation += translation * weight;
+                sums.rotation += rotation * weight;
+                sums.viscous[0] += e.viscous[0] * weight;
+                sums.viscous[1] += e.viscous[1] * weight;
             }
-        }
-        let found = self.elements.par_chunks(CHUNK).map(|some| self.worst(some, state, resolution, &held));
+        };
+        (0..parts).for_each(|part| elements(part, &mut add));
+        let found = (0..parts).into_par_iter().map(|part| {
+            let mut worst = Worst::default();
+            elements(part, &mut |e| self.look_at(&e, state, resolution, &held, &mut worst));
+            worst
+        });
         let found = found.reduce(Worst::default, Worst::with);
         let mut bound = Bound { step: f64::INFINITY, ..Default::default() };
         if let Some((eigenvalue, mode, e)) = found.stiffest {
@@ -205,24 +205,18 @@ impl Stiffness {
         }
     }
 
-    /// What limits the step among some elements; the first of equals.
-    fn worst<'a>(
-        &self,
-        elements: &'a [Element],
-        state: &State,
-        resolution: f64,
-        held: &impl Fn(usize) -> bool,
-    ) -> Worst<'a> {
-        let mut worst = Worst::default();
-        for e in elements {
-            let (eigenvalue, mode) = self.element(e, state, held);
-            let stiffest = (eigenvalue > 0.0).then_some((eigenvalue, mode, e));
-            // A pair of held particles never moves.
-            let frequency = if e.bond { 0.0 } else { e.pair_frequency(state, held) };
-            let shortest = (frequency > 0.0).then_some((resolution / frequency, e));
-            worst = worst.with(Worst { stiffest, damping: self.damping(e, state, held), shortest });
+    /// Takes in how one element limits the step; the first of equals stays.
+    fn look_at(&self, e: &Element, state: &State, resolution: f64, held: &impl Fn(usize) -> bool, worst: &mut Worst) {
+        let (eigenvalue, mode) = self.element(e, state, held);
+        if eigenvalue > worst.stiffest.as_ref().map_or(0.0, |(most, ..)| *most) {
+            worst.stiffest = Some((eigenvalue, mode, *e));
         }
-        worst
+        worst.damping = worst.damping.max(self.damping(e, state, held));
+        // A pair of held particles never moves.
+        let frequency = if e.bond { 0.0 } else { e.pair_frequency(state, held) };
+        if frequency > 0.0 && worst.shortest.as_ref().is_none_or(|(least, _)| resolution / frequency < *least) {
+            worst.shortest = Some((resolution / frequency, *e));
+        }
     }
 
     /// Largest eigenvalue of damping over mass that one element can have (1/s), with shares as for stiffness.
@@ -234,7 +228,7 @@ impl Stiffness {
             .filter(|k| e.weight(*k) > 0.0 && !held(e.nodes[*k] as usize))
             .map(|k| {
                 let node = e.nodes[k] as usize;
-                let [translation, rotation] = self.viscous[node];
+                let [translation, rotation] = self.particles[node].viscous;
                 e.weight(k) * (translation / state.mass[node] + rotation / state.inertia[node])
             })
             .sum()
@@ -249,9 +243,9 @@ impl Stiffness {
             if e.weight(k) == 0.0 || held(node) {
                 continue;
             }
-            mass += e.weight(k) * self.translation[node] / state.mass[node];
+            mass += e.weight(k) * self.particles[node].translation / state.mass[node];
             if qe > 0.0 {
-                *turn = e.weight(k) * self.rotation[node] / (state.inertia[node] * qe);
+                *turn = e.weight(k) * self.particles[node].rotation / (state.inertia[node] * qe);
                 levers += e.lever(k) * e.lever(k) * *turn;
             }
         }

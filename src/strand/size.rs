@@ -12,10 +12,10 @@ const DENSE: f64 = 0.3;
 
 /// Memory of a particle by stage, as [`crate::engine::bytes`] counts it and rounded up (bytes): the body, motion and
 /// rotation; its bond; the bound on the time step.
-const BARE: f64 = 290.0 + 500.0 + 420.0;
-/// Contacts and neighbours of a chain of spheres, of smooth wires (bytes a particle).
-const SPHERES: f64 = 360.0;
-const SMOOTH: f64 = 1750.0;
+const BARE: f64 = 290.0 + 350.0 + 60.0;
+/// Contacts and neighbours of a chain of spheres, of smooth wires, in full contact (bytes a particle).
+const SPHERES: f64 = 450.0;
+const SMOOTH: f64 = 1050.0;
 /// What laying it up and looking for overlaps takes beside (bytes a particle).
 const LAY_UP: f64 = 500.0;
 /// Contacts of a particle in a strand: three by which it touches the layers beside its own, two to its own.

@@ -77,12 +77,6 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
             [load(constants, SHAPE), load(constants, SHAPE + 1), load(constants, SHAPE + 2), load(constants, SHAPE + 3)]
         });
 
-        // What is written of a bond that broke stays as it was then, no force and its last plastic strain, wherever its two
-        // particles go: whoever reads a record need not ask whether the bond holds.
-        let keep = |record: &mut [f64], field: usize, number: Lanes<S>| {
-            Lanes::select(live, number, load(record, field)).store(record, field * BLOCK + lane);
-        };
-
         let mut step = Step { law: self.law, dt: self.dt, live, plastic: zero, damping: zero };
         let acts = if TURN {
             let frame = |k| load(record, Layout::<L, TURN>::FRAME + k);
@@ -93,14 +87,21 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
             e1.y.store(record, frame + BLOCK);
             e1.z.store(record, frame + 2 * BLOCK);
             let across = [force.shear[0], force.shear[1], force.bend[0], force.bend[1], force.twist];
-            across.into_iter().enumerate().for_each(|(k, f)| keep(record, Layout::<L, TURN>::ACROSS + k, f));
+            for (k, f) in across.into_iter().enumerate() {
+                keep(simd, record, live, (Layout::<L, TURN>::ACROSS + k) * BLOCK + lane, f);
+            }
             acts
         } else {
             step.stretching(&ends, &shape, &mut force, &mut state, &mut dashpot, viscosity)
         };
-        keep(record, Layout::<L, TURN>::AXIAL, force.axial);
-        keep(record, Layout::<L, TURN>::DASHPOT, dashpot);
-        L::each_number(&state, |k, number| keep(record, Layout::<L, TURN>::HISTORY + k, number));
+        keep(simd, record, live, Layout::<L, TURN>::AXIAL * BLOCK + lane, force.axial);
+        keep(simd, record, live, Layout::<L, TURN>::DASHPOT * BLOCK + lane, dashpot);
+        let history = Layout::<L, TURN>::HISTORY * BLOCK + lane;
+        if (!live).any() {
+            L::each_number(&state, |k, number| keep(simd, record, live, history + k * BLOCK, number));
+        } else {
+            L::each_number(&state, |k, number| number.store(record, history + k * BLOCK));
+        }
         let book = |sum: &mut [f64; BLOCK], part: Lanes<S>| {
             (Lanes::load(simd, sum, lane) + Lanes::select(live, part, zero)).store(sum, lane);
         };
@@ -150,6 +151,14 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
             put(BondActions::FAR + 2, acts.far.z);
         }
     }
+}
+
+/// Writes what bonds remember. Of a bond that broke it stays as it was then, no force and its last plastic strain, wherever
+/// its two particles go: whoever reads a record need not ask whether the bond holds. No closure, which would not be compiled
+/// for the registers that `simd` stands for.
+#[inline(always)]
+fn keep<S: Simd>(simd: S, record: &mut [f64], live: <Lanes<S> as Real>::Mask, at: usize, number: Lanes<S>) {
+    Lanes::select(live, number, Lanes::load(simd, record, at)).store(record, at);
 }
 
 /// The vectors from particle `p` on.

@@ -20,7 +20,7 @@ use crate::engine::rupture::{Criterion, RuptureCheck};
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::shared_rows::SharedRows;
 use crate::engine::state::{BondActions, CHUNK, ChunkSums, State};
-use crate::engine::time_step::Stiffness;
+use crate::engine::time_step::Element;
 use crate::law::bond::{BondForce, BondLaw, BondShape, Section};
 use crate::law::damping::viscous_coefficient;
 use crate::strand::assembly::Assembly;
@@ -30,7 +30,7 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 /// What the engine asks of bonds, whatever their law.
-pub trait Bonds: Send {
+pub trait Bonds: Send + Sync {
     /// Computes every bond's action on its particles from `state`; returns the energies of the step.
     fn compute(&mut self, state: &mut State) -> ChunkSums;
     /// Breaks the bonds that reached their limit; calls `broke(slot, cause, true axial stress [Pa])` for each, in order,
@@ -38,8 +38,8 @@ pub trait Bonds: Send {
     fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64;
     /// Stored elastic energy (J).
     fn elastic_energy(&self, state: &State) -> f64;
-    /// Stiffnesses for the bound on the time step.
-    fn stiffness(&self, state: &State, out: &mut Stiffness);
+    /// The bonds of one chunk as the bound on the time step sees them, in order.
+    fn elements(&self, state: &State, chunk: usize, each: &mut dyn FnMut(Element));
     /// True axial stress of a bond (Pa).
     fn stress(&self, slot: usize) -> f64;
     /// Axial force of a bond (N).
@@ -102,6 +102,7 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
             }
             stage.kind.push(stage.constants.place(&rows));
         }
+        stage.constants.close();
         stage
     }
 
@@ -239,11 +240,12 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
         whole.map(|s| self.law.elastic_energy(&self.shape(s), &self.force(s), &self.history(s))).sum()
     }
 
-    fn stiffness(&self, state: &State, out: &mut Stiffness) {
-        for i in (0..state.whole.len()).filter(|slot| state.whole[*slot]) {
+    fn elements(&self, state: &State, chunk: usize, each: &mut dyn FnMut(Element)) {
+        let slots = chunk * CHUNK..state.len().min((chunk + 1) * CHUNK);
+        for i in slots.filter(|slot| state.whole[*slot]) {
             let k = self.law.stiffness(&self.shape(i), &self.history(i));
             let length = (state.x.get(i + 1) - state.x.get(i)).length();
-            out.bond(i, &k, length, std::array::from_fn(|mode| self.constant(i, SHAPE + mode)), TURN);
+            each(Element::bond(i, &k, length, std::array::from_fn(|mode| self.constant(i, SHAPE + mode)), TURN));
         }
     }
 

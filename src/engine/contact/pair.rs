@@ -213,6 +213,7 @@ pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
 
 /// Greatest normal and tangential stiffness (N/m) that a touching pair can reach within `horizon` (s) if it goes on
 /// approaching at `approach` (m/s) from `overlap` (m); `None` when it has parted.
+#[inline(always)]
 pub fn foreseen_stiffness<N: NormalLaw, T: TangentialLaw>(
     laws: &Laws<N, T>,
     history: &History<N, T>,

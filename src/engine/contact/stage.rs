@@ -5,11 +5,11 @@ use crate::engine::bytes::Bytes;
 use crate::engine::neighbours::PairList;
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{ChunkSums, State};
-use crate::engine::time_step::Stiffness;
+use crate::engine::time_step::Element;
 use crate::strand::assembly::Assembly;
 
 /// Contacts of a run.
-pub trait Contacts: Send {
+pub trait Contacts: Send + Sync {
     /// Takes a new list of candidates; history of pairs that stay is kept. Returns what was lost with pairs that left.
     fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums;
     /// Computes all contacts and adds them up per particle in `state`, but for [`Self::second_sides`]; returns the
@@ -25,8 +25,11 @@ pub trait Contacts: Send {
     fn active(&self) -> usize;
     /// Number of candidate pairs.
     fn candidates(&self) -> usize;
-    /// Stiffnesses of touching pairs for the bound on the time step, as they can become within `horizon` (s).
-    fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness);
+    /// Normal and tangential stiffness of each touching pair of one chunk (N/m), as they can become within `horizon` (s), in
+    /// order; 0 of one that has parted by then.
+    fn stiffness(&self, state: &State, chunk: usize, horizon: f64) -> Vec<[f64; 2]>;
+    /// The same pairs with their `stiffness` as the bound on the time step sees them.
+    fn elements(&self, state: &State, chunk: usize, stiffness: &[[f64; 2]], each: &mut dyn FnMut(Element));
     /// Memory of the stage, among `particles` particles.
     fn bytes(&self, particles: usize) -> Bytes;
     /// Puts in what the contacts remember, in their order.

@@ -13,6 +13,8 @@ pub struct Block {
     pub pairs: u16,
     /// Its rows among the constants.
     pub constants: u32,
+    /// Its record among those of its chunk; [`Self::NOTHING`] where it remembers nothing.
+    pub record: u32,
     /// Whether any of them touched at the last step.
     pub acts: bool,
     /// Nothing can touch until [`State::travel`](crate::engine::state::State::travel) has reached this (m).
@@ -20,6 +22,16 @@ pub struct Block {
 }
 
 impl Block {
+    /// In the place of a record.
+    pub const NOTHING: u32 = u32::MAX;
+
+    /// Without a pair: the block of the pair (`i`, `j`).
+    pub fn of(i: u32, j: u32) -> Self {
+        let lane = i % BLOCK as u32;
+        let (i, j) = (i - lane, j - lane);
+        Self { i, j, pairs: 0, constants: 0, record: Self::NOTHING, acts: false, quiet_until: 0.0 }
+    }
+
     /// The order of blocks; see [`key`].
     pub fn key(&self) -> u64 {
         key(self.i, self.j) / BLOCK as u64

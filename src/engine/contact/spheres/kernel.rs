@@ -1,10 +1,11 @@
 //! The contacts of one chunk at one step, as many at once as a register holds.
 
 use super::block::Block;
+use super::store::Store;
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
 use crate::engine::contact::pair::{ContactKinematics, Dissipated, History, Laws, PairForce, contact_response};
-use crate::engine::state::{CHUNK, ChunkSums, ContactSides, Deepest, ParticleView};
+use crate::engine::state::{ChunkSums, ContactSides, Deepest, ParticleView};
 use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
 use pulp::{Simd, WithSimd};
@@ -15,58 +16,6 @@ pub const fn rows<T: TangentialLaw>() -> usize {
     if T::ACTIVE { 6 } else { 3 }
 }
 
-/// What some chunks work on.
-pub struct Work<'a> {
-    /// The first chunk.
-    pub first: usize,
-    /// Per chunk its first block, counted over all chunks, and the end of the last.
-    pub starts: &'a [u32],
-    pub blocks: &'a mut [Block],
-    pub records: &'a mut [f64],
-    pub constants: &'a [f64],
-    pub actions: &'a mut [f64],
-    pub sides: ContactSides<'a>,
-    pub partial: &'a mut [ChunkSums],
-}
-
-impl<'a> Work<'a> {
-    /// Calls `each` with the work of every chunk, side by side: chunks have unequal numbers of blocks, so that slices
-    /// of equal length will not do.
-    pub fn share(self, fields: usize, rows: usize, each: &(impl Fn(Work<'_>) + Sync)) {
-        let chunks = self.partial.len();
-        if chunks <= 1 {
-            if chunks == 1 {
-                each(self);
-            }
-            return;
-        }
-        let (left, right) = self.split(chunks / 2, fields, rows);
-        rayon::join(|| left.share(fields, rows, each), || right.share(fields, rows, each));
-    }
-
-    fn split(self, at: usize, fields: usize, rows: usize) -> (Work<'a>, Work<'a>) {
-        let blocks = (self.starts[at] - self.starts[0]) as usize;
-        let (b0, b1) = self.blocks.split_at_mut(blocks);
-        let (r0, r1) = self.records.split_at_mut(blocks * fields * BLOCK);
-        let (a0, a1) = self.actions.split_at_mut(blocks * rows * BLOCK);
-        let (s0, s1) = self.sides.split_at(at * CHUNK);
-        let (p0, p1) = self.partial.split_at_mut(at);
-        let left =
-            Work { starts: &self.starts[..=at], blocks: b0, records: r0, actions: a0, sides: s0, partial: p0, ..self };
-        let right = Work {
-            first: left.first + at,
-            starts: &self.starts[at..],
-            blocks: b1,
-            records: r1,
-            constants: left.constants,
-            actions: a1,
-            sides: s1,
-            partial: p1,
-        };
-        (left, right)
-    }
-}
-
 /// The contacts of one chunk.
 pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     pub laws: &'a Laws<N, T>,
@@ -75,7 +24,12 @@ pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     pub deepest: Deepest,
     /// See [`closing`](crate::engine::contact::stage::closing).
     pub closing: f64,
-    pub work: Work<'a>,
+    pub constants: &'a [f64],
+    /// The first particle.
+    pub first: usize,
+    pub store: &'a mut Store,
+    /// Of the chunk's particles.
+    pub sides: ContactSides<'a>,
 }
 
 /// Energies of one chunk, a sum per lane: added up in the same order whatever the registers' width.
@@ -126,11 +80,10 @@ impl<N: NormalLaw, T: TangentialLaw> WithSimd for Chunk<'_, N, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        let Work { sides, .. } = &mut self.work;
-        sides.rows(T::ACTIVE).for_each(|row| row.fill(0.0));
+        self.sides.rows(T::ACTIVE).for_each(|row| row.fill(0.0));
         let mut sums = Sums::default();
-        for b in 0..self.work.blocks.len() {
-            if self.work.blocks[b].quiet_until > self.seen.travel {
+        for b in 0..self.store.blocks.len() {
+            if self.store.blocks[b].quiet_until > self.seen.travel {
                 continue;
             }
             let mut acts = false;
@@ -138,13 +91,13 @@ impl<N: NormalLaw, T: TangentialLaw> WithSimd for Chunk<'_, N, T> {
             for lane in (0..BLOCK).step_by(Lanes::<S>::LEN) {
                 acts |= self.contacts(simd, b, lane, &mut sums, &mut gap);
             }
-            let block = &mut self.work.blocks[b];
+            let block = &mut self.store.blocks[b];
             block.acts = acts;
             // The least gap, used up when every particle has come nearer at the greatest speed there was.
             let least = gap.into_iter().fold(f64::INFINITY, f64::min);
             block.quiet_until = self.seen.travel + least.max(0.0) / self.closing;
         }
-        self.work.partial[0] = sums.partial(self.deepest);
+        self.store.partial = sums.partial(self.deepest);
     }
 }
 
@@ -155,8 +108,8 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
     /// gets the gaps of pairs that are apart, and 0 where something is remembered of a touch.
     #[inline(always)]
     fn contacts<S: Simd>(&mut self, simd: S, b: usize, lane: usize, sums: &mut Sums, gap: &mut [f64; BLOCK]) -> bool {
-        let (i, j) = (self.work.blocks[b].i as usize + lane, self.work.blocks[b].j as usize + lane);
-        let record = &mut self.work.records[b * Self::FIELDS * BLOCK..(b + 1) * Self::FIELDS * BLOCK];
+        let block = self.store.blocks[b];
+        let (i, j) = (block.i as usize + lane, block.j as usize + lane);
         let load = |record: &[f64], field: usize| Lanes::load(simd, record, field * BLOCK + lane);
         let (first, second) = (ball(simd, self.seen, i), ball(simd, self.seen, j));
         let d = second.x - first.x;
@@ -165,28 +118,34 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let inverse = square.inverse_sqrt();
         let distance = square * inverse;
         let touching = first.radius + second.radius;
-        let constants = self.work.blocks[b].constants as usize + lane;
-        let reduced = Lanes::load(simd, self.work.constants, constants);
-        let offset = load(record, History::<N, T>::OFFSET);
+        let constants = block.constants as usize + lane;
+        let reduced = Lanes::load(simd, self.constants, constants);
+        let [offset, before] = match self.store.record(&block, Self::FIELDS) {
+            Some(record) => [History::<N, T>::OFFSET, History::<N, T>::FORCE].map(|field| load(record, field)),
+            None => [zero; 2],
+        };
         let pairs = reduced.simd_gt(zero);
         let reach = touching - offset;
         let overlap = reach - distance;
         let touches = overlap.simd_gt(zero) & pairs;
-        let remembers = load(record, History::<N, T>::FORCE).simd_gt(zero) | offset.simd_gt(zero);
+        let remembers = before.simd_gt(zero) | offset.simd_gt(zero);
         if !(touches | remembers).any() {
             Lanes::select(pairs, -overlap, zero.splat(f64::INFINITY)).store(gap, lane);
-            self.still(simd, b, lane);
+            if Lanes::<S>::LEN < BLOCK && block.record != Block::NOTHING {
+                self.still(simd, b, lane);
+            }
             return false;
         }
         zero.store(gap, lane);
 
+        let [record, _] = self.store.acting(b, Self::FIELDS, rows::<T>());
         let mut history = History::<N, T, _>::of(reduced, |k| load(record, k));
         let overlap = Lanes::select(touches, overlap, zero);
         let normal = d * inverse;
         let sunk = (overlap + offset) * 0.5;
         let arms = [first.radius - sunk, second.radius - sunk];
         let velocity = velocity::<S, T>(simd, self.seen, [i, j], normal, arms);
-        let viscosity = Lanes::load(simd, self.work.constants, constants + BLOCK);
+        let viscosity = Lanes::load(simd, self.constants, constants + BLOCK);
         let thinner = first.thinned + second.thinned;
         let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity, dt: self.seen.dt };
         let (pair, given) = contact_response(self.laws, &mut history, &meeting);
@@ -202,15 +161,11 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         touches.any()
     }
 
-    /// Nothing of a part of a block touches.
+    /// Nothing of a part of a block touches, of which another part may act.
     #[inline(always)]
     fn still<S: Simd>(&mut self, simd: S, b: usize, lane: usize) {
-        if Lanes::<S>::LEN < BLOCK {
-            // Another part of the block may act.
-            let size = rows::<T>() * BLOCK;
-            let actions = &mut self.work.actions[b * size..(b + 1) * size];
-            (0..rows::<T>()).for_each(|row| Lanes::splat(simd, 0.0).store(actions, row * BLOCK + lane));
-        }
+        let [_, actions] = self.store.acting(b, Self::FIELDS, rows::<T>());
+        (0..rows::<T>()).for_each(|row| Lanes::splat(simd, 0.0).store(actions, row * BLOCK + lane));
     }
 
     #[inline(always)]
@@ -238,15 +193,14 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         arms: [Lanes<S>; 2],
     ) {
         let nothing = Triple::zero(arms[0].splat(0.0));
-        let own = self.work.blocks[b].i as usize + lane - self.work.first * CHUNK;
-        let size = rows::<T>() * BLOCK;
-        let actions = &mut self.work.actions[b * size..(b + 1) * size];
+        let own = self.store.blocks[b].i as usize + lane - self.first;
+        let [_, actions] = self.store.acting(b, Self::FIELDS, rows::<T>());
         let force = Triple::select(touches, pair.force, nothing);
-        add(simd, &mut self.work.sides.force, own, force);
+        add(simd, &mut self.sides.force, own, force);
         store(force, actions, lane);
         if T::ACTIVE {
             let twist = Triple::select(touches, normal.cross(pair.friction), nothing);
-            add(simd, &mut self.work.sides.torque, own, twist * arms[0]);
+            add(simd, &mut self.sides.torque, own, twist * arms[0]);
             store(twist * arms[1], actions, 3 * BLOCK + lane);
         }
     }

@@ -7,11 +7,12 @@
 //!
 //! Blocks are ordered by the chunk of particles that their first side lies in, then by diagonal. A chunk's task adds
 //! the first sides to its own particles; the second sides are left as actions, which the gathering of all forces adds
-//! up ([`SecondSides`]).
+//! up ([`SecondSides`]). Each chunk has memory of its own ([`store`]).
 
 mod block;
 mod kernel;
 pub mod second;
+mod store;
 
 use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
 use super::stage::{Contacts, closing};
@@ -20,43 +21,27 @@ use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::PairList;
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::shared_rows::SharedRows;
-use crate::engine::state::{BondActions, CHUNK, ChunkSums, Deepest, State};
-use crate::engine::time_step::Stiffness;
+use crate::engine::state::{BondActions, CHUNK, ChunkSums, ContactSides, Deepest, State};
+use crate::engine::time_step::Element;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{reduced_mass, reduced_radius};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
 use block::{Block, key, pair};
-use kernel::Work;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use second::{Places, SecondSides};
-
-/// Blocks with what their contacts remember: field after field of [`BLOCK`] numbers each.
-#[derive(Default)]
-struct Store {
-    blocks: Vec<Block>,
-    records: Vec<f64>,
-    /// What does not change from search to search: a row of R* (m), 0 where no candidate is, and one of 2ξ√m* (√kg).
-    constants: SharedRows,
-}
+use store::Store;
 
 /// Contacts between spheres with normal law `N` and tangential law `T`.
 pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
     laws: Laws<N, T>,
-    now: Store,
-    /// Before a rebuild; kept for its memory.
-    old: Store,
-    /// Keys of all pairs; kept for its memory.
-    keys: Vec<u64>,
-    /// Per chunk of particles the first of its blocks, and their number at the end.
-    starts: Vec<u32>,
-    /// What blocks do to their second sides, [`kernel::rows`] rows of [`BLOCK`] numbers each, with a block to spare at
-    /// either end.
-    actions: Vec<f64>,
+    /// Per chunk of particles.
+    stores: Vec<Store>,
+    /// What does not change from search to search: a row of R* (m), 0 where no candidate is, and one of 2ξ√m* (√kg).
+    constants: SharedRows,
     places: Places,
-    partial: Vec<ChunkSums>,
     /// The deepest contact so far.
     deepest: Deepest,
     /// See [`closing`].
@@ -76,13 +61,9 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
     pub fn new(laws: Laws<N, T>, assembly: &Assembly) -> Self {
         Self {
             laws,
-            now: Store::default(),
-            old: Store::default(),
-            keys: Vec::new(),
-            starts: Vec::new(),
-            actions: Vec::new(),
+            stores: Vec::new(),
+            constants: SharedRows::default(),
             places: Places::default(),
-            partial: Vec::new(),
             deepest: Deepest::default(),
             closing: closing(assembly),
             wire_of: assembly.wire_of.clone(),
@@ -91,120 +72,97 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
         }
     }
 
-    fn place(block: usize, field: usize, lane: usize) -> usize {
-        (block * Self::FIELDS + field) * BLOCK + lane
+    /// The history of a pair; `radius` is its reduced radius (m).
+    fn history(record: Option<&[f64]>, lane: usize, radius: f64) -> History<N, T> {
+        History::of(radius, |k| record.map_or(0.0, |record| record[k * BLOCK + lane]))
     }
 
-    fn history(store: &Store, block: usize, lane: usize) -> History<N, T> {
-        let radius = store.constants.rows()[store.blocks[block].constants as usize + lane];
-        History::of(radius, |k| store.records[Self::place(block, k, lane)])
-    }
-
-    /// All pairs: block, place in it, the two particles.
-    fn pairs(store: &Store) -> impl Iterator<Item = (usize, usize, [usize; 2])> + '_ {
-        store.blocks.iter().enumerate().flat_map(|(b, block)| {
-            let [i, j] = [block.i, block.j].map(|p| p as usize);
-            block.lanes().map(move |k| (b, k, [i + k, j + k]))
+    /// Pairs of one chunk that touch: their reduced radius (m), their record and place in it, the two particles.
+    #[inline(always)]
+    fn touching_in<'a>(&'a self, store: &'a Store) -> impl Iterator<Item = Touching<'a>> + 'a {
+        let records = store.blocks.iter().filter_map(|block| Some((block, store.record(block, Self::FIELDS)?)));
+        records.flat_map(move |(block, record)| {
+            let touches = move |lane: &usize| record[History::<N, T>::FORCE * BLOCK + lane] > 0.0;
+            block.lanes().filter(touches).map(move |lane| Touching {
+                reduced_radius: self.constants.rows()[block.constants as usize + lane],
+                record,
+                lane,
+                pair: [block.i, block.j].map(|p| p as usize + lane),
+            })
         })
     }
 
-    /// Pairs that touch, with their history.
+    /// All pairs that touch, with their history.
     fn touching(&self) -> impl Iterator<Item = (History<N, T>, [usize; 2])> + '_ {
-        let all = Self::pairs(&self.now).map(|(b, k, pair)| (Self::history(&self.now, b, k), pair));
-        all.filter(|(history, _)| history.touching())
-    }
-
-    /// Blocks for the pairs in `keys`, their records all 0.
-    fn lay_out(&mut self) {
-        let Store { blocks, records, .. } = &mut self.now;
-        blocks.clear();
-        for key in &self.keys {
-            let [i, j] = pair(*key);
-            let lane = i % BLOCK as u32;
-            let first = Block { i: i - lane, j: j - lane, pairs: 0, constants: 0, acts: false, quiet_until: 0.0 };
-            if blocks.last().is_none_or(|last: &Block| last.key() != first.key()) {
-                blocks.push(first);
-            }
-            if let Some(last) = blocks.last_mut() {
-                last.pairs |= 1 << lane;
-            }
-        }
-        records.clear();
-        records.resize(blocks.len() * Self::FIELDS * BLOCK, 0.0);
+        let all = self.stores.iter().flat_map(|store| self.touching_in(store));
+        all.map(|touching| {
+            (Self::history(Some(touching.record), touching.lane, touching.reduced_radius), touching.pair)
+        })
     }
 
     fn find_constants(&mut self, state: &State) {
-        let Store { blocks, constants, .. } = &mut self.now;
+        let Self { stores, constants, laws, .. } = self;
         constants.clear();
-        for block in blocks {
+        for block in stores.iter_mut().flat_map(|store| &mut store.blocks) {
             let mut rows = [0.0; 2 * BLOCK];
             for lane in block.lanes() {
                 let [i, j] = [block.i, block.j].map(|p| p as usize + lane);
                 let mass = reduced_mass(state.mass[i], state.mass[j]);
                 rows[lane] = reduced_radius(state.radius0[i], state.radius0[j]);
-                rows[BLOCK + lane] = viscous_coefficient(self.laws.damping, mass, 1.0);
+                rows[BLOCK + lane] = viscous_coefficient(laws.damping, mass, 1.0);
             }
             block.constants = constants.place(&rows);
         }
+        constants.close();
     }
 
-    /// Fills the records from the old ones, and for pairs that were not there afresh; returns what friction had stored
-    /// in pairs that left (J).
-    fn take_over(&mut self, state: &State) -> f64 {
-        let (mut lost, mut o) = (0.0, 0);
-        let old = std::mem::take(&mut self.old);
-        let (size, laws) = (Self::FIELDS * BLOCK, self.laws);
-        let leaving = |o: usize, lanes: &mut dyn Iterator<Item = usize>| -> f64 {
-            lanes.map(|lane| leave(&laws, &Self::history(&old, o, lane))).sum()
+    /// The blocks of one chunk for the pairs of `list`, with the records of `old`, and for pairs that were not there afresh;
+    /// and what friction had stored in pairs that left, block by block of the old ones (J).
+    fn renewed(&self, list: &[(u32, u32)], old: &Store, state: &State) -> (Store, Vec<f64>) {
+        let mut keys: Vec<u64> = list.iter().map(|(i, j)| key(*i, *j)).collect();
+        keys.sort_unstable();
+        let mut store = Store::of(&keys, kernel::rows::<T>());
+        let (mut lost, mut o) = (Vec::new(), 0);
+        let mut leaving = |block: &Block, lanes: &mut dyn Iterator<Item = usize>| {
+            let Some(record) = old.record(block, Self::FIELDS) else { return };
+            let radius = |lane: usize| self.constants.rows()[block.constants as usize + lane];
+            lost.push(lanes.map(|lane| leave(&self.laws, &Self::history(Some(record), lane, radius(lane)))).sum());
         };
-        for b in 0..self.now.blocks.len() {
-            let block = self.now.blocks[b];
+        store.remember(Self::FIELDS, kernel::rows::<T>(), |block, numbers| {
             while o < old.blocks.len() && old.blocks[o].key() < block.key() {
-                lost += leaving(o, &mut old.blocks[o].lanes());
+                leaving(&old.blocks[o], &mut old.blocks[o].lanes());
                 o += 1;
             }
-            let before = old.blocks.get(o).filter(|before| before.key() == block.key()).copied();
+            let before = old.blocks.get(o).filter(|before| before.key() == block.key());
             let kept = before.map_or(0, |before| before.pairs);
+            let record = before.and_then(|before| old.record(before, Self::FIELDS));
             for lane in block.lanes() {
-                if kept >> lane & 1 == 1 {
-                    (0..Self::FIELDS).for_each(|field| {
-                        let from = old.records[o * size + field * BLOCK + lane];
-                        self.now.records[b * size + field * BLOCK + lane] = from;
-                    });
-                } else {
-                    self.set_up(b, lane, state);
+                if kept >> lane & 1 == 0 {
+                    numbers[History::<N, T>::OFFSET * BLOCK + lane] = self.offset_at_first(block, lane, state);
+                } else if let Some(record) = record {
+                    (0..Self::FIELDS).map(|k| k * BLOCK + lane).for_each(|at| numbers[at] = record[at]);
                 }
             }
             if let Some(before) = before {
-                lost += leaving(o, &mut before.lanes().filter(|lane| block.pairs >> lane & 1 == 0));
+                leaving(before, &mut before.lanes().filter(|lane| block.pairs >> lane & 1 == 0));
                 o += 1;
             }
-        }
-        (o..old.blocks.len()).for_each(|o| lost += leaving(o, &mut old.blocks[o].lanes()));
-        self.old = old;
-        lost
+        });
+        old.blocks[o..].iter().for_each(|block| leaving(block, &mut block.lanes()));
+        (store, lost)
     }
 
-    /// Where each chunk finds its blocks, and room for what they do.
+    /// Overlap that does not count of a pair that is new in the list (m). During a run it was beyond reach until now, or a
+    /// bond has just broken.
+    fn offset_at_first(&self, block: &Block, lane: usize, state: &State) -> f64 {
+        let [i, j] = [block.i, block.j].map(|p| p as usize + lane);
+        if state.step > 0 { self.offset(i, j, state) } else { 0.0 }
+    }
+
+    /// What hangs on the blocks of all chunks together.
     fn index(&mut self, state: &State) {
-        let chunks = state.len().div_ceil(CHUNK);
-        let blocks = &self.now.blocks;
-        self.starts.clear();
-        self.starts.extend((0..=chunks).map(|c| blocks.partition_point(|b| (b.i as usize) < c * CHUNK) as u32));
-        self.actions.clear();
-        self.actions.resize((blocks.len() * kernel::rows::<T>() + 2) * BLOCK, 0.0);
-        self.partial.clear();
-        self.partial.resize(chunks, ChunkSums::default());
-        self.places.index(blocks, state.len());
-    }
-
-    /// A pair that is new in the list. During a run it was beyond reach until now, or a bond has just broken.
-    fn set_up(&mut self, block: usize, lane: usize, state: &State) {
-        if state.step > 0 {
-            let [i, j] = [self.now.blocks[block].i, self.now.blocks[block].j].map(|p| p as usize + lane);
-            let offset = self.offset(i, j, state);
-            self.now.records[Self::place(block, History::<N, T>::OFFSET, lane)] = offset;
-        }
+        self.find_constants(state);
+        self.places.index(&self.stores, state.len());
     }
 
     /// Overlap that does not count between two particles that were not a pair until now (m). Across a break the two pieces
@@ -234,43 +192,50 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
 
 impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums {
-        std::mem::swap(&mut self.now, &mut self.old);
-        self.keys.clear();
-        self.keys.extend(list.pairs.iter().map(|(i, j)| key(*i, *j)));
-        self.keys.par_sort_unstable();
-        self.lay_out();
-        self.find_constants(state);
-        let friction = self.take_over(state);
+        let mut stores = std::mem::take(&mut self.stores);
+        stores.resize_with(state.len().div_ceil(CHUNK), Store::default);
+        let from = |chunk: usize| list.pairs.partition_point(|(i, _)| (*i as usize) < chunk * CHUNK);
+        let renewed = stores.par_iter_mut().enumerate().map(|(chunk, store)| {
+            let (new, lost) = self.renewed(&list.pairs[from(chunk)..from(chunk + 1)], store, state);
+            *store = new;
+            lost
+        });
+        let lost: Vec<Vec<f64>> = renewed.collect();
+        self.stores = stores;
         self.index(state);
+        let friction = lost.iter().flatten().fold(0.0, |sum, lost| sum + lost);
         ChunkSums { friction, ..ChunkSums::default() }
     }
 
     fn compute(&mut self, state: &mut State) -> ChunkSums {
         let (laws, arch, deepest, closing) = (&self.laws, self.arch, self.deepest, self.closing);
-        let (seen, sides) = state.split_contacts();
-        let end = self.actions.len() - BLOCK;
-        let work = Work {
-            first: 0,
-            starts: &self.starts,
-            blocks: &mut self.now.blocks,
-            records: &mut self.now.records,
-            constants: self.now.constants.rows(),
-            actions: &mut self.actions[BLOCK..end],
-            sides,
-            partial: &mut self.partial,
-        };
-        work.share(Self::FIELDS, kernel::rows::<T>(), &|chunk| {
-            arch.dispatch(kernel::Chunk { laws, seen: &seen, deepest, closing, work: chunk });
-        });
+        let constants = self.constants.rows();
+        let (seen, ContactSides { force: [fx, fy, fz], torque: [tx, ty, tz] }) = state.split_contacts();
+        (
+            self.stores.par_iter_mut(),
+            fx.par_chunks_mut(CHUNK),
+            fy.par_chunks_mut(CHUNK),
+            fz.par_chunks_mut(CHUNK),
+            tx.par_chunks_mut(CHUNK),
+            ty.par_chunks_mut(CHUNK),
+            tz.par_chunks_mut(CHUNK),
+        )
+            .into_par_iter()
+            .with_max_len(1)
+            .enumerate()
+            .for_each(|(chunk, (store, fx, fy, fz, tx, ty, tz))| {
+                let sides = ContactSides { force: [fx, fy, fz], torque: [tx, ty, tz] };
+                let first = chunk * CHUNK;
+                arch.dispatch(kernel::Chunk { laws, seen: &seen, deepest, closing, constants, first, store, sides });
+            });
         let mut sum = ChunkSums::beyond(deepest);
-        self.partial.iter().for_each(|p| sum.add(p));
+        self.stores.iter().for_each(|store| sum.add(&store.partial));
         self.deepest = sum.deepest;
         sum
     }
 
     fn second_sides(&self) -> Option<SecondSides<'_>> {
-        let Self { places, actions, .. } = self;
-        Some(SecondSides { places, blocks: &self.now.blocks, actions, turn: T::ACTIVE })
+        Some(SecondSides { places: &self.places, stores: &self.stores, turn: T::ACTIVE })
     }
 
     fn elastic_energy(&self, state: &State) -> f64 {
@@ -284,64 +249,120 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     }
 
     fn active(&self) -> usize {
-        self.touching().count()
+        self.stores.iter().map(|store| self.touching_in(store).count()).sum()
     }
 
     fn candidates(&self) -> usize {
-        self.keys.len()
+        let pairs = |block: &Block| block.pairs.count_ones() as usize;
+        self.stores.iter().flat_map(|store| &store.blocks).map(pairs).sum()
     }
 
-    fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
-        for (history, pair @ [i, j]) in self.touching() {
-            let d = state.x.get(j) - state.x.get(i);
-            let approach = (state.v.get(i) - state.v.get(j)).dot(d) / d.length();
-            let overlap = Self::overlap(&history, state, pair);
-            let Some(k) = foreseen_stiffness(&self.laws, &history, overlap, approach, horizon) else { continue };
+    fn stiffness(&self, state: &State, chunk: usize, horizon: f64) -> Vec<[f64; 2]> {
+        let store = self.stores.get(chunk);
+        store.map_or_else(Vec::new, |store| self.arch.dispatch(Foresee { contacts: self, store, state, horizon }))
+    }
+
+    fn elements(&self, state: &State, chunk: usize, stiffness: &[[f64; 2]], each: &mut dyn FnMut(Element)) {
+        let touching = self.stores.get(chunk).into_iter().flat_map(|store| self.touching_in(store));
+        for (Touching { pair: [i, j], .. }, k) in touching.zip(stiffness).filter(|(_, k)| **k != [0.0; 2]) {
             let mass = reduced_mass(state.mass[i], state.mass[j]);
             let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
-            let nodes = [i as u32, j as u32, 0];
-            out.contact(nodes, [1.0, 1.0, 0.0], k, [state.radius[i], state.radius[j]], viscosity);
+            let (nodes, arms) = ([i as u32, j as u32, 0], [state.radius[i], state.radius[j]]);
+            each(Element::contact(nodes, [1.0, 1.0, 0.0], *k, arms, viscosity));
         }
     }
 
     fn save(&self, out: &mut Writer) {
-        let acts: Vec<(bool, f64)> = self.now.blocks.iter().map(|block| (block.acts, block.quiet_until)).collect();
-        out.put(&self.keys);
+        let keys: Vec<u64> = self.stores.iter().flat_map(Store::keys).collect();
+        let blocks = || self.stores.iter().flat_map(|store| store.blocks.iter().map(move |block| (store, block)));
+        let acts: Vec<(bool, f64)> = blocks().map(|(_, block)| (block.acts, block.quiet_until)).collect();
+        let nothing = vec![0.0; Self::FIELDS * BLOCK];
+        let record = |(store, block): (&'_ Store, _)| store.record(block, Self::FIELDS).unwrap_or(&nothing).to_vec();
+        let records: Vec<f64> = blocks().flat_map(record).collect();
+        out.put(&keys);
         out.put(&acts);
-        out.put(&self.now.records);
+        out.put(&records);
         out.put(&self.deepest);
     }
 
     fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit> {
-        self.keys = from.take()?;
-        if self.keys.iter().any(|key| pair(*key)[1] as usize >= state.len()) || !self.keys.is_sorted() {
+        let keys: Vec<u64> = from.take()?;
+        if keys.iter().any(|key| pair(*key)[1] as usize >= state.len()) || !keys.is_sorted() {
             return Err(Unfit("its contacts are those of other particles".into()));
         }
-        self.lay_out();
-        let mut acts = vec![(false, 0.0); self.now.blocks.len()];
+        let chunks = 0..state.len().div_ceil(CHUNK);
+        let first = |chunk: usize| keys.partition_point(|key| pair(*key)[0] as usize / CHUNK < chunk);
+        let of_chunk = |chunk| Store::of(&keys[first(chunk)..first(chunk + 1)], kernel::rows::<T>());
+        self.stores = chunks.map(of_chunk).collect();
+        let blocks = self.stores.iter().map(|store| store.blocks.len()).sum();
+        let (mut acts, mut records) = (vec![(false, 0.0); blocks], vec![0.0; blocks * Self::FIELDS * BLOCK]);
         from.take_into(&mut acts)?;
-        self.now.blocks.iter_mut().zip(acts).for_each(|(block, (acts, quiet_until))| {
-            (block.acts, block.quiet_until) = (acts, quiet_until);
-        });
-        from.take_into(&mut self.now.records)?;
+        from.take_into(&mut records)?;
+        let mut records = records.chunks(Self::FIELDS * BLOCK);
+        let mut acts = acts.into_iter();
+        for store in &mut self.stores {
+            let fill = |_: &Block, numbers: &mut [f64]| {
+                records.next().into_iter().for_each(|record| numbers.copy_from_slice(record));
+            };
+            store.remember(Self::FIELDS, kernel::rows::<T>(), fill);
+            for (block, (acts, quiet_until)) in store.blocks.iter_mut().zip(&mut acts) {
+                // What touches has a record.
+                (block.acts, block.quiet_until) = (acts && block.record != Block::NOTHING, quiet_until);
+            }
+        }
         self.deepest = from.take()?;
-        self.find_constants(state);
         self.index(state);
         Ok(())
     }
 
     fn bytes(&self, particles: usize) -> Bytes {
-        let store = |s: &Store| behind(&s.blocks) + behind(&s.records) + s.constants.bytes();
+        let sizes = |size: fn(&Store) -> usize| self.stores.iter().map(size).sum::<usize>();
         let wires = behind(&self.wire_of) + behind(&self.rest_length);
-        let lists = wires + behind(&self.keys) + behind(&self.starts) + behind(&self.partial) + self.places.bytes();
-        let (records, actions) = (size_of_val(&self.now.records[..]), size_of_val(&self.actions[..]));
+        let records = sizes(|store| size_of_val(&store.records[..]));
+        let actions = sizes(|store| size_of_val(&store.actions[..]));
         // x, v, ω, radius and thinning in; forces and torques of first sides cleared, and added to.
         let per_particle = 3 * VECTOR + 2 * NUMBER + 6 * VECTOR;
         Bytes {
-            kept: store(&self.now) + store(&self.old) + behind(&self.actions) + lists,
+            kept: sizes(Store::bytes) + behind(&self.stores) + self.constants.bytes() + self.places.bytes() + wires,
             // Records in and out; actions out, and in again where forces are added up.
-            moved: 2 * records + 2 * actions + size_of_val(&self.now.blocks[..]) + particles * per_particle,
+            moved: 2 * records + 2 * actions + sizes(|store| size_of_val(&store.blocks[..])) + particles * per_particle,
         }
+    }
+}
+
+/// A pair that touches.
+struct Touching<'a> {
+    reduced_radius: f64,
+    record: &'a [f64],
+    lane: usize,
+    pair: [usize; 2],
+}
+
+/// Stiffness of the touching pairs of one chunk, with the instructions of the machine: the laws round as these do, and
+/// without them a library function has to ([`Real::mul_add`](crate::base::lanes::Real::mul_add)).
+struct Foresee<'a, N: NormalLaw, T: TangentialLaw> {
+    contacts: &'a SphereContacts<N, T>,
+    store: &'a Store,
+    state: &'a State,
+    horizon: f64,
+}
+
+impl<N: NormalLaw, T: TangentialLaw> WithSimd for Foresee<'_, N, T> {
+    type Output = Vec<[f64; 2]>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Self { contacts, store, state, horizon } = self;
+        let mut all = Vec::new();
+        for Touching { reduced_radius, record, lane, pair: [i, j] } in contacts.touching_in(store) {
+            let history = SphereContacts::history(Some(record), lane, reduced_radius);
+            let d = state.x.get(j) - state.x.get(i);
+            let approach = (state.v.get(i) - state.v.get(j)).dot(d) / d.length();
+            let overlap = SphereContacts::overlap(&history, state, [i, j]);
+            let foreseen = foreseen_stiffness(&contacts.laws, &history, overlap, approach, horizon);
+            all.push(foreseen.unwrap_or_default());
+        }
+        all
     }
 }
 

@@ -1,6 +1,6 @@
 //! What blocks of contacts do to their second sides, seen from the particles that these are.
 
-use super::block::Block;
+use super::store::Store;
 use crate::base::lanes::{BLOCK, Lanes, Real};
 use crate::engine::bytes::behind;
 use pulp::Simd;
@@ -17,6 +17,7 @@ pub struct Places {
 /// Contacts of a block, seen from a block of particles.
 #[derive(Debug, Clone, Copy, Default)]
 struct Entry {
+    chunk: u32,
     block: u32,
     /// Place in the block of contacts less place in the block of particles.
     shift: i32,
@@ -29,15 +30,21 @@ impl Places {
     }
 
     /// Finds the entries of `n` particles, those of each in the order of blocks.
-    pub fn index(&mut self, blocks: &[Block], n: usize) {
+    pub fn index<'a>(&mut self, stores: &'a [Store], n: usize) {
         let count = n.div_ceil(BLOCK);
         self.start.clear();
         self.start.resize(count + 1, 0);
+        let blocks = || {
+            let of_chunk = |(chunk, store): (usize, &'a Store)| {
+                store.blocks.iter().enumerate().map(move |(b, block)| ([chunk, b].map(|k| k as u32), block.j))
+            };
+            stores.iter().enumerate().flat_map(of_chunk)
+        };
         let entries = || {
-            blocks.iter().enumerate().flat_map(move |(b, block)| {
-                let (at, shift) = (block.j as usize / BLOCK, block.j as i32 % BLOCK as i32);
-                let low = (at, Entry { block: b as u32, shift: -shift });
-                let high = (at + 1, Entry { block: b as u32, shift: BLOCK as i32 - shift });
+            blocks().flat_map(move |([chunk, block], j)| {
+                let (at, shift) = (j as usize / BLOCK, j as i32 % BLOCK as i32);
+                let low = (at, Entry { chunk, block, shift: -shift });
+                let high = (at + 1, Entry { chunk, block, shift: BLOCK as i32 - shift });
                 let reaches = shift > 0 && at + 1 < count;
                 std::iter::once(low).chain(reaches.then_some(high))
             })
@@ -46,8 +53,7 @@ impl Places {
         for at in 0..count {
             self.start[at + 1] += self.start[at];
         }
-        self.entries.clear();
-        self.entries.resize(self.start[count] as usize, Entry::default());
+        self.entries = vec![Entry::default(); self.start[count] as usize];
         // Filling moves every start on to its end, which is the start of the next: so they are put back by one.
         for (at, entry) in entries() {
             self.entries[self.start[at] as usize] = entry;
@@ -62,8 +68,7 @@ impl Places {
 #[derive(Clone, Copy)]
 pub struct SecondSides<'a> {
     pub(super) places: &'a Places,
-    pub(super) blocks: &'a [Block],
-    pub(super) actions: &'a [f64],
+    pub(super) stores: &'a [Store],
     pub(super) turn: bool,
 }
 
@@ -77,18 +82,20 @@ impl SecondSides<'_> {
         let place = Lanes::load(simd, &PLACES, lane);
         let rows = if self.turn { 6 } else { 3 };
         let entries = self.places.start[block] as usize..self.places.start[block + 1] as usize;
-        for Entry { block, shift } in &self.places.entries[entries] {
-            if !self.blocks[*block as usize].acts {
+        for Entry { chunk, block, shift } in &self.places.entries[entries] {
+            let store = &self.stores[*chunk as usize];
+            let block = &store.blocks[*block as usize];
+            if !block.acts {
                 continue;
             }
             // Places beyond the ends of a row are those of other rows, which the mask leaves out.
             let theirs = place + f64::from(*shift);
             let within = theirs.simd_gt(theirs.splat(-0.5)) & theirs.splat(BLOCK as f64 - 0.5).simd_gt(theirs);
             // The actions begin with a block to spare.
-            let row = (1 + *block as usize * rows) * BLOCK + lane;
+            let row = (1 + block.record as usize * rows) * BLOCK + lane;
             let from = row.wrapping_add_signed(*shift as isize);
             for (k, sum) in sum.iter_mut().take(rows).enumerate() {
-                let part = Lanes::load(simd, self.actions, from + k * BLOCK);
+                let part = Lanes::load(simd, &store.actions, from + k * BLOCK);
                 let part = Lanes::select(within, part, place.splat(0.0));
                 *sum += if k < 3 { -part } else { part };
             }

@@ -2,7 +2,9 @@
 
 use crate::engine::bytes::behind;
 use crate::engine::state::State;
+use crate::law::contact::line::CELLS;
 use crate::strand::assembly::Assembly;
+use std::ops::Range;
 
 /// Bonds to either side that must hold for a bond to count as far from an end.
 const MARGIN: usize = 4;
@@ -13,6 +15,8 @@ pub struct Chains {
     pub wire_of: Vec<u32>,
     /// Per wire, the number of bonds within which it cannot touch itself.
     pub apart: Vec<u32>,
+    /// Spacing of each wire (m).
+    spacing: Vec<f64>,
     /// Whether each slot had a bond at the start.
     bonded: Vec<bool>,
 }
@@ -21,7 +25,20 @@ impl Chains {
     /// Of `assembly`; `apart` per wire as [`crate::engine::neighbours::apart`] gives it.
     pub fn new(assembly: &Assembly, apart: Vec<u32>) -> Self {
         let bonded = (0..assembly.len()).map(|slot| assembly.is_bond(slot)).collect();
-        Self { wire_of: assembly.wire_of.clone(), apart, bonded }
+        let spacing = assembly.wires.iter().map(|w| assembly.rest_length[w.first]).collect();
+        Self { wire_of: assembly.wire_of.clone(), apart, spacing, bonded }
+    }
+
+    /// Spacing of the wire of particle `p` (m); 0 of a free sphere.
+    pub fn spacing(&self, p: usize) -> f64 {
+        self.spacing.get(self.wire_of[p] as usize).copied().unwrap_or(0.0)
+    }
+
+    /// Length of a cell of the stretch around particle `p`, along the undeformed wire (m).
+    #[inline(always)]
+    pub fn cell_length(&self, p: usize) -> f64 {
+        let [low, high] = self.reach(p);
+        (high - low) / CELLS as f64 * self.spacing(p)
     }
 
     /// Whether two particles belong to one wire.
@@ -46,12 +63,12 @@ impl Chains {
 
     /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
-        behind(&self.wire_of) + behind(&self.apart) + behind(&self.bonded)
+        behind(&self.wire_of) + behind(&self.apart) + behind(&self.spacing) + behind(&self.bonded)
     }
 
-    /// Slots whose bond broke.
-    pub fn broken<'a>(&'a self, state: &'a State) -> impl Iterator<Item = usize> + 'a {
-        (0..self.bonded.len()).filter(|slot| self.bonded[*slot] && !state.whole[*slot])
+    /// Those of some slots whose bond broke.
+    pub fn broken<'a>(&'a self, slots: Range<usize>, state: &'a State) -> impl Iterator<Item = usize> + 'a {
+        slots.filter(|slot| self.bonded[*slot] && !state.whole[*slot])
     }
 
     /// Whether a particle has no bond: a free sphere, or what two breaks have left.

@@ -4,20 +4,19 @@
 use super::batch::{Answers, Batch, Gaps};
 use super::meeting::{Meets, Sides};
 use super::record::{Contact, Mode};
-use super::spread::{FarSum, NearSum};
+use super::spread::NearSum;
+use super::store::Store;
 use crate::engine::state::{ChunkSums, Deepest};
 use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
 use pulp::{Arch, Simd, WithSimd};
 
-/// What a chunk works with, kept for its memory.
+/// What a chunk works with.
 #[derive(Default)]
-pub struct Work {
+struct Work {
     gaps: Gaps,
     batch: Batch,
     answers: Answers,
-    /// What contacts do to the other wires' bonds.
-    pub acting: Vec<FarSum>,
 }
 
 /// The contacts of one chunk of particles.
@@ -26,12 +25,8 @@ pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
     pub arch: Arch,
     /// The first particle.
     pub first: usize,
-    pub contacts: &'a mut [Contact<N, T>],
-    /// That of each contact, in a row: most are not looked at.
-    pub quiet_until: &'a mut [f64],
+    pub store: &'a mut Store<N, T>,
     pub near: &'a mut [NearSum],
-    pub sum: ChunkSums,
-    pub work: &'a mut Work,
 }
 
 /// One contact by itself, with the instructions of the machine: the laws round as these do, and without them a library
@@ -53,102 +48,108 @@ impl<N: NormalLaw, T: TangentialLaw> WithSimd for Alone<'_, '_, N, T> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
-    /// The energies of the step.
-    pub fn compute(mut self) -> ChunkSums {
-        self.work.acting.clear();
+    /// Computes all; the deepest contact before this step is `deepest`.
+    pub fn compute(mut self, deepest: Deepest) {
+        let mut work = Work::default();
+        self.store.acting.clear();
+        self.store.sum = ChunkSums::beyond(deepest);
         self.near.fill(NearSum::default());
-        for k in 0..self.contacts.len() {
-            if self.quiet_until[k] > self.meets.state.travel {
+        for k in 0..self.store.len() {
+            if self.store.quiet_until[k] > self.meets.state.travel {
                 continue;
             }
-            let c = &self.contacts[k];
-            if c.mode == Mode::Point || c.edge {
+            let candidate = &self.store.candidates[k];
+            if candidate.mode == Mode::Point || candidate.edge {
                 self.alone(k);
-            } else if c.history.touching() {
-                self.take(k);
+            } else if self.store.touching(k) {
+                self.take(&mut work, k);
             } else {
-                self.work.gaps.take(k, c, self.meets.state);
-                if self.work.gaps.full() {
-                    self.part();
+                work.gaps.take(k, &self.contact(k), self.meets.state);
+                if work.gaps.full() {
+                    self.part(&mut work);
                 }
             }
         }
-        self.part();
-        self.run();
-        self.sum
+        self.part(&mut work);
+        self.run(&mut work);
     }
 
-    /// Adds up what contact `k` does, with the energies that it gives off.
-    fn book(&mut self, k: usize, act: &Sides, partial: ChunkSums) {
-        self.sum.add(&partial);
-        let c = &self.contacts[k];
-        self.quiet_until[k] = c.quiet_until;
+    #[inline(always)]
+    fn contact(&self, k: usize) -> Contact<N, T> {
+        self.store.contact(k, self.meets.chains)
+    }
+
+    /// Takes contact `k` back, and adds up what it does, with the energies that it gives off.
+    #[inline(always)]
+    fn book(&mut self, k: usize, c: &Contact<N, T>, act: &Sides, partial: ChunkSums) {
+        self.store.sum.add(&partial);
+        self.store.put(k, c);
         if act.near.acts {
             let sum = &mut self.near[c.i as usize - self.first];
             sum.acts = true;
             sum.force.iter_mut().zip(act.near.force).for_each(|(sum, f)| *sum += f);
             sum.moment += act.near.moment;
-            self.work.acting.push(act.far);
+            self.store.act(act.far);
         }
     }
 
     /// A contact that is taken by itself.
     #[inline(never)]
     fn alone(&mut self, k: usize) {
-        let (mut act, mut deepest) = (Sides::default(), self.sum.deepest);
-        let contact = &mut self.contacts[k];
-        let alone = Alone { meets: &self.meets, contact, act: &mut act, deepest: &mut deepest };
+        let (mut act, mut deepest) = (Sides::default(), self.store.sum.deepest);
+        let mut contact = self.contact(k);
+        let alone = Alone { meets: &self.meets, contact: &mut contact, act: &mut act, deepest: &mut deepest };
         let partial = self.arch.dispatch(alone);
-        self.book(k, &act, ChunkSums { deepest, ..partial });
+        self.book(k, &contact, &act, ChunkSums { deepest, ..partial });
     }
 
     /// Puts a contact into the batch, which is run when it is full.
-    fn take(&mut self, k: usize) {
-        self.work.batch.take(k, &self.contacts[k], &self.meets);
-        if self.work.batch.full() {
-            self.run();
+    fn take(&mut self, work: &mut Work, k: usize) {
+        work.batch.take(k, &self.contact(k), &self.meets);
+        if work.batch.full() {
+            self.run(work);
         }
     }
 
     /// Looks whether contacts that were apart still are.
     #[inline(never)]
-    fn part(&mut self) {
-        let found = self.arch.dispatch(self.work.gaps.find());
-        for lane in 0..self.work.gaps.contacts().len() {
-            let (k, [t, gap]) = (self.work.gaps.contacts()[lane], found.map(|row| row[lane]));
+    fn part(&mut self, work: &mut Work) {
+        let found = self.arch.dispatch(work.gaps.find());
+        for lane in 0..work.gaps.contacts().len() {
+            let (k, [t, gap]) = (work.gaps.contacts()[lane], found.map(|row| row[lane]));
             if !(0.0..=1.0).contains(&t) {
                 // On to the next bond.
                 self.alone(k);
             } else if gap < 0.0 {
-                self.take(k);
+                self.take(work, k);
             } else {
-                let c = &mut self.contacts[k];
+                let mut c = self.contact(k);
                 c.place.t = t;
-                self.meets.apart(c, gap);
-                self.quiet_until[k] = c.quiet_until;
+                self.meets.apart(&mut c, gap);
+                self.store.put(k, &c);
             }
         }
-        self.work.gaps.clear();
+        work.gaps.clear();
     }
 
     /// Takes contacts that touch through the laws.
     #[inline(never)]
-    fn run(&mut self) {
-        let Work { batch, answers, .. } = &mut *self.work;
+    fn run(&mut self, work: &mut Work) {
+        let Work { batch, answers, .. } = work;
         self.arch.dispatch(batch.answer(&self.meets, answers));
-        for lane in 0..self.work.batch.contacts().len() {
-            let k = self.work.batch.contacts()[lane];
-            if !(0.0..=1.0).contains(&self.work.answers.place(lane)) {
+        for lane in 0..batch.contacts().len() {
+            let k = batch.contacts()[lane];
+            if !(0.0..=1.0).contains(&answers.place(lane)) {
                 // On to the next bond.
                 self.alone(k);
                 continue;
             }
-            let (mut act, mut deepest) = (Sides::default(), self.sum.deepest);
-            let c = &mut self.contacts[k];
-            let touch = self.work.answers.at(lane, c);
-            let partial = self.meets.finish(c, &touch, 0.0, &mut act, &mut deepest);
-            self.book(k, &act, ChunkSums { deepest, ..partial });
+            let (mut act, mut deepest) = (Sides::default(), self.store.sum.deepest);
+            let mut c = self.contact(k);
+            let touch = answers.at(lane, &mut c);
+            let partial = self.meets.finish(&mut c, &touch, 0.0, &mut act, &mut deepest);
+            self.book(k, &c, &act, ChunkSums { deepest, ..partial });
         }
-        self.work.batch.clear();
+        batch.clear();
     }
 }

@@ -27,6 +27,7 @@ mod curve;
 mod meeting;
 mod record;
 mod spread;
+mod store;
 
 use super::pair::{History, Laws, foreseen_stiffness, leave};
 use super::spheres::second::SecondSides;
@@ -35,7 +36,7 @@ use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::{PairList, apart};
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{CHUNK, ChunkSums, Deepest, State};
-use crate::engine::time_step::Stiffness;
+use crate::engine::time_step::Element;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{reduced_mass, reduced_radius};
 use crate::law::contact::line::{CELLS, LineStiffness, patch_length};
@@ -43,13 +44,14 @@ use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 use crate::strand::assembly::Assembly;
 use chains::Chains;
-use chunk::{Chunk, Work};
-use curve::{Around, Place};
+use chunk::Chunk;
+use curve::{Around, Place, Weights};
 use meeting::Meets;
 use pulp::Arch;
 use rayon::prelude::*;
 use record::{Contact, Kind, Mode};
 use spread::{FarSum, NearSum, Spread};
+use store::{Candidate, Store};
 
 /// Movement of particles moves points of a centreline by up to this (-): the weights of a cubic, or of a quartic near an
 /// end of the wire.
@@ -65,21 +67,11 @@ pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
     laws: Laws<N, T>,
     line: LineStiffness,
     chains: Chains,
-    /// Spacing of each wire (m).
-    spacing: Vec<f64>,
-    contacts: Vec<Contact<N, T>>,
-    old: Vec<Contact<N, T>>,
-    /// Per chunk of particles the first of its contacts, and their number at the end.
-    starts: Vec<usize>,
-    /// That of each contact.
-    quiet_until: Vec<f64>,
+    /// Per chunk of particles.
+    stores: Vec<Store<N, T>>,
     spread: Spread,
-    work: Vec<Work>,
-    partial: Vec<ChunkSums>,
     /// The deepest contact so far.
     deepest: Deepest,
-    /// Directed candidates (particle, other particle), kept for their memory.
-    directed: Vec<(u32, u32)>,
     /// See [`closing`].
     closing: f64,
     arch: Arch,
@@ -92,16 +84,9 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             laws,
             line: LineStiffness::default(),
             chains: Chains::new(assembly, apart(assembly)),
-            spacing: assembly.wires.iter().map(|w| assembly.rest_length[w.first]).collect(),
-            contacts: Vec::new(),
-            old: Vec::new(),
-            starts: Vec::new(),
-            quiet_until: Vec::new(),
+            stores: Vec::new(),
             spread: Spread::default(),
-            work: Vec::new(),
-            partial: Vec::new(),
             deepest: Deepest::default(),
-            directed: Vec::new(),
             closing: SPREAD * closing(assembly),
             arch: Arch::new(),
         }
@@ -114,19 +99,17 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         if alone[0] != alone[1] {
             return alone[0];
         }
-        let spacing = |p: u32| self.spacing.get(self.chains.wire_of[p as usize] as usize).copied().unwrap_or(0.0);
-        let (a, b) = (spacing(i), spacing(j));
+        let [a, b] = [i, j].map(|p| self.chains.spacing(p as usize));
         // Wires of one spacing have lengths that differ by rounding.
         if (a - b).abs() < 1e-9 * a { i > j } else { a < b }
     }
 
-    /// The pairs, each with the particle that is followed first.
-    fn direct(&mut self, list: &PairList, state: &State) {
-        let mut directed = std::mem::take(&mut self.directed);
-        directed.clear();
-        directed.extend(list.pairs.iter().map(|(i, j)| if self.follows(*i, *j, state) { (*i, *j) } else { (*j, *i) }));
+    /// The pairs, each with the particle that is followed first, sorted.
+    fn directed(&self, list: &PairList, state: &State) -> Vec<(u32, u32)> {
+        let direct = |(i, j): &(u32, u32)| if self.follows(*i, *j, state) { (*i, *j) } else { (*j, *i) };
+        let mut directed: Vec<(u32, u32)> = list.pairs.iter().map(direct).collect();
         directed.sort_unstable();
-        self.directed = directed;
+        directed
     }
 
     fn fresh(&self, i: u32, j: u32, kind: Kind, state: &State) -> Contact<N, T> {
@@ -137,8 +120,6 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             radius = (radius * a).sqrt();
         }
         let end_to_end = kind == Kind::Stretch && self.end_to_end(i, j, state);
-        let rest = self.spacing.get(self.chains.wire_of[i as usize] as usize).copied().unwrap_or(0.0);
-        let [low, high] = self.chains.reach(i as usize);
         let mut contact = Contact {
             quiet_until: 0.0,
             i,
@@ -151,7 +132,7 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             history: History::new(radius),
             dents: [0.0; CELLS],
             shares: [1.0; CELLS],
-            cell_length: (high - low) / CELLS as f64 * rest,
+            cell_length: self.chains.cell_length(i as usize),
             per_length: 0.0,
             viscosity: 0.0,
             overlap: 0.0,
@@ -191,29 +172,17 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         self.chains.one_wire(i, j) && near() && !self.chains.one_piece(i, j, state)
     }
 
-    /// Where each chunk finds its contacts, and room for what they do.
-    fn index(&mut self, state: &State) {
-        let chunks = state.len().div_ceil(CHUNK);
-        let contacts = &self.contacts;
-        self.starts.clear();
-        self.starts.extend((0..=chunks).map(|chunk| contacts.partition_point(|c| (c.i as usize) < chunk * CHUNK)));
-        self.spread.resize(state.len());
-        self.work.resize_with(chunks, Work::default);
-        self.partial.clear();
-        self.partial.resize(chunks, ChunkSums::default());
-    }
-
     fn meets<'a>(&'a self, state: &'a State) -> Meets<'a, N, T> {
         Meets { laws: &self.laws, line: &self.line, state, chains: &self.chains, closing: self.closing }
     }
 
     /// One contact per particle and stretch of the other body: the nearest particle of each run of candidates. A run
     /// ends where the other wire is broken, for its two ends touch by themselves. Broken bonds have a contact of their
-    /// own.
-    fn runs(&mut self, state: &State) -> Vec<(u32, Kind, u32)> {
-        let mut out: Vec<(u32, Kind, u32)> = Vec::with_capacity(self.directed.len() / 3);
+    /// own. Of the candidates of one chunk.
+    fn runs(&self, directed: &[(u32, u32)], chunk: usize, state: &State) -> Vec<(u32, Kind, u32)> {
+        let mut out: Vec<(u32, Kind, u32)> = Vec::with_capacity(directed.len() / 3);
         let mut last: Option<(u32, u32, f64)> = None;
-        for (i, j) in self.directed.iter().copied() {
+        for (i, j) in directed.iter().copied() {
             let d = (state.x.get(i as usize) - state.x.get(j as usize)).length_squared();
             match &mut last {
                 Some((li, lj, ld)) if *li == i && j - *lj <= 2 && self.chains.one_piece(*lj, j, state) => {
@@ -235,89 +204,90 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         }
         // What two breaks have left alone meets its own wire again by the ends of its bonds.
         out.retain(|(i, kind, j)| *kind != Kind::Ball || !self.end_to_end(*i, *j, state));
-        out.extend(self.chains.broken(state).map(|slot| (slot as u32, Kind::Ends, slot as u32 + 1)));
+        let slots = chunk * CHUNK..state.len().min((chunk + 1) * CHUNK);
+        out.extend(self.chains.broken(slots, state).map(|slot| (slot as u32, Kind::Ends, slot as u32 + 1)));
         out.sort_unstable();
         out
+    }
+
+    /// The contacts of one chunk for its candidates, those that stay with what they remember in `old`; and what was lost with
+    /// each of those that left.
+    fn renewed(
+        &self,
+        directed: &[(u32, u32)],
+        chunk: usize,
+        old: &Store<N, T>,
+        state: &State,
+    ) -> (Store<N, T>, Vec<ChunkSums>) {
+        let runs = self.runs(directed, chunk, state);
+        let (mut store, mut taken) = (Store::like(old, runs.len()), vec![false; old.len()]);
+        let mut from = 0;
+        for (i, kind, j) in runs {
+            while from < old.len() && old.candidates[from].i < i {
+                from += 1;
+            }
+            // Where the bond under a contact broke, the contact is gone, and the two ends touch afresh.
+            let same = |c: &Candidate| {
+                let severed = c.joined && !state.whole[c.j as usize];
+                !severed && (c.j == j || c.j.abs_diff(j) <= 3 && self.chains.one_piece(c.j, j, state))
+            };
+            let kept = (from..old.len())
+                .take_while(|k| old.candidates[*k].i == i)
+                .filter(|k| old.candidates[*k].kind == kind && !taken[*k] && same(&old.candidates[*k]))
+                .min_by_key(|k| old.candidates[*k].j.abs_diff(j));
+            match kept {
+                Some(k) => {
+                    taken[k] = true;
+                    // What is near may have changed: a bond broke, or a contact belongs to another bond now.
+                    let mut kept = Contact { quiet_until: 0.0, ..old.contact(k, &self.chains) };
+                    self.place(&mut kept, state);
+                    store.push(&kept);
+                }
+                None => store.push(&self.fresh(i, j, kind, state)),
+            }
+        }
+        let left = (0..old.len()).filter(|k| !taken[*k] && old.touching(*k)).map(|k| old.contact(k, &self.chains));
+        let lost = |c: Contact<N, T>| ChunkSums {
+            released: c.energy,
+            friction: leave(&self.laws, &c.history),
+            ..Default::default()
+        };
+        let lost = left.map(lost).collect();
+        (store, lost)
     }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
     fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums {
-        std::mem::swap(&mut self.contacts, &mut self.old);
-        self.contacts.clear();
-        self.direct(list, state);
-        let mut lost = ChunkSums::default();
-        let mut from = 0;
-        for (i, kind, j) in self.runs(state) {
-            while from < self.old.len() && self.old[from].i < i {
-                from += 1;
-            }
-            // Where the bond under a contact broke, the contact is gone, and the two ends touch afresh.
-            let same = |c: &Contact<N, T>| {
-                let at = c.place.j;
-                let severed = c.place.joined && !state.whole[at as usize];
-                !severed && (at == j || at.abs_diff(j) <= 3 && self.chains.one_piece(at, j, state))
-            };
-            let kept = (from..self.old.len())
-                .take_while(|k| self.old[*k].i == i)
-                .filter(|k| self.old[*k].kind == kind && !self.old[*k].taken && same(&self.old[*k]))
-                .min_by_key(|k| self.old[*k].place.j.abs_diff(j));
-            match kept {
-                Some(k) => {
-                    self.old[k].taken = true;
-                    let mut kept = Contact { taken: false, quiet_until: 0.0, ..self.old[k] };
-                    self.place(&mut kept, state);
-                    self.contacts.push(kept);
-                }
-                None => {
-                    let fresh = self.fresh(i, j, kind, state);
-                    self.contacts.push(fresh);
-                }
-            }
-        }
-        for c in self.old.iter().filter(|c| !c.taken && c.history.touching()) {
-            lost.add(&ChunkSums { released: c.energy, friction: leave(&self.laws, &c.history), ..Default::default() });
-        }
-        // What is near may have changed: a bond broke, or a contact belongs to another bond now.
-        self.quiet_until.clear();
-        self.quiet_until.resize(self.contacts.len(), 0.0);
-        self.index(state);
-        lost
+        let directed = self.directed(list, state);
+        let mut stores = std::mem::take(&mut self.stores);
+        stores.resize_with(state.len().div_ceil(CHUNK), Store::default);
+        let from = |chunk: usize| directed.partition_point(|(i, _)| (*i as usize) < chunk * CHUNK);
+        let renewed = stores.par_iter_mut().enumerate().map(|(chunk, store)| {
+            let (new, lost) = self.renewed(&directed[from(chunk)..from(chunk + 1)], chunk, store, state);
+            *store = new;
+            lost
+        });
+        let lost: Vec<Vec<ChunkSums>> = renewed.collect();
+        self.stores = stores;
+        self.spread.resize(state.len());
+        let mut sum = ChunkSums::default();
+        lost.iter().flatten().for_each(|lost| sum.add(lost));
+        sum
     }
 
     fn compute(&mut self, state: &mut State) -> ChunkSums {
-        let Self {
-            laws,
-            line,
-            chains,
-            closing,
-            arch,
-            deepest,
-            contacts,
-            starts,
-            quiet_until,
-            spread,
-            work,
-            partial,
-            ..
-        } = self;
+        let Self { laws, line, chains, closing, arch, deepest, stores, spread, .. } = self;
         let (arch, before) = (*arch, *deepest);
         let meets = Meets { laws, line, state: &*state, chains, closing: *closing };
-        let mut tasks = Vec::with_capacity(partial.len());
-        let (mut contacts, mut quiet) = (&mut contacts[..], &mut quiet_until[..]);
-        for (chunk, (near, work)) in spread.near.chunks_mut(CHUNK).zip(&mut *work).enumerate() {
-            let count = starts[chunk + 1] - starts[chunk];
-            let (own, others) = contacts.split_at_mut(count);
-            let (quiet_until, other_quiet) = quiet.split_at_mut(count);
-            (contacts, quiet) = (others, other_quiet);
-            let (first, sum) = (chunk * CHUNK, ChunkSums::beyond(before));
-            tasks.push(Chunk { meets, arch, first, contacts: own, quiet_until, near, sum, work });
-        }
-        (tasks, &mut *partial).into_par_iter().for_each(|(task, partial)| *partial = task.compute());
-        let acting: Vec<&[FarSum]> = work.iter().map(|work| &work.acting[..]).collect();
+        let chunks = (stores.par_iter_mut(), spread.near.par_chunks_mut(CHUNK)).into_par_iter().with_max_len(1);
+        chunks.enumerate().for_each(|(chunk, (store, near))| {
+            Chunk { meets, arch, first: chunk * CHUNK, store, near }.compute(before);
+        });
+        let acting: Vec<&[FarSum]> = stores.iter().map(|store| &store.acting[..]).collect();
         spread.finish(&acting, chains, state, T::ACTIVE);
         let mut sum = ChunkSums::beyond(before);
-        partial.iter().for_each(|p| sum.add(p));
+        stores.iter().for_each(|store| sum.add(&store.sum));
         *deepest = sum.deepest;
         sum
     }
@@ -327,12 +297,11 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
     }
 
     fn elastic_energy(&self, _: &State) -> f64 {
-        let touching = self.contacts.iter().filter(|c| c.history.touching());
-        touching.map(|c| c.energy + leave(&self.laws, &c.history)).sum()
+        self.touching().map(|c| c.energy + leave(&self.laws, &c.history)).sum()
     }
 
     fn add_normal_forces(&self, onto: &mut [f64]) {
-        for c in self.contacts.iter().filter(|c| c.history.touching()) {
+        for c in self.touching() {
             onto[c.i as usize] += c.history.normal_force;
             for (node, share) in c.place.linear() {
                 onto[node] += c.history.normal_force * share;
@@ -341,72 +310,94 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
     }
 
     fn active(&self) -> usize {
-        self.contacts.iter().filter(|c| c.history.touching()).count()
+        self.stores.iter().map(Store::active).sum()
     }
 
     fn candidates(&self) -> usize {
-        self.contacts.len()
+        self.stores.iter().map(Store::len).sum()
     }
 
-    fn stiffness(&self, state: &State, horizon: f64, out: &mut Stiffness) {
-        for c in self.contacts.iter().filter(|c| c.history.touching()) {
-            let (near, far) =
-                (Around::new(&state.x, state, &self.chains, c.i as usize).weights(c.u), c.place.weights(state));
+    fn stiffness(&self, state: &State, chunk: usize, horizon: f64) -> Vec<[f64; 2]> {
+        let foreseen = |c: Contact<N, T>| {
+            let (near, far) = self.places(&c, state);
             let normal = far.mean(|p| state.x.get(p)) - near.mean(|p| state.x.get(p));
             let speed = near.mean(|p| state.v.get(p)) - far.mean(|p| state.v.get(p));
             let approach = speed.dot(normal) / normal.length();
-            let known = match c.kind {
-                Kind::Stretch => Some(self.foreseen(c, approach.max(0.0) * horizon)),
-                _ => foreseen_stiffness(&self.laws, &c.history, c.overlap, approach, horizon),
-            };
-            let Some(k) = known else { continue };
+            match c.kind {
+                Kind::Stretch => self.foreseen(&c, approach.max(0.0) * horizon),
+                _ => foreseen_stiffness(&self.laws, &c.history, c.overlap, approach, horizon).unwrap_or_default(),
+            }
+        };
+        self.touching_in(chunk).map(foreseen).collect()
+    }
+
+    fn elements(&self, state: &State, chunk: usize, stiffness: &[[f64; 2]], each: &mut dyn FnMut(Element)) {
+        for (c, k) in self.touching_in(chunk).zip(stiffness).filter(|(_, k)| **k != [0.0; 2]) {
+            let (near, far) = self.places(&c, state);
             let viscosity = c.viscosity * k[0].sqrt();
             let [b0, b1, b2, b3] = far.shares.map(f64::abs);
             // What the outer particles of the two curves take is counted for those next to them, which weigh the same.
             let next = c.place.j + u32::from(c.place.joined);
-            out.contact([c.i, c.place.j, next], [near.sum(), b0 + b1, b2 + b3], k, c.arm, viscosity);
+            let weights = [near.sum(), b0 + b1, b2 + b3];
+            each(Element::contact([c.i, c.place.j, next], weights, *k, c.arm, viscosity));
         }
     }
 
     fn save(&self, out: &mut Writer) {
-        out.put(&self.contacts);
-        out.put(&self.quiet_until);
+        let all = |store: &'_ Store<N, T>| (0..store.len()).map(|k| store.contact(k, &self.chains)).collect::<Vec<_>>();
+        let contacts: Vec<Contact<N, T>> = self.stores.iter().flat_map(all).collect();
+        let quiet_until: Vec<f64> = contacts.iter().map(|c| c.quiet_until).collect();
+        out.put(&contacts);
+        out.put(&quiet_until);
         out.put(&self.deepest);
     }
 
     fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit> {
-        self.contacts = from.take()?;
+        let contacts: Vec<Contact<N, T>> = from.take()?;
         let beyond = |p: u32| p as usize >= state.len();
-        if self.contacts.iter().any(|c| beyond(c.i) || beyond(c.place.j)) || !self.contacts.is_sorted_by_key(|c| c.i) {
+        if contacts.iter().any(|c| beyond(c.i) || beyond(c.place.j)) || !contacts.is_sorted_by_key(|c| c.i) {
             return Err(Unfit("its contacts are those of other particles".into()));
         }
-        self.quiet_until.resize(self.contacts.len(), 0.0);
-        from.take_into(&mut self.quiet_until)?;
+        let mut quiet_until = vec![0.0; contacts.len()];
+        from.take_into(&mut quiet_until)?;
         self.deepest = from.take()?;
-        self.index(state);
+        self.stores.clear();
+        self.stores.resize_with(state.len().div_ceil(CHUNK), Store::default);
+        for (c, quiet_until) in contacts.iter().zip(quiet_until) {
+            self.stores[c.i as usize / CHUNK].push(&Contact { quiet_until, ..*c });
+        }
+        self.spread.resize(state.len());
         Ok(())
     }
 
     fn bytes(&self, particles: usize) -> Bytes {
-        let lists = self.chains.bytes() + behind(&self.directed) + behind(&self.partial) + self.spread.bytes();
+        let sizes = |size: fn(&Store<N, T>) -> usize| self.stores.iter().map(size).sum::<usize>();
         // x, v, ω and radius in; sums out and in; force and torque out.
-        let per_particle = 3 * VECTOR + NUMBER + 2 * (size_of::<NearSum>() + size_of::<FarSum>()) + 2 * VECTOR;
+        let per_particle = 3 * VECTOR + NUMBER + 2 * size_of::<NearSum>() + 2 * VECTOR;
         Bytes {
-            kept: behind(&self.contacts)
-                + behind(&self.old)
-                + behind(&self.quiet_until)
-                + self.work.iter().map(|work| size_of::<Work>() + behind(&work.acting)).sum::<usize>()
-                + lists,
-            // Records in and out; what they do to the other side out and in.
-            moved: 2
-                * (size_of_val(&self.contacts[..])
-                    + self.work.iter().map(|work| size_of_val(&work.acting[..])).sum::<usize>())
-                + particles * per_particle,
+            kept: behind(&self.stores) + sizes(Store::bytes) + self.chains.bytes() + self.spread.bytes(),
+            moved: sizes(Store::moved) + particles * per_particle,
         }
     }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
+    /// All contacts that push.
+    fn touching(&self) -> impl Iterator<Item = Contact<N, T>> + '_ {
+        self.stores.iter().flat_map(|store| store.all_touching(&self.chains))
+    }
+
+    /// Those of one chunk.
+    fn touching_in(&self, chunk: usize) -> impl Iterator<Item = Contact<N, T>> + '_ {
+        self.stores.get(chunk).into_iter().flat_map(|store| store.all_touching(&self.chains))
+    }
+
+    /// Where a contact acts: the weights of particles on its own wire and on the other.
+    fn places(&self, c: &Contact<N, T>, state: &State) -> (Weights<5>, Weights<4>) {
+        let around = Around::new(&state.x, state, &self.chains, c.i as usize);
+        (around.weights(c.u), c.place.weights(state))
+    }
+
     /// Normal and tangential stiffness of a stretch that comes nearer by `closer` (m), in (N/m).
     fn foreseen(&self, c: &Contact<N, T>, closer: f64) -> [f64; 2] {
         let modulus = self.laws.normal.effective_modulus();

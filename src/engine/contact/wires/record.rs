@@ -45,11 +45,9 @@ pub enum Touch {
     },
 }
 
-/// Particle `i` against another body near `place` of it. What a contact that is apart needs comes first, so that it takes
-/// one line of the cache: most candidates are apart.
+/// Particle `i` against another body near `place` of it, as it is worked with; [`Store`](super::store::Store) keeps less.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(bound = "")]
-#[repr(C)]
 pub struct Contact<N: NormalLaw, T: TangentialLaw> {
     /// Nothing can touch until [`State::travel`](crate::engine::state::State::travel) has reached this (m).
     pub quiet_until: f64,

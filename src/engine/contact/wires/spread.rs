@@ -39,45 +39,54 @@ pub struct FarSum {
     pub acts: bool,
 }
 
-/// The sums of all particles and bonds.
+/// The sums of all particles, and which contacts act on which bonds.
 #[derive(Default)]
 pub struct Spread {
     pub near: Vec<NearSum>,
-    far: Vec<FarSum>,
-    /// What acts, by list and place in it, chunk after chunk of the bonds; where each chunk's begin, and the end.
-    order: Vec<[u32; 2]>,
+    /// What acts, chunk after chunk of the bonds; where each chunk's begin, and the end.
+    order: Vec<Acts>,
     starts: Vec<usize>,
+}
+
+/// One that acts: by list and place in it, on a bond.
+#[derive(Debug, Clone, Copy, Default)]
+struct Acts {
+    list: u32,
+    place: u32,
+    bond: u32,
 }
 
 impl Spread {
     /// Makes room for `particles`.
     pub fn resize(&mut self, particles: usize) {
         self.near.resize(particles, NearSum::default());
-        self.far.resize(particles, FarSum::default());
     }
 
     /// Memory that it keeps (bytes).
     pub fn bytes(&self) -> usize {
-        behind(&self.near) + behind(&self.far) + behind(&self.order) + behind(&self.starts)
+        behind(&self.near) + behind(&self.order) + behind(&self.starts)
     }
 
     /// Sorts what acts by chunk; the order within a chunk is kept.
     fn sort(&mut self, acting: &[&[FarSum]]) {
         let chunk_of = |bond: u32| bond as usize / CHUNK;
         self.starts.clear();
-        self.starts.resize(self.far.len().div_ceil(CHUNK) + 1, 0);
+        self.starts.resize(self.near.len().div_ceil(CHUNK) + 1, 0);
         for act in acting.iter().copied().flatten() {
             self.starts[chunk_of(act.bond) + 1] += 1;
         }
         for chunk in 1..self.starts.len() {
             self.starts[chunk] += self.starts[chunk - 1];
         }
-        self.order.clear();
-        self.order.resize(self.starts.last().copied().unwrap_or(0), [0; 2]);
+        let count = self.starts.last().copied().unwrap_or(0);
+        if self.order.capacity() < count {
+            self.order = Vec::with_capacity(count + count / 8);
+        }
+        self.order.resize(count, Acts::default());
         for (list, acts) in acting.iter().enumerate() {
             for (k, act) in acts.iter().enumerate() {
                 let at = &mut self.starts[chunk_of(act.bond)];
-                self.order[*at] = [list as u32, k as u32];
+                self.order[*at] = Acts { list: list as u32, place: k as u32, bond: act.bond };
                 *at += 1;
             }
         }
@@ -86,21 +95,30 @@ impl Spread {
         self.starts[0] = 0;
     }
 
-    /// Adds up what contacts do to bonds (`acting`, a list per chunk), and writes the forces and, with `turn`, the moments of all particles.
-    pub fn finish(&mut self, acting: &[&[FarSum]], chains: &Chains, state: &mut State, turn: bool) {
-        self.sort(acting);
-        let Self { near, far, order, starts } = self;
-        far.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, far)| {
-            far.fill(FarSum::default());
-            for [list, k] in &order[starts[chunk]..starts[chunk + 1]] {
-                let act = &acting[*list as usize][*k as usize];
-                let sum = &mut far[act.bond as usize - chunk * CHUNK];
+    /// What contacts (`acting`, a list per chunk) do to the bonds `from..to`, in the order of contacts. These lie in the
+    /// bonds of `chunk` or of those beside it.
+    fn far(&self, acting: &[&[FarSum]], chunk: usize, from: usize, to: usize) -> Vec<FarSum> {
+        let mut far = vec![FarSum::default(); to - from];
+        let chunks = chunk.saturating_sub(1)..(chunk + 2).min(self.starts.len() - 1);
+        for acts in &self.order[self.starts[chunks.start]..self.starts[chunks.end]] {
+            let bond = acts.bond as usize;
+            if (from..to).contains(&bond) {
+                let act = &acting[acts.list as usize][acts.place as usize];
+                let sum = &mut far[bond - from];
                 sum.acts = true;
                 sum.force.iter_mut().zip(act.force).for_each(|(sum, f)| *sum += f);
                 sum.moment.iter_mut().zip(act.moment).for_each(|(sum, m)| *sum += m);
             }
-        });
-        let (near, far) = (&near[..], &far[..]);
+        }
+        far
+    }
+
+    /// Adds up what contacts do to bonds (`acting`, a list per chunk), and writes the forces and, with `turn`, the moments of
+    /// all particles. Bonds at the edge of a chunk are added up for both of the chunks that they concern: so no thread waits
+    /// for another, and there is no list of all bonds.
+    pub fn finish(&mut self, acting: &[&[FarSum]], chains: &Chains, state: &mut State, turn: bool) {
+        self.sort(acting);
+        let (near, spread) = (&self.near[..], &*self);
         let (mut force, mut torque) =
             (std::mem::take(&mut state.contact_force), std::mem::take(&mut state.contact_torque));
         let seen = &*state;
@@ -128,13 +146,14 @@ impl Spread {
                 Around::new(&seen.x, seen, chains, i).spread(i, &sum.force, &mut add);
             }
             let from = first.saturating_sub(FAR);
-            for (bond, sum) in (from..).zip(&far[from..(end + FAR).min(far.len())]).filter(|(_, sum)| sum.acts) {
+            let far = spread.far(acting, chunk, from, (end + FAR).min(near.len()));
+            for (bond, sum) in (from..).zip(&far).filter(|(_, sum)| sum.acts) {
                 spread_arc(seen, bond, &sum.force, &mut add);
             }
             if turn {
                 for p in first..end {
-                    let before = if p > 0 { far[p - 1].moment[1] } else { DVec3::ZERO };
-                    let sum = near[p].moment + far[p].moment[0] + before;
+                    let before = if p > 0 { far[p - 1 - from].moment[1] } else { DVec3::ZERO };
+                    let sum = near[p].moment + far[p - from].moment[0] + before;
                     (tx[p - first], ty[p - first], tz[p - first]) = (sum.x, sum.y, sum.z);
                 }
             }
