@@ -1,8 +1,8 @@
 //! What must hold of broken wires and bonds.
 
-use super::Invariant;
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
+use super::invariant::Invariant;
 use std::collections::{BTreeMap, BTreeSet};
 
 pub const COUNTS: Invariant = Invariant {

@@ -1,8 +1,8 @@
 //! What must be the same in several files.
 
-use super::Invariant;
 use super::finding::{InvariantOutcome, Search};
 use super::folder::{CURVE as COLUMNS, Folder};
+use super::invariant::Invariant;
 use super::rows::layer_heads;
 use crate::engine::view::{Energy, Sample};
 use crate::run::identity;

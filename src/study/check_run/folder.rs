@@ -1,7 +1,7 @@
 //! All files of a run, read once.
 
 use super::finding::Search;
-use super::law::Limits;
+use super::limits::Limits;
 use super::tables::Table;
 use crate::base::error::{Error, Result};
 use crate::base::finding::Notice;

@@ -1,8 +1,8 @@
 //! What physics asks of a run.
 
-use super::Invariant;
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
+use super::invariant::Invariant;
 use super::rows::free_length;
 use crate::base::finding::FindingKind;
 use crate::observe::guard::ENERGY_LIMIT;

@@ -7,7 +7,9 @@ mod breaks;
 mod files;
 mod finding;
 mod folder;
+mod invariant;
 mod law;
+mod limits;
 mod mechanics;
 mod page;
 #[cfg(feature = "record")]
@@ -18,19 +20,10 @@ mod tables;
 
 pub use finding::{Deviation, InvariantOutcome};
 pub use folder::Folder;
+pub use invariant::Invariant;
 
 use crate::base::error::Result;
 use std::path::Path;
-
-/// What must hold of a run.
-pub struct Invariant {
-    /// Its name.
-    pub name: &'static str,
-    /// What it says, in one line.
-    pub about: &'static str,
-    /// Looks whether it does.
-    pub check: fn(&Folder) -> InvariantOutcome,
-}
 
 /// All invariants, by kind.
 pub const INVARIANTS: &[Invariant] = &[

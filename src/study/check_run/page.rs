@@ -1,8 +1,8 @@
 //! The page of a run, if there is one: its charts against the trajectory.
 
-use super::Invariant;
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
+use super::invariant::Invariant;
 use crate::base::regular;
 use crate::engine::view::Sample;
 use crate::run::folder::REPORT;

@@ -1,8 +1,8 @@
 //! What must hold of the rows of the tables by themselves.
 
-use super::Invariant;
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
+use super::invariant::Invariant;
 use crate::engine::measure::MEAN_LAG;
 use crate::scene::spec::DriveSpec;
 

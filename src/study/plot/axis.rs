@@ -1,6 +1,6 @@
 //! The range of an axis, its ticks and their labels.
 
-use super::{Axis, Scale};
+use super::figure::{Axis, Scale};
 use crate::base::ticks::{label, ticks};
 use plotters::coord::ranged1d::{KeyPointHint, KeyPointWeight, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;

@@ -1,6 +1,6 @@
 //! Draws figures on one of the two backends.
 
-use super::Figure;
+use super::figure::Figure;
 use super::painter::Painter;
 use crate::base::error::{Error, Result};
 use plotters::coord::Shift;

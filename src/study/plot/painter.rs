@@ -2,7 +2,7 @@
 
 use super::axis::{Span, can_show};
 use super::draw::FONT;
-use super::{Figure, Legend, Limit, Mark, Series};
+use super::figure::{Figure, Legend, Limit, Mark, Series};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;

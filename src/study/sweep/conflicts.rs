@@ -1,7 +1,7 @@
 //! What a study says twice: keys that its axes vary and that something else sets, seeds on an axis.
 
 use super::axis::Axis;
-use super::definition::Changes;
+use super::changes::Changes;
 use super::raw::RawStudy;
 use crate::base::error::{Error, Result};
 use crate::scene::SceneSource;

@@ -1,6 +1,7 @@
 //! A study as it was read: base scene, axes, points and cases.
 
 use super::axis::{self, Axis, MOST_CASES, Merged};
+use super::changes::Changes;
 use super::conflicts;
 use super::quantity::{self, Quantity};
 use super::raw::{RawDesign, RawSeeds, RawStudy};
@@ -35,17 +36,6 @@ pub const STUDIES: &[(&str, &str)] = studies![
     "pitch-flat-hardening",
     "diameter-flat-hardening",
 ];
-
-/// What the user may change of a study.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Changes {
-    /// Accuracy against run time; `None`: as the study says.
-    pub quality: Option<Quality>,
-    /// Further `--set` options of every case.
-    pub set: Vec<String>,
-    /// Seeds instead of the study's; empty for those.
-    pub seeds: Vec<u64>,
-}
 
 /// What results are compared with.
 #[derive(Debug, Clone, Copy, PartialEq)]

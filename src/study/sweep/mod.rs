@@ -4,6 +4,7 @@
 
 pub mod axis;
 pub mod breaks;
+mod changes;
 pub mod comparison;
 mod conflicts;
 pub mod definition;
@@ -12,7 +13,8 @@ pub mod quantity;
 mod raw;
 pub mod report;
 
-pub use definition::{Changes, Definition};
+pub use changes::Changes;
+pub use definition::Definition;
 pub use gather::{CaseResult, Gathered};
 
 use crate::base::error::{Error, Result};

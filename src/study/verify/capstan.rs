@@ -1,6 +1,6 @@
 //! A wire that slides round another.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, set};
 use crate::base::error::Result;

@@ -1,6 +1,6 @@
 //! Momentum and angular momentum of free bodies, energy of undamped motion.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Convergence, Point};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;

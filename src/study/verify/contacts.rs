@@ -1,6 +1,6 @@
 //! Two spheres: Hertz, Thornton, friction at constant normal force, sliding into rolling.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;

@@ -1,6 +1,6 @@
 //! The stable step: where runs really explode, against 2/ω_max and against the engine's bound.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Spent};
 use super::support::{Context, set};
 use crate::base::error::{Error, Result};

@@ -1,6 +1,6 @@
 //! Decay of the first axial and bending mode under the bonds' viscous damping, and that it does not depend on the step.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Convergence, Point};
 use super::modes::{first_axial_mode, first_bending_curvature, first_bending_mode, project};
 use super::support::{Context, Simulation, set};

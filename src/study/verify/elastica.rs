@@ -1,6 +1,6 @@
 //! Large deflection of a cantilever.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, set};
 use crate::base::error::Result;

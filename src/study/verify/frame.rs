@@ -1,6 +1,6 @@
 //! The same motion in other frames of reference.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Spent};
 use super::support::Context;
 use crate::base::error::Result;

@@ -3,7 +3,7 @@
 //! Force and torque are those of strand theory, which `reference::strand` has and tests against the printed values; the
 //! elastic-plastic strand is compared with the forces printed for it.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Spent};
 use super::support::{Context, set};
 use crate::base::error::Result;

@@ -3,6 +3,7 @@
 
 mod beams;
 mod capstan;
+mod case;
 pub mod comparison;
 mod conservation;
 mod contacts;
@@ -27,6 +28,9 @@ mod waves;
 mod wires;
 mod written;
 
+pub use case::VerificationCase;
+pub use support::Effort;
+
 use crate::base::error::{Error, Result};
 use crate::study::runner::{CaseRunner, Named, Status};
 use crate::study::select;
@@ -34,19 +38,6 @@ use comparison::{Comparison, Verdict};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use support::Context;
-pub use support::Effort;
-
-/// A case: one claim about the engine that a closed form decides.
-pub struct VerificationCase {
-    /// What the user calls it.
-    pub name: &'static str,
-    /// The claim in one line.
-    pub about: &'static str,
-    /// Where the equation comes from.
-    pub source: &'static str,
-    /// Runs what the case needs and compares.
-    pub run: fn(&Context) -> Result<Vec<Comparison>>,
-}
 
 /// All cases, by theme.
 pub const CASES: &[VerificationCase] = &[

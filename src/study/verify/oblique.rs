@@ -1,6 +1,6 @@
 //! Oblique impact of two spheres with friction.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Spent};
 use super::support::{Context, set};
 use crate::base::error::Result;

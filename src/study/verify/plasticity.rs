@@ -1,6 +1,6 @@
 //! One wire pulled past yield, one bond bent and twisted past yield.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Spent};
 use super::support::{Context, set};
 use crate::base::bisect::bisect;

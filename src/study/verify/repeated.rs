@@ -1,6 +1,6 @@
 //! Repeated loading of an elastoplastic contact.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::Comparison;
 use super::support::Context;
 use crate::base::error::Result;

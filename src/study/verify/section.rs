@@ -1,6 +1,6 @@
 //! Plasticity of a section under tension, bending and torsion together.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::Comparison;
 use super::support::Context;
 use crate::base::error::Result;

@@ -1,6 +1,6 @@
 //! A bond that breaks at the first step, beside no bond at all.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::Comparison;
 use super::support::Context;
 use crate::base::error::Result;

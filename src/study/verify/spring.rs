@@ -1,6 +1,6 @@
 //! A helix pulled as a spring.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Point};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;

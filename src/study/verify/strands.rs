@@ -1,6 +1,6 @@
 //! A strand pulled elastically, against strand theory.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;

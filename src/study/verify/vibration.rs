@@ -1,6 +1,6 @@
 //! Axial waves, free bending vibration, and buckling, which is vibration at frequency zero.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Order, Point, Spent};
 use super::modes::{first_axial_mode, first_bending_mode, project};
 use super::support::{Context, Crossings, Simulation, set};

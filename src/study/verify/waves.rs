@@ -1,6 +1,6 @@
 //! A bar that is suddenly pulled.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Convergence, Point};
 use super::support::{Context, set};
 use crate::base::error::Result;

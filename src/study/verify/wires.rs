@@ -1,6 +1,6 @@
 //! Smooth wires beside chains of spheres, under a sphere, and across each other.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Point, Spent};
 use super::support::{Context, set};
 use crate::base::error::Result;

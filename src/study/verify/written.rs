@@ -1,6 +1,6 @@
 //! The curve as a run writes it: what users read modulus and yield from.
 
-use super::VerificationCase;
+use super::case::VerificationCase;
 use super::comparison::{Comparison, Spent};
 use super::plasticity::hardening;
 use super::support::{Context, set};

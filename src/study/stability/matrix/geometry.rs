@@ -2,7 +2,7 @@
 
 use super::super::case::{Base, StabilityCase};
 use super::super::measure::{pulled_layers, pulled_strand, pulled_wire, thrown_apart};
-use super::{SEVEN, WIRE, mm};
+use super::scenes::{SEVEN, WIRE, mm};
 use crate::base::finding::FindingKind;
 
 /// The cases of this file.

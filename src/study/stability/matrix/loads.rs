@@ -4,7 +4,7 @@ use super::super::case::{Base, StabilityCase};
 use super::super::measure::{
     buckled, cycled_alike, cycled_plastic, no_drift, peak_is_yield, pulled_strand, stopped_wave, turned,
 };
-use super::{COLUMN, REST, SEVEN, WIRE};
+use super::scenes::{COLUMN, REST, SEVEN, WIRE};
 use crate::base::finding::FindingKind;
 
 /// What must be said of crushed contacts.

@@ -2,7 +2,7 @@
 
 use super::super::case::StabilityCase;
 use super::super::measure::{no_friction, peak_is_yield, pulled_strand, pulled_wire};
-use super::{SEVEN, WIRE};
+use super::scenes::{SEVEN, WIRE};
 use crate::base::finding::FindingKind;
 
 /// The cases of this file.

@@ -2,7 +2,7 @@
 
 use super::super::case::{Base, StabilityCase};
 use super::super::critical::Critical;
-use super::{LIGHT_ON_HEAVY, SEVEN};
+use super::scenes::{LIGHT_ON_HEAVY, SEVEN};
 
 const CHAIN: Base = Base::Builtin("verify/chain");
 const FREE_WIRE: Base = Base::Builtin("verify/free-wire");
