@@ -12,6 +12,8 @@ mod drive;
 mod ledger;
 #[path = "property/loading_rate.rs"]
 mod loading_rate;
+#[path = "property/memory.rs"]
+mod memory;
 #[path = "property/random.rs"]
 mod random;
 #[path = "property/time.rs"]

@@ -1,7 +1,7 @@
 //! Draws figures on one of the two backends.
 
 use super::figure::Figure;
-use super::painter::Painter;
+use super::painter::{FONT, Painter};
 use crate::base::error::{Error, Result};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -9,8 +9,6 @@ use std::sync::Once;
 
 /// Pixels of a PNG per pixel of an SVG (-).
 const PNG_SCALE: u32 = 2;
-/// Family of all text.
-pub const FONT: &str = "Inter";
 
 /// The figures as SVG text.
 pub fn svg(figures: &[Figure], columns: usize) -> Result<String> {

@@ -1,13 +1,14 @@
 //! Draws one figure: axes by plotters, everything else in pixels.
 
 use super::axis::{Span, can_show};
-use super::draw::FONT;
 use super::figure::{Figure, Legend, Limit, Mark, Series};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+/// Family of all text.
+pub const FONT: &str = "Inter";
 /// Text: axes, ticks and legend; titles (px).
 const TEXT: f64 = 14.0;
 const TITLE: f64 = 17.0;
