@@ -3,19 +3,14 @@
 //!
 //! Formats: LAMMPS manual, `read_data`, `dump` (styles custom and local, with `units yes` and `time yes`).
 
-use super::{Body, Growing, Target, bounds};
+use super::body::{Body, bounds};
+use super::format::{ATOMS, BONDS, DATA};
+use super::target::{Growing, Target};
 use crate::base::error::Result;
 use crate::engine::view::{RunInfo, Sample, Snapshot};
 use crate::observe::Observer;
 use std::io::Write;
 use std::sync::Arc;
-
-/// Particles and bonds before loading.
-pub const DATA: &str = "particles.data";
-/// Particles over time.
-pub const ATOMS: &str = "particles.dump";
-/// Bonds over time.
-pub const BONDS: &str = "bonds.dump";
 
 pub struct Writer {
     target: Target,

@@ -4,7 +4,8 @@
 //! own metadata names the run (`strandsnap.run`, `strandsnap.run_id`) and has all units once more as one JSON object
 //! (`strandsnap.units`), for programs that show no metadata of columns.
 
-use super::{Body, Target};
+use super::body::Body;
+use super::target::Target;
 use crate::base::error::{Error, Result};
 use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};

@@ -1,6 +1,6 @@
 //! Files that get their names when all of them are whole.
 
-use super::Format;
+use super::format::Format;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::run::lock::Lock;

@@ -6,7 +6,8 @@
 //!
 //! Format: VTK file formats, XML (docs.vtk.org): arrays appended raw, in blocks compressed by zlib.
 
-use super::{Body, Target};
+use super::body::Body;
+use super::target::Target;
 use crate::base::error::{Error, Result};
 use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{RunInfo, Snapshot};

@@ -3,16 +3,15 @@
 //! Format: the extended XYZ specification (github.com/libAtoms/extxyz): the second line of a frame holds `key=value`
 //! pairs, of which `Properties` names the columns.
 
-use super::{Body, Growing, Target};
+use super::body::Body;
+use super::format::XYZ;
+use super::target::{Growing, Target};
 use crate::base::error::Result;
 use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{RunInfo, Snapshot};
 use crate::observe::Observer;
 use std::io::Write;
 use std::sync::Arc;
-
-/// The one file.
-pub const FILE: &str = "particles.xyz";
 
 /// Columns: name, type, numbers, as `Properties` lists them.
 const COLUMNS: &str = "species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1:stress_mpa:R:1:plastic_strain_percent:R:1:\
@@ -43,7 +42,7 @@ impl Observer for Writer {
         let layers = info.layers.iter().map(word).collect();
         // A quotation mark would end the value.
         let title = self.target.title(info).replace(['"', '\\', '\n'], " ");
-        let file = Growing::create(&self.target, FILE)?;
+        let file = Growing::create(&self.target, XYZ)?;
         self.open = Some(Open { title, body: Body::new(info), layers, file });
         Ok(())
     }

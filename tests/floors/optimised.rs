@@ -4,12 +4,13 @@
 use std::collections::BTreeSet;
 
 /// Dependencies that may be slow.
-const COLD: [(&str, &[&str]); 8] = [
+const COLD: [(&str, &[&str]); 9] = [
     (
         "reads or writes a few kB per run",
         &["miette", "schemars", "serde_json", "strsim", "thiserror", "toml", "toml_edit"],
     ),
     ("is generic: compiled with our own code", &["nalgebra", "levenberg-marquardt", "postcard", "serde", "uom"]),
+    ("describes a table once", &["arrow-schema"]),
     ("calls the system", &["ctrlc", "pollster", "rustix", "tempfile"]),
     ("talks to people", &["clap", "clap_complete", "clap_mangen", "indicatif", "textwrap"]),
     ("makes a page or a plot in a second at most", &["base64", "colorous", "maud", "plotters"]),
