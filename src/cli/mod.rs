@@ -16,6 +16,7 @@ mod counted;
 mod ended;
 mod explore;
 mod export;
+mod finished;
 mod interrupt;
 mod keys;
 mod look;

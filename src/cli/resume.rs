@@ -1,9 +1,9 @@
 //! `strandsnap resume`.
 
 use super::ended::Ended;
+use super::finished::print;
 use super::interrupt;
 use super::progress::Progress;
-use super::run::print;
 use super::values::duration;
 use crate::base::error::Result;
 use crate::observe::Observer;

@@ -2,17 +2,16 @@
 
 use super::animation::AnimationArgs;
 use super::ended::Ended;
+use super::finished::print;
 use super::interrupt;
 use super::look::LookArgs;
 use super::progress::Progress;
 use super::resume::{go_on, note};
-use super::say::say;
 use super::values::{SceneArgs, duration};
 use crate::base::error::Result;
 use crate::observe::Observer;
-use crate::observe::report::{one_line, report};
-use crate::run::folder::{ANIMATION, FRAMES, RECORDING};
-use crate::run::{self, Resumable, RunOptions, RunSummary, cautions, outputs};
+use crate::run::folder::ANIMATION;
+use crate::run::{self, Resumable, RunOptions, cautions, outputs};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -101,37 +100,5 @@ fn note_what_was_not_built(args: &Args) {
     }
     if !outputs::HAS_RECORD && !args.no_recording {
         eprintln!("note: no recording, because this program was built without the feature `record`");
-    }
-}
-
-/// Says how a run ended, and where its results are.
-pub(super) fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
-    for warning in &summary.warnings {
-        eprintln!("WARNING: {warning}");
-    }
-    if quiet {
-        say!("{}", one_line(summary));
-    } else {
-        say!("{}\n{}", summary.scene, report(summary));
-    }
-    if run::checkpoint::latest(&options.out).is_ok() {
-        say!("Go on with: strandsnap resume {}", options.out.display());
-    }
-    if !quiet {
-        say!("Results are in {}:", options.out.display());
-        say!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
-        if options.frames {
-            say!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
-        }
-        if let (Some(animation), Some(frames)) = (&options.animation, &summary.cost.frames) {
-            say!("  {}: {} of animation", animation.file.display(), outputs::megabytes(frames.animation_bytes));
-        }
-        say!("Make one page of all of it with: strandsnap report {}", options.out.display());
-        if outputs::HAS_RENDER {
-            say!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());
-        }
-        if options.recording {
-            say!("Open the recording ({RECORDING}) with: strandsnap view {}", options.out.display());
-        }
     }
 }

@@ -140,14 +140,12 @@ fn points(file: &mut File, body: &Body, snapshot: &Snapshot) {
     file.array("displacement_mm", 3, &displacement);
     file.array("speed_m_s", 1, &snapshot.speed);
     file.array("contact_pressure_mpa", 1, &scaled(&snapshot.contact_pressure, mpa));
-    let bonds: [(&str, &[f32], fn(f64) -> f64); 3] = [
-        ("stress_mpa", &snapshot.bond_stress, mpa),
-        ("plastic_strain_percent", &snapshot.plastic_strain, percent),
-        ("utilisation_percent", &snapshot.utilisation, percent),
-    ];
-    for (name, quantity, unit) in bonds {
+    let mut of_bonds = |name: &str, quantity: &[f32], unit: fn(f64) -> f64| {
         file.array(name, 1, &scaled(&Body::at_particles(snapshot, quantity), unit));
-    }
+    };
+    of_bonds("stress_mpa", &snapshot.bond_stress, mpa);
+    of_bonds("plastic_strain_percent", &snapshot.plastic_strain, percent);
+    of_bonds("utilisation_percent", &snapshot.utilisation, percent);
     file.array("broken", 1, &Body::at_breaks(snapshot));
     file.array("wire", 1, &body.wire);
     file.array("layer", 1, &body.layer);

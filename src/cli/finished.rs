@@ -1,0 +1,38 @@
+//! What is said of a run that has ended.
+
+use super::say::say;
+use crate::observe::report::{one_line, report};
+use crate::run::folder::{FRAMES, RECORDING};
+use crate::run::{self, RunOptions, RunSummary, outputs};
+
+/// Says how a run ended, and where its results are.
+pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
+    for warning in &summary.warnings {
+        eprintln!("WARNING: {warning}");
+    }
+    if quiet {
+        say!("{}", one_line(summary));
+    } else {
+        say!("{}\n{}", summary.scene, report(summary));
+    }
+    if run::checkpoint::latest(&options.out).is_ok() {
+        say!("Go on with: strandsnap resume {}", options.out.display());
+    }
+    if !quiet {
+        say!("Results are in {}:", options.out.display());
+        say!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
+        if options.frames {
+            say!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
+        }
+        if let (Some(animation), Some(frames)) = (&options.animation, &summary.cost.frames) {
+            say!("  {}: {} of animation", animation.file.display(), outputs::megabytes(frames.animation_bytes));
+        }
+        say!("Make one page of all of it with: strandsnap report {}", options.out.display());
+        if outputs::HAS_RENDER {
+            say!("Draw it again from elsewhere with: strandsnap render {}", options.out.display());
+        }
+        if options.recording {
+            say!("Open the recording ({RECORDING}) with: strandsnap view {}", options.out.display());
+        }
+    }
+}
