@@ -1,7 +1,7 @@
 //! A finished run in files that other programs open: Parquet for tables, VTK for ParaView, LAMMPS and extended XYZ for OVITO.
 //!
 //! Everything is read from the run's trajectory, without simulating. One file per format; each is an
-//! [`Observer`](crate::observe::Observer) that is shown the run again. `assets/results/files.md` says what the
+//! [`Observer`] that is shown the run again. `assets/results/files.md` says what the
 //! files hold, in which units, and how programs open them.
 
 mod body;
