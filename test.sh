@@ -18,11 +18,9 @@ done
 say "Format"
 cargo fmt --check
 
-# The lean program is built first: the full one must be what is left in target/release. .ci/features checks every
-# feature by itself, which takes long.
+# .ci/features checks every feature by itself, which takes long.
 say "Without recording and frames"
 cargo clippy --release --locked --no-default-features --features cli --all-targets -- -D warnings
-cargo build --release --locked --no-default-features --features cli
 
 say "Lints"
 cargo clippy --release --locked --all-targets -- -D warnings

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+#[cfg(all(feature = "render", feature = "record"))]
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -228,6 +230,62 @@ fn of_two_trajectories_the_one_that_reaches_the_checkpoint_is_taken() {
         assert_same(&whole, &out, short);
         fs::remove_dir_all(&out).unwrap();
     }
+}
+
+/// Every file below a folder, by its path there.
+#[cfg(feature = "render")]
+fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.map(|path| (path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap())).collect()
+}
+
+/// Frames are drawn and samples recorded again up to the checkpoint, so that nothing of the killed process stays in them.
+#[test]
+#[cfg(all(feature = "render", feature = "record"))]
+fn frames_and_recording_are_those_of_an_uninterrupted_run() {
+    let test = "frames_and_recording_are_those_of_an_uninterrupted_run";
+    let folder = tempfile::tempdir().unwrap();
+    let (out, whole) = (folder.path().join("out"), folder.path().join("whole"));
+    let scene = scene(folder.path(), STRAND);
+    let run = |out: &Path| {
+        let set = ["--set", "output.snapshots=8", "--set", "output.checkpoint=150", "--quiet", "--threads", "1"];
+        let arguments = [&["run", text(&scene), "--out", text(out)], &set[..]].concat();
+        arguments.into_iter().map(String::from).collect::<Vec<_>>()
+    };
+    if strandsnap::render::check().is_err() {
+        let _ = writeln!(std::io::stderr(), "SKIPPED (no graphics adapter): {test}");
+        return;
+    }
+    let arguments = run(&whole);
+    succeeds(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+
+    let arguments = run(&out);
+    let mut child = program(&arguments.iter().map(String::as_str).collect::<Vec<_>>()).spawn().unwrap();
+    let late = || run::checkpoint::latest(&out).is_ok_and(|(checkpoint, _)| checkpoint.number >= 8);
+    while !late() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before the checkpoint");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    succeeds(&["resume", text(&out), "--quiet"]);
+
+    let [of_whole, of_resumed] = [&whole, &out].map(|run| contents(&run.join("frames")));
+    assert_eq!(of_whole.keys().collect::<Vec<_>>(), of_resumed.keys().collect::<Vec<_>>());
+    assert!(of_whole.len() > 8);
+    for (name, picture) in &of_whole {
+        assert!(picture == &of_resumed[name], "{} differs", name.display());
+    }
+    for table in ["curve.csv", "wires.csv", "ruptures.csv", "trajectory.bin"] {
+        assert!(fs::read(whole.join(table)).unwrap() == fs::read(out.join(table)).unwrap(), "{table} differs");
+    }
+    let Some(tool) = std::env::var_os("RERUN_CLI").filter(|tool| !tool.is_empty()) else {
+        let _ = writeln!(std::io::stderr(), "SKIPPED (RERUN_CLI does not name Rerun's tool): {test}, the recording");
+        return;
+    };
+    let [a, b] = [&whole, &out].map(|run| run.join("recording.rrd"));
+    let compared = Command::new(tool).args(["rrd", "compare", "--unordered"]).args([&a, &b]).output().unwrap();
+    assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stderr));
 }
 
 #[test]

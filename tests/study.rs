@@ -115,6 +115,64 @@ fn cases_may_be_run_one_by_one_and_gathered() {
     assert!(text(&wrong.stderr).contains("numbered from 1 to 8"), "{}", text(&wrong.stderr));
 }
 
+/// Kills a study as soon as one of its runs has a checkpoint that the kill before did not leave. Whether it had one.
+fn kill_at_a_checkpoint(folder: &Path) -> bool {
+    let cases = folder.join("out/study/own/cases");
+    let unfinished = || -> Vec<std::path::PathBuf> {
+        let entries = std::fs::read_dir(&cases).into_iter().flatten().flatten();
+        entries.map(|case| case.path().join("unfinished")).collect()
+    };
+    let newest = || {
+        let kept = unfinished().into_iter().filter_map(|run| strandsnap::run::checkpoint::latest(&run).ok());
+        kept.map(|(checkpoint, _)| (checkpoint.identity.scene, checkpoint.number)).max()
+    };
+    let before = newest();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
+    command.args(["study", "own.toml", "--jobs", "1"]).current_dir(folder);
+    command.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
+    let mut child = command.spawn().unwrap();
+    let reached = loop {
+        let now = newest();
+        if now.is_some() && now != before {
+            break true;
+        }
+        if child.try_wait().unwrap().is_some() {
+            break false;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    };
+    child.kill().unwrap();
+    child.wait().unwrap();
+    reached
+}
+
+#[test]
+fn a_study_that_is_killed_goes_on_within_a_case_to_the_same_tables() {
+    let [folder, whole] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let text = SPEEDS.replace("set = [", "set = [\"output.checkpoint=300\", ").replace("points = 4", "points = 2");
+    printed(&study(whole.path(), &text, &[]));
+    std::fs::write(folder.path().join("own.toml"), &text).unwrap();
+    let kills = (0..5).filter(|_| kill_at_a_checkpoint(folder.path())).count();
+    assert!(kills > 1, "only {kills} times was a run killed that had a checkpoint");
+    printed(&study(folder.path(), &text, &[]));
+    for table in ["points.csv", "breaks.csv", "curves.svg"] {
+        let [a, b] = [&folder, &whole].map(|f| std::fs::read(f.path().join("out/study/own").join(table)).unwrap());
+        assert!(a == b, "{table} differs");
+    }
+    let cases = |folder: &Path| -> Vec<Row> {
+        let mut rows = rows(&folder.join("out/study/own/cases.csv"));
+        for row in &mut rows {
+            row.retain(|column, _| !["run time [s]", "CPU [s]"].contains(&column.as_str()));
+        }
+        rows
+    };
+    assert_eq!(cases(folder.path()), cases(whole.path()));
+    for row in rows(&folder.path().join("out/study/own/cases.csv")) {
+        let case = folder.path().join("out/study/own/cases").join(&row["folder"]);
+        assert!(!case.join("unfinished").exists(), "{} was left behind", case.display());
+    }
+}
+
 #[test]
 fn a_case_that_fails_is_told_with_its_cause_and_stops_no_other() {
     let folder = tempfile::tempdir().unwrap();

@@ -18,7 +18,7 @@ pub struct Args {
     /// Threads [default: one per core]; the results are the same on any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept
+    /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept, exit code 130
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time_limit: Option<Duration>,
     /// Show no progress, and one line at the end

@@ -31,11 +31,11 @@ pub struct Args {
     /// Wait for another process that writes into that folder, instead of refusing
     #[arg(long)]
     wait: bool,
-    /// Go on from the last checkpoint in that folder, if it holds an unfinished run of this scene: one command to start
-    /// a job and to start it again
+    /// Go on from the last checkpoint in that folder, if it holds an unfinished run of this scene, with the outputs
+    /// that it began with: one command to start a job and to start it again. A finished run is refused, with exit code 2
     #[arg(long)]
     resume: bool,
-    /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept
+    /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept, exit code 130
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time_limit: Option<Duration>,
     /// Threads [default: one per core]

@@ -22,9 +22,8 @@ impl Panel for CrossSection {
         let middle = [area.x + 0.5 * area.w, area.y + 0.5 * area.h];
         let z = data.current_z(data.focus());
         for (number, wire) in data.info.wires.iter().enumerate() {
-            let i = nearest(data, wire, z);
-            let [x, y, _] = data.snapshot.position[i];
-            let r = data.snapshot.radius[i] * scale;
+            let (i, [x, y], radius) = cut(data, wire, z);
+            let r = radius * scale;
             let x = middle[0] + (x - data.body.axis.x) * scale;
             let y = middle[1] - (y - data.body.axis.y) * scale;
             let reach = area.inset(r, r, r, r);
@@ -51,10 +50,27 @@ fn broken(data: &Data, wire: &WireInfo) -> bool {
     data.snapshot.bond_state[wire.bonds()].contains(&BondState::Broken)
 }
 
-/// The particle of a wire nearest to the cut.
-fn nearest(data: &Data, wire: &WireInfo, z: f32) -> usize {
-    let distance = |i: usize| (data.snapshot.position[i][2] - z).abs();
-    wire.particles().min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or(wire.first)
+/// Where a wire passes through the cut: its nearest particle, x and y (m) and radius (m), straight between the two particles
+/// on either side. A wire that does not reach the cut is shown by its nearest particle.
+fn cut(data: &Data, wire: &WireInfo, z: f32) -> (usize, [f32; 2], f32) {
+    let snapshot = &data.snapshot;
+    let above = |i: usize| snapshot.position[i][2] - z;
+    let passes = |i: usize| above(i).min(above(i + 1)) <= 0.0 && above(i).max(above(i + 1)) > 0.0;
+    let whole = |bond: usize| snapshot.bond_state[bond] != BondState::Broken;
+    match wire.bonds().zip(wire.particles()).find(|(bond, i)| whole(*bond) && passes(*i)) {
+        Some((_, i)) => {
+            let share = above(i) / (above(i) - above(i + 1));
+            let between = |a: f32, b: f32| a + share * (b - a);
+            let [[x0, y0, _], [x1, y1, _]] = [snapshot.position[i], snapshot.position[i + 1]];
+            let radius = between(snapshot.radius[i], snapshot.radius[i + 1]);
+            (if share < 0.5 { i } else { i + 1 }, [between(x0, x1), between(y0, y1)], radius)
+        }
+        None => {
+            let i = wire.particles().min_by(|a, b| above(*a).abs().total_cmp(&above(*b).abs())).unwrap_or(wire.first);
+            let [x, y, _] = snapshot.position[i];
+            (i, [x, y], snapshot.radius[i])
+        }
+    }
 }
 
 /// Black or white, whichever reads better on `colour`.

@@ -10,12 +10,13 @@ use crate::engine::measure::MEAN_LAG;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
 use crate::observe::summary::{Break, RunSummary};
-use crate::run::folder::SCENE;
-use crate::run::{RunOptions, cost, outputs, run_watched, summarise};
+use crate::run::folder::{SCENE, has_checkpoint};
+use crate::run::{Resumable, RunOptions, cost, lock, outputs, run_watched, summarise};
 use crate::scene::spec::{PathSpec, Spec};
 use crate::scene::{Scene, write};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -236,6 +237,12 @@ impl Case for TensileCase<'_> {
 
     fn run(&self, stop: &AtomicBool) -> Result<Self::Output> {
         let identity = self.identity();
+        // Another process may be at the same case.
+        let unfinished = self.store.unfinished(&identity);
+        lock::wait(&unfinished, stop);
+        if let Some(record) = self.store.find(&identity) {
+            return Ok(record);
+        }
         let scene = match self.scene {
             Ok(scene) => with_seed(scene, self.seed),
             // Nothing was run, so nothing is kept.
@@ -243,15 +250,19 @@ impl Case for TensileCase<'_> {
                 return Ok(Record { identity, build: build(), result: TensileOutcome::Refused(cause.into()) });
             }
         };
-        let outcome = match self.measure(&scene, stop) {
+        let outcome = match self.measure(&scene, &unfinished, stop) {
             Ok(Some(result)) => TensileOutcome::Ran(Box::new(result)),
             Ok(None) => TensileOutcome::Failed(NO_STRENGTH.into()),
-            Err(error @ (Error::Scene(_) | Error::Input { .. } | Error::Simulation(_))) => {
+            Err(error @ (Error::Scene(_) | Error::Input { .. } | Error::Simulation(_)))
+                if lock::holder(&unfinished).is_none() =>
+            {
                 TensileOutcome::Failed(error.to_string())
             }
             Err(error) => return Err(error),
         };
-        self.store.keep(&identity, SCENE, outcome)
+        let record = self.store.keep(&identity, SCENE, outcome)?;
+        self.store.drop_unfinished(&unfinished)?;
+        Ok(record)
     }
 
     fn work(&self) -> f64 {
@@ -278,24 +289,52 @@ impl TensileCase<'_> {
     }
 
     /// Runs the scene; `None` when it has no strength.
-    fn measure(&self, scene: &Scene, stop: &AtomicBool) -> Result<Option<TensileResult>> {
+    fn measure(&self, scene: &Scene, unfinished: &Path, stop: &AtomicBool) -> Result<Option<TensileResult>> {
         let mut recorder = HistoryRecorder::default();
         let begin = cpu_time();
-        let summary = if self.writes {
+        let (summary, resumed) = if self.writes {
             let folder = self.store.folder();
             let out = tempfile::tempdir_in(folder).map_err(|e| Error::io("cannot write into", folder, e))?;
             // Everything that `strandsnap run` writes but pictures, which cost what they cost whatever the engine does.
             let options = RunOptions { recording: outputs::HAS_RECORD, ..RunOptions::tables(out.path()) };
-            run_watched(scene, &options, vec![&mut recorder], stop)?
+            (run_watched(scene, &options, vec![&mut recorder], stop)?, false)
+        } else if self.threads.is_some() {
+            // Nothing but the engine may cost here.
+            (summarise(scene, vec![&mut recorder], stop)?, false)
         } else {
-            summarise(scene, vec![&mut recorder], stop)?
+            resumably(scene, unfinished, &mut recorder, stop)?
         };
         if summary.stopped == StopReason::Interrupted {
             return Err(Error::Interrupted);
         }
-        let cpu = cpu_time().zip(begin).map(|(now, begin)| now - begin);
+        // That of an earlier process is not known.
+        let cpu = cpu_time().zip(begin).map(|(now, begin)| now - begin).filter(|_| !resumed);
         Ok(TensileResult::new(summary, recorder, cpu))
     }
+}
+
+/// Runs a scene in a folder of its own, or goes on where an earlier process was ended: the summary, and whether it went on.
+/// A checkpoint that cannot be used is no loss but of time.
+fn resumably(
+    scene: &Scene,
+    out: &Path,
+    recorder: &mut HistoryRecorder,
+    stop: &AtomicBool,
+) -> Result<(RunSummary, bool)> {
+    // Of states only the checkpoints are needed.
+    let scene = scene.clone().changed(|spec| spec.output.snapshots = 1);
+    let usable = |run: &Resumable| run.check_scene(&scene).is_ok();
+    if has_checkpoint(out)
+        && let Some(run) = Resumable::open(out, None, &mut |_| ()).ok().filter(usable)
+    {
+        match run.go_on(vec![recorder], stop) {
+            // What it needs beside the checkpoint is damaged.
+            Err(Error::Input { .. }) => {}
+            done => return done.map(|summary| (summary, true)),
+        }
+    }
+    let options = RunOptions { overwrite: true, ..RunOptions::tables(out) };
+    Ok((run_watched(&scene, &options, vec![recorder], stop)?, false))
 }
 
 /// How many of the runs were kept from before, and how many of those another build of the same revision had made.

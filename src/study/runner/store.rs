@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 const CASES: &str = "cases";
 /// The record, in the folder of its case.
 const RECORD: &str = "case.json";
+/// Where the run of a case lies until it is over, in the folder of its case.
+const UNFINISHED: &str = "unfinished";
 
 /// What decides the result of a case: two cases that agree in this are the same.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -65,7 +67,7 @@ impl CaseStore {
         Self { folder: study.join(CASES) }
     }
 
-    /// The same, ready to take more; `fresh` removes the records that are there.
+    /// The same, ready to take more; `fresh` removes the records and unfinished runs that are there.
     ///
     /// # Errors
     /// When the folder cannot be made or a record cannot be removed.
@@ -75,8 +77,12 @@ impl CaseStore {
         std::fs::create_dir_all(cases).map_err(|e| Error::io("cannot make the folder", cases, e))?;
         if fresh {
             let entries = std::fs::read_dir(cases).map_err(|e| Error::io("cannot read the folder", cases, e))?;
-            for path in entries.flatten().map(|entry| entry.path().join(RECORD)).filter(|path| path.is_file()) {
-                std::fs::remove_file(&path).map_err(|e| Error::io("cannot remove", &path, e))?;
+            for case in entries.flatten().map(|entry| entry.path()) {
+                let record = case.join(RECORD);
+                if record.is_file() {
+                    std::fs::remove_file(&record).map_err(|e| Error::io("cannot remove", &record, e))?;
+                }
+                store.drop_unfinished(&case.join(UNFINISHED))?;
             }
         }
         Ok(store)
@@ -85,6 +91,22 @@ impl CaseStore {
     /// The folder of all cases.
     pub fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// Where the run of a case lies until it is over, so that one that is ended early goes on from its last checkpoint.
+    pub fn unfinished(&self, identity: &Identity) -> PathBuf {
+        self.folder.join(identity.name()).join(UNFINISHED)
+    }
+
+    /// Removes such a run, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn drop_unfinished(&self, run: &Path) -> Result<()> {
+        match std::fs::remove_dir_all(run) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::io("cannot remove", run, error)),
+            _ => Ok(()),
+        }
     }
 
     /// The record of a case, if one is kept. One that is damaged, or of another case, is none.
