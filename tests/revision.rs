@@ -5,8 +5,12 @@
 mod drive;
 
 use drive::*;
+use std::sync::atomic::AtomicBool;
 use strandsnap::engine::{Engine, REVISION};
+use strandsnap::observe::summary::Break;
+use strandsnap::run;
 use strandsnap::scene;
+use strandsnap::scene::quality::Quality;
 
 /// Bits of each run at this revision, with registers of 256 bits (AVX2 and FMA); wider ones group other contacts.
 const AT: u32 = 1;
@@ -59,6 +63,28 @@ fn other_bits_are_another_revision() {
         REVISION + u32::from(REVISION == AT),
         BITS.len()
     );
+}
+
+/// The headline of `run ka4 --quality draft`: strength (MPa), elongation (%), steps, wires broken, and the wire that breaks
+/// first (from 1) with its layer. Numbers that the program prints are rounded from these.
+const DRAFT: ([f64; 2], u64, usize, usize, &str) = ([310.4208320695034, 28.156454994236263], 28693, 27, 14, "middle");
+
+#[test]
+fn the_shipped_strand_at_draft_quality_breaks_as_stored() {
+    let mut scene = scene::load("ka4", &[]).unwrap();
+    Quality::Draft.apply(&mut scene).unwrap();
+    let summary = run::summarise(&scene, Vec::new(), &AtomicBool::new(false)).unwrap();
+    let numbers = [summary.tensile_strength_mpa, summary.fracture_elongation_percent].map(Option::unwrap);
+    let mut breaks: Vec<Break> = summary.breaks_by_layer.into_values().flatten().collect();
+    breaks.sort_by_key(|b| b.order);
+    let found = (numbers, summary.cost.steps, breaks.len(), breaks[0].wire, breaks[0].layer.as_str());
+    if pulp_is_256_bits() {
+        assert_eq!(found, DRAFT);
+    }
+    // Registers of another width group contacts otherwise, which rounds otherwise, and a strand that breaks magnifies that.
+    for (found, stored) in numbers.into_iter().zip(DRAFT.0) {
+        assert!((found / stored - 1.0).abs() < 0.03, "{found} where {stored} is stored");
+    }
 }
 
 /// What the engine's kernels run on here.

@@ -10,6 +10,7 @@
 //! state. The ends of a very long strand would have to move faster than a step allows: measure that with `--strain 0`
 //! on a scene whose wires touch from the start, such as `--scene examples/peers/strand.toml --lengths 1,10,100`.
 
+mod checkpoint;
 mod counted;
 mod loops;
 mod machine;
@@ -77,6 +78,7 @@ fn main() -> miette::Result<()> {
         rows.extend(in_process_of_its_own(*factor)?);
     }
     tables::print(&rows);
+    checkpoint::print(&args)?;
     output::print(&args, &rows)?;
     if let Some(file) = &args.json {
         let text = serde_json::to_string_pretty(&rows).expect("rows are plain data");

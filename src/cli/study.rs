@@ -4,7 +4,7 @@ use super::cases::{self, ProgressLine};
 use super::ended::Ended;
 use super::interrupt;
 use super::say::{self, say};
-use super::values::{Seeds, quality};
+use super::values::{Seeds, name_or_path, quality};
 use crate::base::error::{Error, Result};
 use crate::base::wording::counted;
 use crate::run::folder;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Built-in study by name (see --list), or the path of a TOML file
-    #[arg(value_name = "STUDY", required_unless_present = "list")]
+    #[arg(value_name = "STUDY", required_unless_present = "list", value_parser = name_or_path())]
     study: Option<String>,
     /// Accuracy against run time of every case [default: as the study says]
     #[arg(long, value_name = "QUALITY", value_parser = quality())]

@@ -5,7 +5,7 @@ use crate::scene::look::FRAME_SIDE;
 use crate::scene::quality::Quality;
 use crate::scene::{self, Scene};
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use std::time::Duration;
 
 /// Whole numbers of TOML end here.
@@ -15,6 +15,7 @@ const MOST_SEED: u64 = i64::MAX as u64;
 #[derive(Debug, Args)]
 pub struct SceneArgs {
     /// Built-in scene by name (see `strandsnap scene list`), or the path of a TOML file
+    #[arg(value_parser = name_or_path())]
     pub scene: String,
     /// Accuracy against run time: `draft` doubles the pull's speed, `fine` halves it and the time step
     #[arg(long, value_name = "QUALITY", value_parser = quality(), default_value = "standard")]
@@ -50,6 +51,16 @@ impl SceneArgs {
         let changed = self.quality.apply(&mut scene)?;
         Ok((scene, changed))
     }
+}
+
+/// Reads what may be a built-in name or a path. Scenes and results name files in text, so a path must be text too.
+pub fn name_or_path() -> impl TypedValueParser<Value = String> {
+    OsStringValueParser::new().try_map(|given| {
+        let refused = |name: std::ffi::OsString| {
+            format!("{name:?} is not UTF-8, as the names of scenes and studies must be; rename the file")
+        };
+        given.into_string().map_err(refused)
+    })
 }
 
 /// Reads a preset by its name.

@@ -62,3 +62,20 @@ fn a_scene_of_ones_own_begins_as_a_copy() {
     assert_code(&without, 2);
     assert!(plain(&stderr(&without)).contains("did you mean the file mine.toml?"), "{}", stderr(&without));
 }
+
+#[cfg(unix)]
+#[test]
+fn a_name_that_is_no_text_is_refused_with_the_name() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    let name = std::ffi::OsStr::from_bytes(b"strand-\xff.toml");
+    std::fs::write(folder.path().join(name), "").unwrap();
+    for command in [&["run"][..], &["scene", "check"], &["study"]] {
+        let program = env!("CARGO_BIN_EXE_strandsnap");
+        let mut asked = std::process::Command::new(program);
+        let output = asked.args(command).arg(name).current_dir(folder.path()).output().expect("the program starts");
+        assert_code(&output, 2);
+        let said = plain(&stderr(&output));
+        assert!(said.contains(r#""strand-\xFF.toml" is not UTF-8"#), "{said}");
+    }
+}
