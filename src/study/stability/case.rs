@@ -1,6 +1,5 @@
 //! A case of the matrix: a scene, what is extreme about it, and what must come of it.
 
-use super::critical::Critical;
 use super::measure::Check;
 use crate::base::error::Result;
 use crate::base::finding::FindingKind;
@@ -34,6 +33,22 @@ pub enum Kind {
     Run,
     /// Many times with fixed steps, to find the greatest one that holds.
     Critical(Critical),
+}
+
+/// How the critical step of a case is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Critical {
+    /// The energy of a run may be this many times that of one with half of the bound (-).
+    pub growth: f64,
+    /// The bound must come within this share of the critical step (-); `None`: it only has to lie below.
+    pub within: Option<f64>,
+}
+
+impl Critical {
+    /// Bodies that keep their energy: an unstable step makes it grow without bound.
+    pub const ELASTIC: Self = Self { growth: 10.0, within: None };
+    /// Bodies that swallow energy: one per cent more than at a small step is a wrong answer.
+    pub const DISSIPATIVE: Self = Self { growth: 1.05, within: None };
 }
 
 /// One row of the matrix.
