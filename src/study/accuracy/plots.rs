@@ -1,7 +1,7 @@
 //! Error over run time, parameter by parameter, with the front of what cannot be had both faster and more exact.
 
-use super::Study;
 use super::errors::Errors;
+use super::findings::Study;
 use super::parameters::Role;
 use super::pareto::staircase;
 use super::rows::Row;
