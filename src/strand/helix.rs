@@ -36,12 +36,6 @@ impl Helix {
         DVec3::new(-around * sin, around * cos, 1.0).normalize()
     }
 
-    /// Rotation of the wire's section about its trajectory at height `z` (m), α₀ + s 2π z/h (rad), from `start`
-    /// α₀ (rad): the material frame of torsion and of a stripe that makes twist visible.
-    pub fn section_rotation(&self, start: f64, z: f64) -> f64 {
-        start + self.rate() * z
-    }
-
     /// Lay angle β (rad), tan β = 2π R/h.
     pub fn lay_angle(&self) -> f64 {
         closed_form::lay_angle(self.radius, self.pitch)
@@ -97,14 +91,6 @@ mod tests {
         let at = |i: usize| helix.point(length * i as f64 / n as f64);
         let chords: f64 = (0..n).map(|i| at(i).distance(at(i + 1))).sum();
         assert!((chords / helix.arc_length(length) - 1.0).abs() < 1e-9);
-    }
-
-    /// One pitch turns the section by one turn, in the direction of lay.
-    #[test]
-    fn section_turns_once_per_pitch() {
-        let turn = |lay| outer_wire(lay).section_rotation(0.3, 39e-3);
-        assert!((turn(1.0) - (0.3 + TAU)).abs() < 1e-12);
-        assert!((turn(-1.0) - (0.3 - TAU)).abs() < 1e-12);
     }
 
     #[test]
