@@ -21,9 +21,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Sides of a picture (px).
-pub const SIDES: std::ops::RangeInclusive<u32> = 16..=8192;
+const SIDES: std::ops::RangeInclusive<u32> = 16..=8192;
 /// Most pixels of a picture: with four samples each, half a gigabyte on the adapter.
-pub const MOST_PIXELS: u64 = 16 << 20;
+const MOST_PIXELS: u64 = 16 << 20;
 /// Memory for what was made ready to be drawn (bytes).
 const READY_MEMORY: usize = 256 << 20;
 /// Memory of a segment (bytes).

@@ -58,11 +58,6 @@ impl RoundBar {
         torque * self.length / (self.shear_modulus() * self.polar_moment())
     }
 
-    /// Elongation of a bar under axial force `force` N (N), N L/(E A) (m) (Hooke).
-    pub fn elongation(&self, force: f64) -> f64 {
-        force * self.length / (self.young * self.area())
-    }
-
     /// Speed of axial waves in a thin bar, √(E/ρ) (m/s).
     pub fn axial_wave_speed(&self) -> f64 {
         (self.young / self.density).sqrt()

@@ -77,7 +77,7 @@ fn figure(study: &Study, quantity: &str, which: usize, error: fn(&Errors) -> f64
     }
     let sure = study.reference.uncertainty_percent[which];
     if !study.reference.closed_form && sure > 0.0 {
-        figure.limits.push(Limit::Y(sure, "uncertainty of the reference".into()));
+        figure.limits.push(Limit { y: sure, name: "uncertainty of the reference".into() });
     }
     figure
 }

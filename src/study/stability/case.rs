@@ -72,16 +72,12 @@ pub struct StabilityCase {
     pub check: Option<Check>,
     /// Findings that the run must make, for what is stable and yet not what the user asked for.
     pub found: &'static [FindingKind],
-    /// Greatest energy residual over the work done (-), and why where it is not 1 %.
-    pub residual: (f64, &'static str),
     /// Whether it is started before the others, so that no core waits for it at the end.
     pub long: bool,
     /// Wall time after which the run counts as hung (s).
     pub patience: f64,
 }
 
-/// Greatest energy residual over the work done, unless a case says why (-).
-const RESIDUAL: f64 = 0.01;
 /// Wall time after which a run counts as hung (s); the longest case takes about a minute on a core of its own.
 const PATIENCE: f64 = 400.0;
 
@@ -98,7 +94,6 @@ impl StabilityCase {
             kind: Kind::Run,
             check: None,
             found: &[],
-            residual: (RESIDUAL, ""),
             long: false,
             patience: PATIENCE,
         }
@@ -137,12 +132,6 @@ impl StabilityCase {
     /// It must make these findings.
     pub fn finds(mut self, kinds: &'static [FindingKind]) -> Self {
         self.found = kinds;
-        self
-    }
-
-    /// Its ledger may be open by this share of the work done (-), for a stated reason.
-    pub fn residual(mut self, limit: f64, why: &'static str) -> Self {
-        self.residual = (limit, why);
         self
     }
 

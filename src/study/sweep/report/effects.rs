@@ -234,7 +234,7 @@ fn trend(definition: &Definition, quantity: &Quantity, effects: &Effects) -> Opt
     let label = format!("change of {} [{}]", quantity.heading, quantity.unit);
     let mut figure = Figure::new(title, Axis::named("", names), Axis::linear(label));
     figure.series = series;
-    figure.limits.push(Limit::Y(0.0, String::new()));
+    figure.limits.push(Limit { y: 0.0, name: String::new() });
     figure.legend = Legend::Beside;
     figure.size = [SIZE[0] + 360, SIZE[1]];
     Some(figure)
