@@ -1,11 +1,14 @@
 //! `strandsnap accuracy` as a user runs it: what it writes, how it goes on after an interruption, what it refuses.
 
+#[path = "common/program.rs"]
+mod program;
 #[path = "common/rows.rs"]
 mod rows;
 
+use program::{printed, strandsnap, text};
 use rows::{number, rows};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// A wire of 30 mm: a run takes a tenth of a second.
 /// Short, and weak enough to break before the scene's limit on strain.
@@ -20,23 +23,8 @@ const WIRE: [&str; 8] = [
     "--threads=1",
 ];
 
-fn strandsnap(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
-    command.args(args).current_dir(folder).output().expect("the program starts")
-}
-
 fn accuracy(folder: &Path, scene: &[&str], args: &[&str]) -> Output {
     strandsnap(folder, &[&["accuracy"], scene, args].concat())
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-/// What a study that must succeed prints.
-fn printed(output: &Output) -> String {
-    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
-    text(&output.stdout)
 }
 
 #[test]

@@ -1,7 +1,11 @@
 //! `strandsnap calibrate` as a user runs it.
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{printed, strandsnap, text};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// A wire of 30 mm whose bonds scatter widely; a run takes a fraction of a second.
 const WIRE: [&str; 13] = [
@@ -20,23 +24,14 @@ const WIRE: [&str; 13] = [
     "--tolerance=1",
 ];
 
-fn strandsnap(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
-    command.args([&WIRE, args].concat()).current_dir(folder).output().expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+fn calibrate(folder: &Path, args: &[&str]) -> Output {
+    strandsnap(folder, &[&WIRE, args].concat())
 }
 
 #[test]
 fn a_mean_over_seeds_is_fitted_with_its_interval_and_runs_are_kept() {
     let folder = tempfile::tempdir().unwrap();
-    let calibrate = |args: &[&str]| {
-        let output = strandsnap(folder.path(), args);
-        assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
-        text(&output.stdout)
-    };
+    let calibrate = |args: &[&str]| printed(&calibrate(folder.path(), args));
     let first = calibrate(&["--seeds", "4", "--jobs", "2"]);
     for part in ["target: 150.00 MPa at 5.00 %", "Mean of 4 seeds: strength", "±", "bond.rupture.strain="] {
         assert!(first.contains(part), "{part} is not in\n{first}");
@@ -63,7 +58,7 @@ fn seeds_that_mean_nothing_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for (seeds, why) in [("0", "none is not enough"), ("6..4", "no seeds"), ("1,1", "listed twice"), ("a", "how many")]
     {
-        let output = strandsnap(folder.path(), &["--seeds", seeds]);
+        let output = calibrate(folder.path(), &["--seeds", seeds]);
         assert_eq!(output.status.code(), Some(2), "{seeds}");
         assert!(text(&output.stderr).contains(why), "{seeds}: {}", text(&output.stderr));
     }

@@ -1,12 +1,15 @@
 //! `strandsnap study` as a user runs it: a tiny study end to end, resumed, run case by case, with cases that fail, and
 //! what it refuses.
 
+#[path = "common/program.rs"]
+mod program;
 #[path = "common/rows.rs"]
 mod rows;
 
+use program::{printed, strandsnap, text};
 use rows::{Row, number, rows};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// A wire of 30 mm over three pull speeds and two seeds: a run takes a tenth of a second.
 const SPEEDS: &str = r#"
@@ -24,24 +27,10 @@ to = "20 m/s"
 points = 4
 "#;
 
-fn strandsnap(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
-    command.args(args).current_dir(folder).output().expect("the program starts")
-}
-
 /// Runs a study from its text, in a folder that keeps its results.
 fn study(folder: &Path, text: &str, args: &[&str]) -> Output {
     std::fs::write(folder.join("own.toml"), text).unwrap();
     strandsnap(folder, &[&["study", "own.toml"], args].concat())
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn printed(output: &Output) -> String {
-    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
-    text(&output.stdout)
 }
 
 #[test]

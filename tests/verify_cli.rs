@@ -1,15 +1,14 @@
 //! `strandsnap verify` as a user runs it: exit codes, files, messages.
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{strandsnap, text};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn verify(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
-    command.arg("verify").args(args).current_dir(folder).output().expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+    strandsnap(folder, &[&["verify"], args].concat())
 }
 
 #[test]
@@ -51,7 +50,6 @@ fn verify_lists_cases_with_their_sources() {
 #[test]
 fn verification_scenes_are_found_from_anywhere() {
     let folder = tempfile::tempdir().unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
-    let output = command.args(["scene", "check", "verify/hertz"]).current_dir(folder.path()).output().unwrap();
+    let output = strandsnap(folder.path(), &["scene", "check", "verify/hertz"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
 }

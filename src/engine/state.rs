@@ -332,16 +332,4 @@ impl ChunkSums {
             self.deepest = other.deepest;
         }
     }
-
-    /// All energies times `factor`.
-    pub fn scaled(&self, factor: f64) -> Self {
-        Self {
-            plastic: self.plastic * factor,
-            damping: self.damping * factor,
-            friction: self.friction * factor,
-            thinning: self.thinning * factor,
-            released: self.released * factor,
-            deepest: self.deepest,
-        }
-    }
 }

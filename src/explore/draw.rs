@@ -1,7 +1,7 @@
 //! One view to one picture: everything that this floor knows of the renderer and of a snapshot's particles.
 
-use super::pick::{Cone, nearest};
-use super::record::Record;
+use super::pick::{Cone, Picked, nearest};
+use super::record::{Record, ridden};
 use super::view::View;
 use crate::base::error::{Error, Result};
 use crate::base::units::mm;
@@ -10,7 +10,6 @@ use crate::render::body::Body;
 use crate::render::camera::Camera;
 use crate::render::canvas::Rect;
 use crate::render::colour::ColourScale;
-use crate::render::data::current_z;
 use crate::render::occlusion::occlusion;
 use crate::render::painter::{Drawing, Painter};
 use crate::render::style::Rgb;
@@ -22,9 +21,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Sides of a picture (px).
-pub const SIDES: std::ops::RangeInclusive<u32> = 16..=8192;
+const SIDES: std::ops::RangeInclusive<u32> = 16..=8192;
 /// Most pixels of a picture: with four samples each, half a gigabyte on the adapter.
-pub const MOST_PIXELS: u64 = 16 << 20;
+const MOST_PIXELS: u64 = 16 << 20;
 /// Memory for what was made ready to be drawn (bytes).
 const READY_MEMORY: usize = 256 << 20;
 /// Memory of a segment (bytes).
@@ -38,15 +37,6 @@ pub struct Picture {
     pub image: RgbImage,
     /// How long it took (s), without encoding.
     pub took: Duration,
-}
-
-/// A particle under a pixel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Picked {
-    /// The particle, from 0.
-    pub particle: usize,
-    /// Its wire, from 0; `None` for a free sphere.
-    pub wire: Option<usize>,
 }
 
 /// Draws views of one run, for any number of browsers one after the other.
@@ -267,11 +257,6 @@ fn check_size(size: [u32; 2]) -> Result<()> {
     ))
 }
 
-/// Where the material section that a view rides on is now (m); 0 where it rides on none.
-pub fn ridden(info: &RunInfo, snapshot: &Snapshot, view: &View) -> f32 {
-    view.follow.map_or(0.0, |z| current_z(info, snapshot, (z / mm(1.0)) as f32))
-}
-
 /// Which particles are left out of a view.
 fn removed(info: &RunInfo, snapshot: &Snapshot, view: &View) -> Vec<bool> {
     let mut removed = vec![false; info.particles];
@@ -289,23 +274,4 @@ fn removed(info: &RunInfo, snapshot: &Snapshot, view: &View) -> Vec<bool> {
 fn stride(info: &RunInfo, view: &View, size: [u32; 2]) -> usize {
     let spacing = 2.0 * mm(f64::from(info.radius.first().copied().unwrap_or(1e-3)));
     (8.0 * view.height / (spacing * f64::from(size[1]))).clamp(1.0, 8.0) as usize
-}
-
-/// The state between two snapshots, at `share` of the way (-): what can move or grow is between them, bonds are those of
-/// the earlier one.
-pub fn between(a: &Snapshot, b: &Snapshot, share: f64) -> Snapshot {
-    let t = share as f32;
-    let mix = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a + (b - a) * t).collect();
-    let position = a.position.iter().zip(&b.position);
-    Snapshot {
-        sample: a.sample.clone(),
-        position: position.map(|(a, b)| Vec3::from(*a).lerp(Vec3::from(*b), t).to_array()).collect(),
-        radius: mix(&a.radius, &b.radius),
-        speed: mix(&a.speed, &b.speed),
-        bond_state: a.bond_state.clone(),
-        bond_stress: mix(&a.bond_stress, &b.bond_stress),
-        plastic_strain: mix(&a.plastic_strain, &b.plastic_strain),
-        utilisation: mix(&a.utilisation, &b.utilisation),
-        contact_pressure: mix(&a.contact_pressure, &b.contact_pressure),
-    }
 }

@@ -2,7 +2,7 @@
 //! where the run lies and steered from a browser.
 //!
 //! [`Server`] answers one page and its socket at a local address; a `session` is one browser that looks, with a [`View`] of
-//! its own; [`record`] holds the run and tells it to the page; [`draw`] is all that knows the renderer.
+//! its own; [`record`] holds the run and tells it to the page; [`draw`] draws it with the renderer.
 
 pub mod draw;
 mod http;
@@ -10,6 +10,7 @@ mod pick;
 pub mod record;
 mod server;
 mod session;
+mod shared;
 pub mod view;
 
 pub use server::{Options, Server};
@@ -24,7 +25,7 @@ use std::path::Path;
 /// When the run cannot be read, the view does not fit it, or there is no graphics adapter.
 pub fn picture(run: &Path, view: &View, size: [u32; 2]) -> Result<Vec<u8>> {
     let record = record::Record::read(run)?;
-    view.check(&record)?;
+    view.check(record.info(), record.states())?;
     let picture = draw::Artist::new(&record)?.draw(&record, view, size)?;
     crate::render::png::encode(&picture.image)
 }

@@ -10,6 +10,15 @@ pub struct Cone<T> {
     pub what: [T; 2],
 }
 
+/// A particle under a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Picked {
+    /// The particle, from 0.
+    pub particle: usize,
+    /// Its wire, from 0; `None` for a free sphere.
+    pub wire: Option<usize>,
+}
+
 /// The end nearest to what is seen at `at` (mm): of the piece whose surface lies nearest to the eye there.
 pub fn nearest<T: Copy>(cones: &[Cone<T>], at: Vec2) -> Option<T> {
     let hits = cones.iter().filter_map(|cone| {

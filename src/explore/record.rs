@@ -1,6 +1,6 @@
 //! A run as the page is told of it: all its snapshots in memory, its numbers in the units of people.
 
-use super::draw;
+use super::pick::Picked;
 use super::view::View;
 use crate::base::error::{Error, Result};
 use crate::base::units::{mm, mpa, ms, percent};
@@ -11,8 +11,10 @@ use crate::observe::wording::wire_number;
 use crate::page::{self, Abscissa, Source};
 use crate::render::body::Body;
 use crate::render::colour::ColourScale;
+use crate::render::data::current_z;
 use crate::run::identity;
 use crate::scene::spec::ColourBy;
+use glam::Vec3;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -86,9 +88,7 @@ impl Record {
     pub fn snapshot(&self, state: f64) -> Arc<Snapshot> {
         let before = (state as usize).min(self.states() - 1);
         match self.snapshots.get(before + 1) {
-            Some(after) if state.fract() > 0.0 => {
-                Arc::new(draw::between(&self.snapshots[before], after, state.fract()))
-            }
+            Some(after) if state.fract() > 0.0 => Arc::new(between(&self.snapshots[before], after, state.fract())),
             _ => self.snapshots[before].clone(),
         }
     }
@@ -177,7 +177,7 @@ impl Record {
             [all.clone().fold(f32::MAX, f32::min), all.fold(f32::MIN, f32::max)].map(|end| mm(f64::from(end)))
         };
         json!({
-            "state": view.state, "ridden": mm(f64::from(draw::ridden(info, &snapshot, view))),
+            "state": view.state, "ridden": mm(f64::from(ridden(info, &snapshot, view))),
             "x": abscissa.value(sample), "when": abscissa.moment(abscissa.value(sample)),
             "stress": mpa(sample.stress), "time_ms": ms(sample.time), "wires_broken": sample.wires_broken,
             "bonds_broken": sample.bonds_broken, "layers": (0..info.layers.len()).map(whole).collect::<Vec<_>>(),
@@ -203,7 +203,7 @@ impl Record {
     }
 
     /// A particle's numbers at a state.
-    pub fn particle(&self, picked: draw::Picked, state: f64) -> Value {
+    pub fn particle(&self, picked: Picked, state: f64) -> Value {
         let info = self.info();
         let snapshot = self.snapshot(state);
         let i = picked.particle;
@@ -226,6 +226,30 @@ impl Record {
             "utilisation": mean(&snapshot.utilisation, percent), "held_by": bonds.len(),
         })
     }
+}
+
+/// The state between two snapshots, at `share` of the way (-): what can move or grow is between them, bonds are those of
+/// the earlier one.
+fn between(a: &Snapshot, b: &Snapshot, share: f64) -> Snapshot {
+    let t = share as f32;
+    let mix = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a + (b - a) * t).collect();
+    let position = a.position.iter().zip(&b.position);
+    Snapshot {
+        sample: a.sample.clone(),
+        position: position.map(|(a, b)| Vec3::from(*a).lerp(Vec3::from(*b), t).to_array()).collect(),
+        radius: mix(&a.radius, &b.radius),
+        speed: mix(&a.speed, &b.speed),
+        bond_state: a.bond_state.clone(),
+        bond_stress: mix(&a.bond_stress, &b.bond_stress),
+        plastic_strain: mix(&a.plastic_strain, &b.plastic_strain),
+        utilisation: mix(&a.utilisation, &b.utilisation),
+        contact_pressure: mix(&a.contact_pressure, &b.contact_pressure),
+    }
+}
+
+/// Where the material section that a view rides on is now (m); 0 where it rides on none.
+pub fn ridden(info: &RunInfo, snapshot: &Snapshot, view: &View) -> f32 {
+    view.follow.map_or(0.0, |z| current_z(info, snapshot, (z / mm(1.0)) as f32))
 }
 
 /// Rows of a curve, evenly thinned; the last one and the greatest stress are kept.

@@ -4,6 +4,7 @@ use super::draw::Artist;
 use super::http::{self, Refusal, Request};
 use super::record::Record;
 use super::session;
+use super::shared::Shared;
 use crate::base::error::{Error, Result};
 use std::io::{ErrorKind, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, TcpStream};
@@ -57,14 +58,12 @@ impl Default for Options {
 pub struct Server {
     listener: TcpListener,
     options: Options,
-    house: Arc<House>,
+    service: Arc<Service>,
 }
 
-/// What all connections share.
-pub(super) struct House {
-    pub record: Record,
-    pub artist: Mutex<Artist>,
-    pub ended: AtomicBool,
+/// What answers connections.
+struct Service {
+    shared: Shared,
     bound: SocketAddr,
     token: String,
     facts: Vec<u8>,
@@ -92,38 +91,36 @@ impl Server {
         let mut facts = record.facts();
         facts["adapter"] = artist.adapter().into();
         facts["command"] = options.command.as_str().into();
-        let house = House {
+        let service = Service {
             facts: facts.to_string().into_bytes(),
             token: token()?,
-            record,
-            artist: Mutex::new(artist),
+            shared: Shared::new(record, artist),
             bound,
-            ended: AtomicBool::new(false),
             connections: AtomicUsize::new(0),
             browsers: AtomicUsize::new(0),
             left: Mutex::new(None),
         };
-        Ok(Self { listener, options, house: Arc::new(house) })
+        Ok(Self { listener, options, service: Arc::new(service) })
     }
 
     /// The address to open, with the token in it.
     pub fn address(&self) -> String {
-        let at = self.house.bound;
+        let at = self.service.bound;
         let host = match at.ip() {
             ip if ip.is_unspecified() && ip.is_ipv4() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), at.port()),
             _ => at,
         };
-        format!("http://{host}/?token={}", self.house.token)
+        format!("http://{host}/?token={}", self.service.token)
     }
 
     /// Name of the graphics adapter that draws.
     pub fn adapter(&self) -> String {
-        self.house.artist().adapter().to_owned()
+        self.service.shared.artist().adapter().to_owned()
     }
 
     /// What is wrong with the run's folder, in sentences.
     pub fn notes(&self) -> &[String] {
-        self.house.record.notes()
+        self.service.shared.record.notes()
     }
 
     /// Answers until `stop` is set, or until a while after the last page has been closed.
@@ -132,11 +129,11 @@ impl Server {
     /// When the system takes the address away.
     pub fn serve(&self, stop: &AtomicBool) -> Result<()> {
         let outcome = loop {
-            if stop.load(Ordering::Relaxed) || (!self.options.keep && self.house.deserted()) {
+            if stop.load(Ordering::Relaxed) || (!self.options.keep && self.service.deserted()) {
                 break Ok(());
             }
             match self.listener.accept() {
-                Ok((stream, _)) => self.house.clone().receive(stream),
+                Ok((stream, _)) => self.service.clone().receive(stream),
                 Err(e) if [ErrorKind::WouldBlock, ErrorKind::Interrupted].contains(&e.kind()) => {
                     std::thread::sleep(POLL);
                 }
@@ -147,9 +144,9 @@ impl Server {
                 Err(e) => break Err(Error::Missing { what: format!("lost the address: {e}"), help: None }),
             }
         };
-        self.house.ended.store(true, Ordering::Relaxed);
+        self.service.shared.ended.store(true, Ordering::Relaxed);
         let begin = Instant::now();
-        while self.house.connections.load(Ordering::Relaxed) > 0 && begin.elapsed() < PARTING {
+        while self.service.connections.load(Ordering::Relaxed) > 0 && begin.elapsed() < PARTING {
             std::thread::sleep(POLL);
         }
         outcome
@@ -157,12 +154,12 @@ impl Server {
 }
 
 /// Counts one more for as long as it lives.
-struct Counted(Arc<House>, fn(&House) -> &AtomicUsize);
+struct Counted(Arc<Service>, fn(&Service) -> &AtomicUsize);
 
 impl Counted {
-    fn enter(house: &Arc<House>, which: fn(&House) -> &AtomicUsize, most: usize) -> Option<Self> {
-        let counted = Self(house.clone(), which);
-        let before = which(house).fetch_add(1, Ordering::Relaxed);
+    fn enter(service: &Arc<Service>, which: fn(&Service) -> &AtomicUsize, most: usize) -> Option<Self> {
+        let counted = Self(service.clone(), which);
+        let before = which(service).fetch_add(1, Ordering::Relaxed);
         (before < most).then_some(counted)
     }
 }
@@ -173,12 +170,7 @@ impl Drop for Counted {
     }
 }
 
-impl House {
-    /// The one who draws, when it is free. A picture that failed in the middle leaves nothing half done.
-    pub fn artist(&self) -> std::sync::MutexGuard<'_, Artist> {
-        self.artist.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
+impl Service {
     fn deserted(&self) -> bool {
         let left = self.left.lock().unwrap_or_else(PoisonError::into_inner);
         self.browsers.load(Ordering::Relaxed) == 0 && left.is_some_and(|left| left.elapsed() > LINGER)
@@ -194,7 +186,7 @@ impl House {
         if prepared.and_then(|()| stream.set_nodelay(true)).is_err() {
             return;
         }
-        let Some(counted) = Counted::enter(&self, |house| &house.connections, MOST_CONNECTIONS) else {
+        let Some(counted) = Counted::enter(&self, |service| &service.connections, MOST_CONNECTIONS) else {
             // Said without a thread of its own; the words fit into the socket's buffer.
             let _ = refuse(&mut stream, Refusal::Busy);
             return;
@@ -262,14 +254,14 @@ impl House {
             self.token,
             request.host,
         );
-        let name = maud::html! { (self.record.name()) }.into_string();
-        let body = PAGE.replace("{{name}}", &name).replace("{{headline}}", &self.record.headline());
+        let name = maud::html! { (self.shared.record.name()) }.into_string();
+        let body = PAGE.replace("{{name}}", &name).replace("{{headline}}", &self.shared.record.headline());
         http::respond(stream, "200 OK", "text/html; charset=utf-8", &headers, body.as_bytes())
     }
 
     /// Opens the socket of a page and serves it until it is closed.
     fn look(self: &Arc<Self>, mut stream: TcpStream, request: Request) {
-        let Some(_browser) = Counted::enter(self, |house| &house.browsers, MOST_BROWSERS) else {
+        let Some(_browser) = Counted::enter(self, |service| &service.browsers, MOST_BROWSERS) else {
             let _ = refuse(&mut stream, Refusal::Busy);
             return;
         };
@@ -279,7 +271,7 @@ impl House {
             derive_accept_key(key.as_bytes())
         );
         if stream.write_all(head.as_bytes()).is_ok() {
-            session::run(self, stream, request.rest);
+            session::run(&self.shared, stream, request.rest);
         }
         *self.left.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
     }

@@ -4,7 +4,7 @@
 //! came meanwhile only the newest is drawn. A moment after the last move comes the whole picture without loss.
 
 use super::draw::Picture;
-use super::server::House;
+use super::shared::Shared;
 use super::view::View;
 use crate::base::error::Result;
 use image::codecs::jpeg::JpegEncoder;
@@ -77,7 +77,7 @@ enum End {
 }
 
 struct Session<'a> {
-    house: &'a House,
+    shared: &'a Shared,
     socket: WebSocket<TcpStream>,
     /// What is to be drawn next, since when.
     wanted: Option<Look>,
@@ -103,14 +103,14 @@ struct Look {
 }
 
 /// Serves the page behind a socket until it goes away; `rest` is what it has already sent.
-pub(super) fn run(house: &House, stream: TcpStream, rest: Vec<u8>) {
+pub(super) fn run(shared: &Shared, stream: TcpStream, rest: Vec<u8>) {
     let config = WebSocketConfig::default()
         .max_message_size(Some(LONGEST_MESSAGE))
         .max_frame_size(Some(LONGEST_MESSAGE))
         .read_buffer_size(16 << 10);
     let socket = WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
     let mut session = Session {
-        house,
+        shared,
         socket,
         wanted: None,
         unfinished: None,
@@ -138,7 +138,7 @@ pub(super) fn run(house: &House, stream: TcpStream, rest: Vec<u8>) {
 impl Session<'_> {
     /// Reads what has come, then draws at most one picture.
     fn turn(&mut self) -> std::result::Result<(), End> {
-        if self.house.ended.load(std::sync::atomic::Ordering::Relaxed) || self.heard.elapsed() > SILENCE {
+        if self.shared.ended.load(std::sync::atomic::Ordering::Relaxed) || self.heard.elapsed() > SILENCE {
             return Err(End::Gone);
         }
         let mut wait = self.wait();
@@ -212,15 +212,15 @@ impl Session<'_> {
                 Ok(())
             }
             Ask::Pick { number, size, at, view } => {
-                let picked = view.check(&self.house.record).map(|()| {
-                    let picked = self.house.artist().pick(&self.house.record, &view, size, at);
-                    picked.map(|picked| self.house.record.particle(picked, view.state))
+                let picked = self.shared.check(&view).map(|()| {
+                    let picked = self.shared.artist().pick(&self.shared.record, &view, size, at);
+                    picked.map(|picked| self.shared.record.particle(picked, view.state))
                 });
                 self.answer(picked.map(|picked| json!({ "picked": picked, "number": number })))
             }
             Ask::Wire { wire, state } => {
-                let last = (self.house.record.states() - 1) as f64;
-                let told = self.house.record.wire(wire, state.clamp(0.0, last));
+                let last = (self.shared.record.states() - 1) as f64;
+                let told = self.shared.record.wire(wire, state.clamp(0.0, last));
                 self.say(&json!({ "wire": told }))
             }
             Ask::Picture { size, view } => {
@@ -228,7 +228,7 @@ impl Session<'_> {
                 Ok(())
             }
             Ask::Command { size, view } => {
-                let words = view.check(&self.house.record).and_then(|()| view.words());
+                let words = self.shared.check(&view).and_then(|()| view.words());
                 let size = format!("{}x{}", size[0], size[1]);
                 self.answer(words.map(|words| json!({ "command": format!("--view '{words}' --size {size}") })))
             }
@@ -248,8 +248,8 @@ impl Session<'_> {
     }
 
     fn drawn(&self, view: &View, size: [u32; 2]) -> Result<Picture> {
-        view.check(&self.house.record)?;
-        self.house.artist().draw(&self.house.record, view, size)
+        self.shared.check(view)?;
+        self.shared.artist().draw(&self.shared.record, view, size)
     }
 
     fn draw_moving(&mut self, look: Look) -> std::result::Result<(), End> {
@@ -293,11 +293,11 @@ impl Session<'_> {
         let colour = |view: &View| (view.colour, view.range);
         let state = told.as_ref().is_none_or(|told| place(told) != place(&look.view));
         if state {
-            let state = self.house.record.state(&look.view);
+            let state = self.shared.record.state(&look.view);
             self.say(&json!({ "state": state }))?;
         }
         if state || told.is_none_or(|told| colour(&told) != colour(&look.view)) {
-            let ready = self.house.artist().ready(&self.house.record, &look.view, look.size);
+            let ready = self.shared.artist().ready(&self.shared.record, &look.view, look.size);
             self.send_picture(Kind::Colours, look.number, look.size, Duration::ZERO, ready.colours.as_flattened())?;
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! What a browser looks at: everything that decides a picture apart from its size.
 
-use super::record::Record;
 use crate::base::error::{Error, Result};
+use crate::engine::view::RunInfo;
 use crate::scene::spec::{ColourBy, Theme};
 use serde::{Deserialize, Serialize};
 
@@ -98,13 +98,12 @@ impl View {
         Ok(entries.collect::<Vec<_>>().join(", "))
     }
 
-    /// Checks that the run has what the view names and that its numbers can be drawn.
+    /// Checks that a run of so many snapshots has what the view names and that its numbers can be drawn.
     ///
     /// # Errors
     /// [`Error::Input`] that says which key is wrong and what it may be.
-    pub fn check(&self, record: &Record) -> Result<()> {
-        let info = record.info();
-        let last = record.states() - 1;
+    pub fn check(&self, info: &RunInfo, states: usize) -> Result<()> {
+        let last = states.saturating_sub(1);
         let lengths = self.centre.iter().chain(&self.follow).chain(&self.cut);
         let layers = info.layers.len();
         let wires = info.wires.len();

@@ -345,17 +345,10 @@ fn first_not_finite(sample: &Sample) -> Option<Quantity> {
 mod tests {
     use super::*;
     use crate::engine::view::Energy;
+    use crate::strand::test_specs;
 
     fn limits() -> TimeSpec {
-        TimeSpec {
-            safety: 0.8,
-            step: None,
-            mass_scale: 1.0,
-            inertia_scale: 1.0,
-            contact_resolution: 0.4,
-            kinetic_limit: 0.05,
-            mismatch_limit: 0.02,
-        }
+        TimeSpec { kinetic_limit: 0.05, mismatch_limit: 0.02, ..test_specs::empty().time }
     }
 
     fn row(kinetic: f64, internal: f64, force: [f64; 2]) -> Sample {

@@ -152,7 +152,7 @@ fn slope(rows: &[Row], of: fn(&Row) -> f64) -> f64 {
 
 impl Stiffness {
     /// Whether the measured value is off by [`LIMIT`] or more.
-    pub fn is_off(&self) -> bool {
+    fn is_off(&self) -> bool {
         self.deviation_percent.is_some_and(|deviation| deviation.abs() >= percent(LIMIT))
     }
 

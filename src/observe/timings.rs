@@ -43,7 +43,7 @@ impl Timings {
     }
 
     /// Mean per frame (ms): draw, read-back, overlay, encode.
-    pub fn per_frame_ms(&self) -> [f64; 4] {
+    fn per_frame_ms(&self) -> [f64; 4] {
         let n = f64::from(self.frames.max(1));
         [self.draw, self.read_back, self.overlay, self.encode].map(|d| d.as_secs_f64() * 1e3 / n)
     }

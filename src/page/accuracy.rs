@@ -27,7 +27,7 @@ fn shown(study: &Study) -> Markup {
         @for line in study.summary.lines() { p { (line.trim()) } }
         @if let Some(plot) = &study.plot {
             // As an image, so that nothing in the file can run.
-            img.study alt="Error over run time, knob by knob" src={ "data:image/svg+xml;base64," (STANDARD.encode(plot)) };
+            img.study alt="Error over run time, parameter by parameter" src={ "data:image/svg+xml;base64," (STANDARD.encode(plot)) };
         }
         @for table in &study.tables {
             div.scroll { (cells(table)) }

@@ -3,7 +3,7 @@
 use crate::engine::view::{Rupture, Sample};
 
 /// Snapshots on a page at most; frames weigh about 150 kB each.
-pub const MOST_STATES: usize = 50;
+const MOST_STATES: usize = 50;
 /// Of those, as many as this after the first rupture.
 const AFTER_RUPTURE: usize = 32;
 

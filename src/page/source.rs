@@ -51,8 +51,6 @@ pub struct Source {
 
 /// One snapshot on the page.
 pub struct State {
-    /// Which snapshot of the run it is, from 0.
-    pub number: usize,
     /// The row of the curve at this instant.
     pub sample: Sample,
     /// True axial stress of each bond slot (Pa); NaN where no bond holds.
@@ -159,12 +157,6 @@ impl Source {
         self.info.gauge.map(|[low, high]| mm(0.5 * (low + high)))
     }
 
-    /// Row of the greatest nominal stress of a pulled body.
-    pub fn peak(&self) -> Option<&Sample> {
-        let pulled = self.samples.iter().filter(|_| self.info.is_pulled());
-        pulled.reduce(|best, row| if row.stress > best.stress { row } else { best })
-    }
-
     /// The step of the first rupture.
     pub fn first_rupture_step(&self) -> Option<u64> {
         self.ruptures.first().map(|rupture| rupture.step)
@@ -232,7 +224,7 @@ fn second_pass(trajectory: Trajectory, chosen: &[select::Chosen], pictures: &Pic
     for (number, snapshot) in snapshots.enumerate() {
         if let Some(one) = wanted.next_if(|one| one.number == number) {
             let picture = pictures.of(number);
-            states.push(State { number, stress: held(&snapshot), sample: snapshot.sample, label: one.label, picture });
+            states.push(State { stress: held(&snapshot), sample: snapshot.sample, label: one.label, picture });
         }
     }
     Ok(states)

@@ -58,19 +58,9 @@ impl RoundBar {
         torque * self.length / (self.shear_modulus() * self.polar_moment())
     }
 
-    /// Elongation of a bar under axial force `force` N (N), N L/(E A) (m) (Hooke).
-    pub fn elongation(&self, force: f64) -> f64 {
-        force * self.length / (self.young * self.area())
-    }
-
     /// Speed of axial waves in a thin bar, √(E/ρ) (m/s).
     pub fn axial_wave_speed(&self) -> f64 {
         (self.young / self.density).sqrt()
-    }
-
-    /// Speed of torsional waves in a round bar, √(G/ρ) (m/s).
-    pub fn torsional_wave_speed(&self) -> f64 {
-        (self.shear_modulus() / self.density).sqrt()
     }
 
     /// First bending frequency of a cantilever without shear and rotary inertia,
@@ -80,25 +70,9 @@ impl RoundBar {
         CLAMPED_FREE_ROOT.powi(2) * rigidity.sqrt() / self.length.powi(2)
     }
 
-    /// First axial frequency of a bar clamped at one end, π/2 · √(E/ρ)/L (rad/s).
-    pub fn first_axial_frequency(&self) -> f64 {
-        PI / 2.0 * self.axial_wave_speed() / self.length
-    }
-
-    /// First torsional frequency of a bar clamped at one end, π/2 · √(G/ρ)/L (rad/s).
-    pub fn first_torsional_frequency(&self) -> f64 {
-        PI / 2.0 * self.torsional_wave_speed() / self.length
-    }
-
     /// Buckling load of a clamped–free column, π² E I/(4 L²) (N) (Euler 1744).
     pub fn buckling_load(&self) -> f64 {
         PI.powi(2) * self.young * self.second_moment() / (4.0 * self.length.powi(2))
-    }
-
-    /// Timoshenko's Φ = 12 E I/(κ G A l²) of a piece of length `piece` l (m): shear over bending compliance (-).
-    pub fn shear_parameter(&self, piece: f64) -> f64 {
-        let shear = shear_coefficient(self.poisson) * self.shear_modulus() * self.area();
-        12.0 * self.young * self.second_moment() / (shear * piece.powi(2))
     }
 }
 
@@ -137,27 +111,5 @@ mod tests {
     fn clamped_free_root_satisfies_its_equation() {
         let x = CLAMPED_FREE_ROOT;
         assert!((x.cos() * x.cosh() + 1.0).abs() < 1e-13);
-    }
-
-    /// n pieces in series, each with its own Φ, bend as the whole: the tip of a cantilever is recovered from the
-    /// stiffness 12 E I/(l³(1 + Φ)) of a guided piece, whose two halves are cantilevers of length l/2.
-    #[test]
-    fn shear_parameter_agrees_with_the_cantilever() {
-        let rod = steel_rod();
-        let piece = 0.1_f64;
-        let guided = 12.0 * rod.young * rod.second_moment() / (piece.powi(3) * (1.0 + rod.shear_parameter(piece)));
-        let half = RoundBar { length: piece / 2.0, ..rod };
-        let from_cantilevers = 1.0 / (2.0 * half.cantilever_tip(1.0));
-        assert!((guided / from_cantilevers - 1.0).abs() < 1e-12);
-    }
-
-    /// Waves: a quarter of a period of the first mode is the time a wave takes to run the length.
-    #[test]
-    fn first_axial_and_torsional_modes_follow_from_the_wave_speeds() {
-        let rod = steel_rod();
-        let quarter = 0.25 * 2.0 * PI / rod.first_axial_frequency();
-        assert!((quarter * rod.axial_wave_speed() - rod.length).abs() < 1e-12);
-        let quarter = 0.25 * 2.0 * PI / rod.first_torsional_frequency();
-        assert!((quarter * rod.torsional_wave_speed() - rod.length).abs() < 1e-12);
     }
 }

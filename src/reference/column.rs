@@ -20,7 +20,7 @@ pub struct Column {
 
 impl Column {
     /// The column with k = sin(α/2), α the slope of its tip (-), 0 ≤ k < 1.
-    pub fn with_modulus(k: f64) -> Self {
+    fn with_modulus(k: f64) -> Self {
         let (first, second) = (elliptic::first(FRAC_PI_2, k), elliptic::second(FRAC_PI_2, k));
         Self { load: (first / FRAC_PI_2).powi(2), shortening: 2.0 - 2.0 * second / first, deflection: 2.0 * k / first }
     }

@@ -48,11 +48,6 @@ impl Section {
     pub fn plastic_torque(&self) -> f64 {
         2.0 * PI / 3.0 * self.yield_stress / 3.0_f64.sqrt() * self.radius.powi(3)
     }
-
-    /// Shear force at yield, V_p = (σ_y/√3) π r² (N) (von Mises).
-    pub fn plastic_shear(&self) -> f64 {
-        self.yield_stress / 3.0_f64.sqrt() * PI * self.radius.powi(2)
-    }
 }
 
 /// What a perfectly plastic section carries when it is under a constant axial force and is bent and twisted on and on,
@@ -180,7 +175,6 @@ mod tests {
         near(section.plastic_moment(), sum(|r| 4.0 * r * r));
         let root3 = 3.0_f64.sqrt();
         near(section.plastic_torque() * root3, sum(|r| 2.0 * PI * r * r));
-        near(section.plastic_shear() * root3, sum(|r| 2.0 * PI * r));
         near(section.plastic_moment() / section.first_yield_moment(), 16.0 / (3.0 * PI));
     }
 

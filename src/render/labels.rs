@@ -4,7 +4,7 @@ use super::canvas::{Align, Canvas, Rect, Type, Weight};
 use super::data::Data;
 
 /// Radius of a numbered disc in units.
-pub const BADGE: f32 = 8.5;
+const BADGE: f32 = 8.5;
 
 /// Places at least `pitch` apart within `[low, high]`, in the order of `wanted` (ascending), with the least sum of
 /// squared shifts before the ends are taken into account: `x_i − i·pitch` must not fall, which is isotonic
@@ -68,7 +68,7 @@ pub fn badges(canvas: &mut Canvas, band: Rect, data: &Data, marks: &[Mark]) {
 }
 
 /// A number in a disc of the signal colour.
-pub fn badge(canvas: &mut Canvas, x: f32, y: f32, radius: f32, data: &Data, number: usize) {
+fn badge(canvas: &mut Canvas, x: f32, y: f32, radius: f32, data: &Data, number: usize) {
     let text = number.to_string();
     let size = radius * if text.len() > 1 { 1.15 } else { 1.35 };
     // The first break is what people look for.

@@ -19,7 +19,7 @@ pub struct Side {
 /// The side of the eye.
 pub const FRONT: Side = Side { name: "front", turn: 0.0 };
 /// The other one.
-pub const BACK: Side = Side { name: "back", turn: std::f64::consts::PI };
+const BACK: Side = Side { name: "back", turn: std::f64::consts::PI };
 
 /// The side on which a bond broke, judged before loading: it never changes from frame to frame.
 pub fn facing(data: &Data, rupture: &Rupture) -> Side {

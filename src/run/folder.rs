@@ -27,7 +27,7 @@ pub const FRAMES: &str = "frames";
 /// Animation of them, where no other name is given.
 pub const ANIMATION: &str = "frames.gif";
 /// What a folder of pictures holds until the last of them is drawn.
-pub const UNFINISHED: &str = "UNFINISHED.txt";
+const UNFINISHED: &str = "UNFINISHED.txt";
 /// A study of error against run time, in a folder of its own.
 pub const ACCURACY_STUDY: &str = "accuracy.json";
 /// Its plot.

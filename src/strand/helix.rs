@@ -36,17 +36,6 @@ impl Helix {
         DVec3::new(-around * sin, around * cos, 1.0).normalize()
     }
 
-    /// Rotation of the wire's section about its trajectory at height `z` (m), α₀ + s 2π z/h (rad), from `start`
-    /// α₀ (rad): the material frame of torsion and of a stripe that makes twist visible.
-    pub fn section_rotation(&self, start: f64, z: f64) -> f64 {
-        start + self.rate() * z
-    }
-
-    /// Lay angle β (rad), tan β = 2π R/h.
-    pub fn lay_angle(&self) -> f64 {
-        closed_form::lay_angle(self.radius, self.pitch)
-    }
-
     /// Length of the wire over `length` of the axis (m), L/cos β.
     pub fn arc_length(&self, length: f64) -> f64 {
         closed_form::arc_length(self.radius, self.pitch, length)
@@ -55,11 +44,6 @@ impl Helix {
     /// Curvature sin²β/R (1/m).
     pub fn curvature(&self) -> f64 {
         closed_form::curvature(self.radius, self.pitch)
-    }
-
-    /// Torsion s sin β cos β/R (1/m).
-    pub fn torsion(&self) -> f64 {
-        closed_form::torsion(self.radius, self.pitch, self.lay)
     }
 }
 
@@ -78,7 +62,7 @@ mod tests {
             let (z, dz) = (0.013, 1e-7);
             let numeric = (helix.point(z + dz) - helix.point(z - dz)).normalize();
             assert!(numeric.distance(helix.tangent(z)) < 1e-8);
-            assert!((helix.tangent(z).z - helix.lay_angle().cos()).abs() < 1e-12);
+            assert!((helix.tangent(z).z - closed_form::lay_angle(helix.radius, helix.pitch).cos()).abs() < 1e-12);
         }
     }
 
@@ -88,7 +72,6 @@ mod tests {
         let helix = outer_wire(1.0);
         let around = helix.point(0.0).cross(helix.tangent(0.0)).z;
         assert!(around > 0.0);
-        assert!(helix.torsion() > 0.0);
     }
 
     #[test]
@@ -97,14 +80,6 @@ mod tests {
         let at = |i: usize| helix.point(length * i as f64 / n as f64);
         let chords: f64 = (0..n).map(|i| at(i).distance(at(i + 1))).sum();
         assert!((chords / helix.arc_length(length) - 1.0).abs() < 1e-9);
-    }
-
-    /// One pitch turns the section by one turn, in the direction of lay.
-    #[test]
-    fn section_turns_once_per_pitch() {
-        let turn = |lay| outer_wire(lay).section_rotation(0.3, 39e-3);
-        assert!((turn(1.0) - (0.3 + TAU)).abs() < 1e-12);
-        assert!((turn(-1.0) - (0.3 - TAU)).abs() < 1e-12);
     }
 
     #[test]

@@ -110,12 +110,6 @@ fn distance_of_layers(upper: (&LayerSpec, f64), lower: (&LayerSpec, f64)) -> f64
     least
 }
 
-/// Outer radius (m) of a strand with these layers and lay radii (m): the greatest R + d/2.
-pub fn outer_radius(layers: &[LayerSpec], radii: &[f64]) -> f64 {
-    let reach = layers.iter().zip(radii).map(|(layer, radius)| radius + 0.5 * layer.wire_diameter);
-    reach.fold(0.0, f64::max)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

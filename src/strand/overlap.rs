@@ -102,7 +102,7 @@ fn overlap(a: &Segment, b: &Segment) -> Overlap {
 
 /// The closest points of two segments (Ericson, *Real-Time Collision Detection*, 2005, section 5.1.9); a segment may be
 /// a point.
-pub fn closest_points(a: [DVec3; 2], b: [DVec3; 2]) -> [DVec3; 2] {
+fn closest_points(a: [DVec3; 2], b: [DVec3; 2]) -> [DVec3; 2] {
     let (d1, d2, r) = (a[1] - a[0], b[1] - b[0], a[0] - b[0]);
     let (len1, len2) = (d1.length_squared(), d2.length_squared());
     let (c, f, mixed) = (d1.dot(r), d2.dot(r), d1.dot(d2));

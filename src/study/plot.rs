@@ -12,16 +12,6 @@ use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
 use std::path::{Path, PathBuf};
 
-impl Figure {
-    /// Writes the figure alone; see [`write()`].
-    ///
-    /// # Errors
-    /// See [`write()`].
-    pub fn write(&self, path: &Path) -> Result<()> {
-        write(std::slice::from_ref(self), 1, path)
-    }
-}
-
 /// Writes `figures`, all as large as the largest, side by side in rows of `columns`, as SVG or PNG by the extension of `path`. Folders that are
 /// missing are made.
 ///
@@ -64,7 +54,7 @@ mod tests {
         let points = vec![[0.1, 1e-2], [0.05, 2.5e-3], [0.025, 6e-4], [0.01, 0.0]];
         f.series.push(Series::new("cantilever", Mark::LineAndPoints, points));
         f.slopes.push(Slope { order: 2.0, through: [0.1, 1e-2], name: "order 2".into() });
-        f.limits.push(Limit::Y(5e-3, "target".into()));
+        f.limits.push(Limit { y: 5e-3, name: "target".into() });
         f
     }
 
@@ -72,7 +62,7 @@ mod tests {
     fn svg_holds_every_word_and_names_a_fallback_font() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("made/on/the/way.svg");
-        figure().write(&path).unwrap();
+        write(&[figure()], 1, &path).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         for word in ["Error of the tip", "a/L [-]", "relative error [-]", "cantilever", "order 2", "target", "0.001"] {
             assert!(text.contains(word), "{word}");
@@ -132,7 +122,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_written_is_said() {
-        let error = figure().write(Path::new("/tmp/figure.pdf")).unwrap_err();
+        let error = write(&[figure()], 1, Path::new("/tmp/figure.pdf")).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(write(&[], 1, Path::new("/tmp/a.svg")).is_err());
     }

@@ -246,7 +246,7 @@ pub fn leave<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &Histor
 }
 
 /// Recoverable energy of the normal force at `overlap` (J).
-pub fn normal_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>, overlap: f64) -> f64 {
+fn normal_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>, overlap: f64) -> f64 {
     if history.touching() { laws.normal.elastic_energy(&history.normal, history.reduced_radius, overlap) } else { 0.0 }
 }
 

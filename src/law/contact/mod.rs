@@ -8,7 +8,6 @@
 //! Both also hold for smooth wires, as force per length: [`mod@line`].
 
 pub mod constants;
-pub mod geometry;
 pub mod hertz;
 pub mod line;
 pub mod thornton;

@@ -1,8 +1,8 @@
 //! `accuracy.csv`: one line per run.
 
-use super::Study;
 use super::columns::COLUMNS;
 use super::errors::Errors;
+use super::findings::Study;
 use super::rows::{Row, RowParameter, Run};
 use crate::base::error::Result;
 use crate::study::column::{Column, Value, write_csv};

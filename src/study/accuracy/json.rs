@@ -2,9 +2,10 @@
 
 use super::columns::COLUMNS;
 use super::ensemble::{self, QUANTITIES};
+use super::findings::Study;
+use super::reference::Along;
 use super::rows::{Row, Run};
 use super::table;
-use super::{Study, reference::Along};
 use crate::base::error::Result;
 use crate::observe::files::write_whole;
 use serde_json::{Value, json};

@@ -8,6 +8,7 @@ mod columns;
 mod csv;
 pub mod ensemble;
 pub mod errors;
+mod findings;
 mod json;
 pub mod parameters;
 pub mod pareto;
@@ -16,147 +17,26 @@ pub mod reference;
 pub mod richardson;
 pub mod rows;
 pub mod schedule;
+mod subject;
 pub mod table;
 pub mod verified;
+
+pub use findings::{Reference, Study};
+pub use subject::{SEEDS, Subject};
 
 use crate::base::error::{Error, Result};
 use crate::run::folder::ACCURACY_STUDY;
 use crate::scene::Scene;
 use crate::study::runner::{CaseRunner, CaseStore, Record, Status};
 use crate::study::statistics::Statistics;
-use crate::study::tensile::{TensileCase, TensileOutcome, TensileResult, count_kept, with_seed};
+use crate::study::tensile::{TensileCase, TensileOutcome, TensileResult, count_kept};
 use errors::{Errors, Truth};
-use parameters::{Parameter, Role};
+use parameters::Role;
 use reference::{Along, OfSeed, Refined, Series};
 use rows::{Compared, Row, Run, RunStatus};
-use schedule::{PlannedRun, Varied};
-use std::collections::{BTreeMap, BTreeSet};
+use schedule::Varied;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// Seeds where bonds scatter, nothing exact is known, and the user says nothing: the interval of a mean is then 1.6
-/// standard deviations of what is compared, which the same seeds on both sides keep small.
-pub const SEEDS: u64 = 4;
-
-/// What a study found.
-pub struct Study {
-    /// Name of the scene.
-    pub scene: String,
-    /// Seeds that were run.
-    pub seeds: Vec<u64>,
-    /// Whether bonds scatter, so that one run is one draw.
-    pub scatter: bool,
-    /// Threads of the engine in each run.
-    pub threads: usize,
-    /// Runs side by side.
-    pub jobs: usize,
-    /// What the runs are compared with.
-    pub reference: Reference,
-    /// The scene as it stands, then every value of every parameter.
-    pub rows: Vec<Row>,
-    /// Parameters that the scene does not have, with the reason.
-    pub absent: Vec<(&'static str, String)>,
-    /// Runs that were there from before, of all that are done.
-    pub kept: usize,
-    /// Runs made now.
-    pub made: usize,
-    /// Kept runs of another build of the same revision.
-    pub other_build: usize,
-    /// Whether the user stopped it.
-    pub interrupted: bool,
-}
-
-/// What runs are compared with.
-pub struct Reference {
-    /// Whether it is a closed form.
-    pub closed_form: bool,
-    /// What it is, in a sentence.
-    pub words: String,
-    /// Strength (MPa) and elongation (%), mean over seeds.
-    pub value: [f64; 2],
-    /// What refinement alone gives for them: the same, but beside a closed form.
-    pub refined: [f64; 2],
-    /// How sure refinement is of that (%): of the limit, and with several seeds of what scatter leaves open of it (95 %).
-    pub uncertainty_percent: [f64; 2],
-    /// Strength (MPa) and elongation (%) over seeds: what strands of other seeds may have.
-    pub over_seeds: [Option<Statistics>; 2],
-    /// What refinement along each parameter adds, by seed.
-    pub along: Vec<(u64, Along)>,
-}
-
-/// The scene of a study, its seeds, and its parameters.
-pub struct Subject {
-    /// The scene as it stands.
-    pub scene: Scene,
-    /// Seeds that every row is run with, each once.
-    pub seeds: Vec<u64>,
-    /// Parameters that it has.
-    pub varied: Vec<Varied>,
-    /// Parameters that it has not, with the reason.
-    pub absent: Vec<(&'static str, String)>,
-    /// Whether bonds scatter.
-    pub scatter: bool,
-    /// What the user should know.
-    pub notes: Vec<String>,
-}
-
-impl Subject {
-    /// Sees which of the parameters in `vary` the scene has. Without `seeds` it takes the first [`SEEDS`] where bonds scatter and
-    /// there is no closed form, else the scene's own.
-    ///
-    /// # Errors
-    /// A scene that no grip pulls.
-    pub fn new(scene: Scene, vary: &[&'static Parameter], mut seeds: Vec<u64>) -> Result<Self> {
-        if parameters::pull_speed(&scene.spec).is_none() {
-            let help = "study a scene that a grip pulls at a constant speed, such as ka4, or a verification case \
-                        (`strandsnap verify --list`)";
-            return Err(scene.source.error(
-                "grip",
-                "nothing is pulled here, so there is no strength to be wrong",
-                help,
-            ));
-        }
-        let (varied, absent) = schedule::vary(vary, &scene);
-        let mut notes = Vec::new();
-        let scatter = scene.plan.scatter;
-        if seeds.is_empty() && scatter && closed_form::truth(&scene).is_err() {
-            seeds = (1..=SEEDS).collect();
-            notes.push(format!(
-                "bonds scatter, so one run is one draw: errors are those of the mean over {SEEDS} seeds and of their \
-                 spread, and every run is made {SEEDS} times; --seeds takes more, --seed N is one draw"
-            ));
-        } else if seeds.is_empty() {
-            seeds = vec![scene.spec.seed];
-        }
-        let mut seen = BTreeSet::new();
-        seeds.retain(|seed| seen.insert(*seed));
-        if seeds.len() > 1 && !scatter {
-            notes.push("every bond is as strong as the other in this scene, so one seed is enough".into());
-            seeds.truncate(1);
-        }
-        Ok(Self { scene, seeds, varied, absent, scatter, notes })
-    }
-
-    /// The scene at a place: with a value of a parameter, or as it stands.
-    fn scene_at(&self, place: Option<[usize; 2]>) -> &Scene {
-        place.map_or(&self.scene, |[k, l]| &self.varied[k].variation.levels[l].scene)
-    }
-
-    /// The exact answer to the scene at a place with this seed; `None` where there is no closed form.
-    fn truth(&self, place: Option<[usize; 2]>, seed: u64) -> Option<Truth> {
-        closed_form::truth(&with_seed(self.scene_at(place), seed)).ok()
-    }
-
-    /// A run as a case that `runner` is to run.
-    fn case<'a>(&'a self, run: PlannedRun, store: &'a CaseStore, runner: &CaseRunner) -> TensileCase<'a> {
-        TensileCase {
-            work: run.work,
-            leads: run.place.is_none(),
-            writes: run.writes,
-            threads: Some(runner.threads_per_case()),
-            ..TensileCase::new(run.name, Ok(self.scene_at(run.place)), run.seed, store)
-        }
-    }
-}
 
 /// Makes the runs and compares them.
 ///
@@ -338,7 +218,7 @@ fn left_open(references: &BTreeMap<u64, Against>, k: usize) -> f64 {
 
 /// What a reference by refinement is, in a sentence.
 fn words(subject: &Subject, along: &[(u64, Along)]) -> String {
-    let refined = table::refined(along);
+    let refined = reference::refined_parameters(along);
     if refined.is_empty() {
         return "the scene as it stands: no parameter that converges has two runs, so rows show differences from it, not \
                 errors"

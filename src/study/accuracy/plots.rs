@@ -1,7 +1,7 @@
 //! Error over run time, parameter by parameter, with the front of what cannot be had both faster and more exact.
 
-use super::Study;
 use super::errors::Errors;
+use super::findings::Study;
 use super::parameters::Role;
 use super::pareto::staircase;
 use super::rows::Row;
@@ -77,7 +77,7 @@ fn figure(study: &Study, quantity: &str, which: usize, error: fn(&Errors) -> f64
     }
     let sure = study.reference.uncertainty_percent[which];
     if !study.reference.closed_form && sure > 0.0 {
-        figure.limits.push(Limit::Y(sure, "uncertainty of the reference".into()));
+        figure.limits.push(Limit { y: sure, name: "uncertainty of the reference".into() });
     }
     figure
 }

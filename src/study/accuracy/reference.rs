@@ -12,6 +12,7 @@ use super::parameters::Role;
 use super::richardson::{Limit, limit};
 use crate::study::tensile::{Curve, TensileResult};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// Runs along one parameter, the scene as it stands among them.
 #[derive(Clone)]
@@ -158,6 +159,12 @@ fn leg_as<'a>(law: &Law, base: &'a TensileResult, series: &Series<'a>) -> Leg<'a
         uncertainty_percent: [0, 1].map(|k| 100.0 * uncertainties[k] / own[k]),
     };
     Leg { along, corrections, uncertainties, fine, next, weight: law.limits[0].weight }
+}
+
+/// Names of the parameters that were refined along, each once.
+pub fn refined_parameters(along: &[(u64, Along)]) -> Vec<&'static str> {
+    let mut seen = BTreeSet::new();
+    along.iter().map(|(_, along)| along.parameter).filter(|name| seen.insert(*name)).collect()
 }
 
 /// What one parameter adds; `None` when it takes no part or has too few runs.

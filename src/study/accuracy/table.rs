@@ -3,14 +3,14 @@
 use super::columns::{MeanColumn, named, signed};
 use super::ensemble::{self, QUANTITIES, Quantity};
 use super::errors::Errors;
-use super::reference::Along;
+use super::findings::{Reference, Study};
+use super::reference::{Along, refined_parameters};
 use super::rows::{Row, RunStatus};
-use super::{Reference, Study, Subject};
+use super::subject::Subject;
 use crate::base::wording::counted;
 use crate::study::statistics::Statistics;
 use crate::study::table::Table;
 use crate::study::tensile::TensileResult;
-use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Columns of text at the left: parameter and value.
@@ -205,15 +205,9 @@ pub fn reference(reference: &Reference, seeds: usize) -> String {
     text
 }
 
-/// Names of the parameters that were refined along, each once.
-pub fn refined(along: &[(u64, Along)]) -> Vec<&'static str> {
-    let mut seen = BTreeSet::new();
-    along.iter().map(|(_, along)| along.parameter).filter(|name| seen.insert(*name)).collect()
-}
-
 /// What refinement along each parameter adds, mean over seeds.
 fn along(all: &[(u64, Along)]) -> Vec<String> {
-    let parameters = refined(all);
+    let parameters = refined_parameters(all);
     let line = |parameter: &&str| {
         let here = || all.iter().map(|(_, along)| along).filter(|along| along.parameter == *parameter);
         let stat = |value: &dyn Fn(&Along) -> f64| Statistics::of(&here().map(value).collect::<Vec<_>>());
@@ -298,11 +292,3 @@ pub fn caution(study: &Study) -> Option<String> {
 
 /// Processor time over run time on one thread below which the machine was busy with something else (-).
 const LEAST_SHARE: f64 = 0.9;
-
-impl Study {
-    /// Names of the layers, inside out.
-    pub fn layers(&self) -> Vec<String> {
-        let first: Option<&TensileResult> = self.rows.iter().flat_map(|row| row.ran().map(|run| &*run.result)).next();
-        first.map_or(Vec::new(), |run| run.layers.clone())
-    }
-}

@@ -1,10 +1,10 @@
 //! What must be the same in several files.
 
 use super::finding::{InvariantOutcome, Search};
-use super::folder::{CURVE as COLUMNS, Folder};
+use super::folder::{CURVE as COLUMNS, Folder, energies};
 use super::invariant::Invariant;
 use super::rows::layer_heads;
-use crate::engine::view::{Energy, Sample};
+use crate::engine::view::Sample;
 use crate::run::identity;
 
 /// Numbers have nine digits.
@@ -66,9 +66,8 @@ pub const RECORDING: Invariant = Invariant {
 };
 
 /// A row's value of each of [`COLUMNS`], in the unit of its heading.
-fn values(row: &Sample) -> [f64; COLUMNS.len()] {
-    let e: &Energy = &row.energy;
-    [
+fn values(row: &Sample) -> Vec<f64> {
+    let state = [
         row.step as f64,
         row.time,
         row.strain * 100.0,
@@ -80,18 +79,8 @@ fn values(row: &Sample) -> [f64; COLUMNS.len()] {
         row.bonds_broken as f64,
         row.contacts as f64,
         row.time_step,
-        e.work,
-        e.kinetic,
-        e.elastic_bonds,
-        e.elastic_contacts,
-        e.plastic_bonds,
-        e.plastic_contacts,
-        e.plastic_thinning,
-        e.friction,
-        e.damping,
-        e.released,
-        e.residual(),
-    ]
+    ];
+    [&state[..], &energies(row), &[row.energy.residual()]].concat()
 }
 
 fn curve(run: &Folder) -> InvariantOutcome {

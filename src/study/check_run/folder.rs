@@ -43,6 +43,24 @@ pub const CURVE: [&str; 22] = [
     "released_j",
     "residual_j",
 ];
+
+/// The terms of a row's ledger (J), in the order of [`CURVE`].
+pub fn energies(row: &Sample) -> Vec<f64> {
+    let e = &row.energy;
+    vec![
+        e.work,
+        e.kinetic,
+        e.elastic_bonds,
+        e.elastic_contacts,
+        e.plastic_bonds,
+        e.plastic_contacts,
+        e.plastic_thinning,
+        e.friction,
+        e.damping,
+        e.released,
+    ]
+}
+
 const WIRES: [&str; 10] = [
     "wire",
     "layer",

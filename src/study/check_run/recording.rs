@@ -1,7 +1,7 @@
 //! The recording of a run, if there is one, against its trajectory.
 
 use super::finding::{InvariantOutcome, Search};
-use super::folder::Folder;
+use super::folder::{Folder, energies};
 use crate::engine::view::{BondState, Sample, WireInfo};
 use crate::observe::recording::STRESS;
 use crate::observe::recording::read::{RecordingContents, contents, paths};
@@ -57,22 +57,6 @@ fn series(run: &Folder, read: &RecordingContents, search: &mut Search) {
     }
     let lines = run.trajectory.ruptures.len() + run.trajectory.notices.len();
     search.same(read.log.len(), lines, || format!("lines of the log in {RECORDING}"));
-}
-
-fn energies(sample: &Sample) -> Vec<f64> {
-    let e = &sample.energy;
-    vec![
-        e.work,
-        e.kinetic,
-        e.elastic_bonds,
-        e.elastic_contacts,
-        e.plastic_bonds,
-        e.plastic_contacts,
-        e.plastic_thinning,
-        e.friction,
-        e.damping,
-        e.released,
-    ]
 }
 
 /// Stress of the bonds in the end, broken ones at nothing.

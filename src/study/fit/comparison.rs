@@ -1,6 +1,7 @@
 //! All models through the same points, and what each says of points that it was not shown.
 
-use super::{Fit, FitError, Model, fit};
+use super::curve::{Fit, fit};
+use super::model::{FitError, Model};
 use serde::Serialize;
 
 /// Leave-one-out cross-validation (Stone 1974): each point is foretold by the curve through the others.

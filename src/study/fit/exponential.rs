@@ -5,7 +5,8 @@
 //! exponential is 1 there and less everywhere else: points that crowd together at one end of a long axis make b large, and
 //! e^{bu} from the middle of the axis would overflow. A, B and C follow from it exactly.
 
-use super::{FitError, Scaled};
+use super::model::FitError;
+use super::scaled::Scaled;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::storage::Owned;
 use nalgebra::{DVector, Dyn, OMatrix, U3, Vector3};

@@ -1,6 +1,6 @@
 //! Constants, lines and parabolas: linear least squares.
 
-use super::Scaled;
+use super::scaled::Scaled;
 use nalgebra::DMatrix;
 
 /// The `count` coefficients of 1, x, x², … nearest to the points; there are at least as many different x.

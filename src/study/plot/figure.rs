@@ -106,13 +106,13 @@ pub struct Slope {
     pub name: String,
 }
 
-/// A value that matters, as a line across the figure.
+/// A value that matters, as a horizontal line across the figure.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Limit {
-    /// A vertical line at this x.
-    X(f64, String),
-    /// A horizontal line at this y.
-    Y(f64, String),
+pub struct Limit {
+    /// Where it lies, in the unit of the axis.
+    pub y: f64,
+    /// What it is, written at it.
+    pub name: String,
 }
 
 /// A point that must be found at once: a ring around it, and its name beside it.

@@ -1,7 +1,7 @@
 //! Draws one figure: axes by plotters, everything else in pixels.
 
 use super::axis::{Span, can_show};
-use super::figure::{Figure, Legend, Limit, Mark, Series};
+use super::figure::{Figure, Legend, Mark, Series};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -146,21 +146,13 @@ impl<'a, B: DrawingBackend> Painter<'a, B> {
     }
 
     fn limits(&self) -> Drawn<B> {
-        let [left, top, right, bottom] = self.frame;
+        let [left, _, right, _] = self.frame;
         let gap = self.px(GAP);
         for limit in &self.figure.limits {
-            let (ends, name, place) = match limit {
-                Limit::X(value, name) => {
-                    let x = self.at([*value, self.y.low()]).0;
-                    (vec![(x, top), (x, bottom)], name, (x + gap, top + gap))
-                }
-                Limit::Y(value, name) => {
-                    let y = self.at([self.x.low(), *value]).1;
-                    (vec![(left, y), (right, y)], name, (left + gap, y - self.px(TEXT) - gap / 2))
-                }
-            };
-            self.line(ends, self.stroke(GREY, 1.2), Some(DASH))?;
-            self.area.draw(&Text::new(name.as_str(), place, self.text(TEXT, &GREY)))?;
+            let y = self.at([self.x.low(), limit.y]).1;
+            self.line(vec![(left, y), (right, y)], self.stroke(GREY, 1.2), Some(DASH))?;
+            let place = (left + gap, y - self.px(TEXT) - gap / 2);
+            self.area.draw(&Text::new(limit.name.as_str(), place, self.text(TEXT, &GREY)))?;
         }
         Ok(())
     }
@@ -352,13 +344,6 @@ const LIGHTEST: f64 = 0.9;
 
 /// Ranges of both axes, which hold series, error bars and limits.
 fn spans(figure: &Figure) -> [Span; 2] {
-    let across = |vertical: bool| {
-        figure.limits.iter().filter_map(move |limit| match limit {
-            Limit::X(at, _) if vertical => Some(*at),
-            Limit::Y(at, _) if !vertical => Some(*at),
-            _ => None,
-        })
-    };
     let shown = |p: &[f64; 2]| can_show(figure.x.scale, p[0]) && can_show(figure.y.scale, p[1]);
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
     for series in &figure.series {
@@ -368,8 +353,6 @@ fn spans(figure: &Figure) -> [Span; 2] {
             ys.extend([point[1], point[1] - half, point[1] + half]);
         }
     }
-    [
-        Span::new(&figure.x, xs.into_iter().chain(across(true))),
-        Span::new(&figure.y, ys.into_iter().chain(across(false))),
-    ]
+    let limits = figure.limits.iter().map(|limit| limit.y);
+    [Span::new(&figure.x, xs.into_iter()), Span::new(&figure.y, ys.into_iter().chain(limits))]
 }

@@ -1,6 +1,5 @@
 //! A case of the matrix: a scene, what is extreme about it, and what must come of it.
 
-use super::critical::Critical;
 use super::measure::Check;
 use crate::base::error::Result;
 use crate::base::finding::FindingKind;
@@ -36,6 +35,22 @@ pub enum Kind {
     Critical(Critical),
 }
 
+/// How the critical step of a case is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Critical {
+    /// The energy of a run may be this many times that of one with half of the bound (-).
+    pub growth: f64,
+    /// The bound must come within this share of the critical step (-); `None`: it only has to lie below.
+    pub within: Option<f64>,
+}
+
+impl Critical {
+    /// Bodies that keep their energy: an unstable step makes it grow without bound.
+    pub const ELASTIC: Self = Self { growth: 10.0, within: None };
+    /// Bodies that swallow energy: one per cent more than at a small step is a wrong answer.
+    pub const DISSIPATIVE: Self = Self { growth: 1.05, within: None };
+}
+
 /// One row of the matrix.
 #[derive(Debug, Clone)]
 pub struct StabilityCase {
@@ -57,16 +72,12 @@ pub struct StabilityCase {
     pub check: Option<Check>,
     /// Findings that the run must make, for what is stable and yet not what the user asked for.
     pub found: &'static [FindingKind],
-    /// Greatest energy residual over the work done (-), and why where it is not 1 %.
-    pub residual: (f64, &'static str),
     /// Whether it is started before the others, so that no core waits for it at the end.
     pub long: bool,
     /// Wall time after which the run counts as hung (s).
     pub patience: f64,
 }
 
-/// Greatest energy residual over the work done, unless a case says why (-).
-const RESIDUAL: f64 = 0.01;
 /// Wall time after which a run counts as hung (s); the longest case takes about a minute on a core of its own.
 const PATIENCE: f64 = 400.0;
 
@@ -83,7 +94,6 @@ impl StabilityCase {
             kind: Kind::Run,
             check: None,
             found: &[],
-            residual: (RESIDUAL, ""),
             long: false,
             patience: PATIENCE,
         }
@@ -122,12 +132,6 @@ impl StabilityCase {
     /// It must make these findings.
     pub fn finds(mut self, kinds: &'static [FindingKind]) -> Self {
         self.found = kinds;
-        self
-    }
-
-    /// Its ledger may be open by this share of the work done (-), for a stated reason.
-    pub fn residual(mut self, limit: f64, why: &'static str) -> Self {
-        self.residual = (limit, why);
         self
     }
 

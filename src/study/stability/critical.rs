@@ -4,10 +4,10 @@
 //! bound: a run may be unstable without exploding, because plastic flow, friction and damping swallow what a wrong step
 //! feeds in. The prediction is the least bound that the engine gives during a run that follows it.
 
-use super::case::StabilityCase;
+use super::case::{Critical, StabilityCase};
 use super::measure::{Accept, Answer, CompletedRun};
 use super::outcome::Ended;
-use super::run::{RunControl, watch};
+use super::watch::{RunControl, watch};
 use crate::base::error::{Error, Result};
 use crate::engine::view::Sample;
 
@@ -15,22 +15,6 @@ use crate::engine::view::Sample;
 const SHARP: f64 = 0.005;
 /// Greatest step tried, over the bound (-).
 const WIDEST: f64 = 64.0;
-
-/// How the critical step of a case is found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Critical {
-    /// The energy of a run may be this many times that of one with half of the bound (-).
-    pub growth: f64,
-    /// The bound must come within this share of the critical step (-); `None`: it only has to lie below.
-    pub within: Option<f64>,
-}
-
-impl Critical {
-    /// Bodies that keep their energy: an unstable step makes it grow without bound.
-    pub const ELASTIC: Self = Self { growth: 10.0, within: None };
-    /// Bodies that swallow energy: one per cent more than at a small step is a wrong answer.
-    pub const DISSIPATIVE: Self = Self { growth: 1.05, within: None };
-}
 
 /// Finds the critical step of a case.
 ///

@@ -8,7 +8,8 @@
 //! | --- | --- |
 //! | [`matrix`] | the table of cases |
 //! | [`case`] | what a case is |
-//! | [`run`] | runs one, on a thread of its own, and watches it |
+//! | [`run`] | runs one on a thread of its own |
+//! | [`watch`] | runs a scene to its end and watches it |
 //! | [`measure`] | known numbers |
 //! | [`critical`] | the empirical critical time step by bisection |
 //! | [`outcome`] | how a case ended |
@@ -22,6 +23,7 @@ pub mod outcome;
 pub mod plots;
 pub mod report;
 pub mod run;
+pub mod watch;
 
 use crate::base::error::Result;
 use crate::study::runner::{CaseRunner, Named, Status};

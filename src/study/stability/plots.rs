@@ -59,6 +59,6 @@ fn residuals(reports: &[Report]) -> Option<Figure> {
     if !failed.is_empty() {
         figure.series.push(Series::new("FAILED", Mark::Points, failed));
     }
-    figure.limits.push(Limit::Y(1.0, "most that is accepted".into()));
+    figure.limits.push(Limit { y: 1.0, name: "most that is accepted".into() });
     Some(figure)
 }

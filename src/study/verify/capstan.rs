@@ -36,7 +36,8 @@ fn slide(context: &Context, friction: f64, spacing: f64) -> Result<Slide> {
     // A step in proportion to the spacing, as the bonds ask for.
     let options =
         [set("spacing", spacing), set("contact.friction", friction), set("time.step", format!("{} ns", 8.0 * spacing))];
-    let mut spec = scene::load("verify/capstan", &options)?.spec;
+    let scene = scene::load("verify/capstan", &options)?;
+    let spec = &scene.spec;
     let strand = spec.strand.as_ref().expect("the scene has a winding");
     let (layer, height) = (&strand.layers[0], strand.length);
     let radius = layer.lay_radius.expect("the scene gives it");
@@ -45,11 +46,13 @@ fn slide(context: &Context, friction: f64, spacing: f64) -> Result<Slide> {
     // One bond of the drum, so that its own particles are out of reach.
     let half = 0.5 * spacing * spec.wires[0].diameter;
     let axis = |z: f64| DVec3::Z * (0.5 * height + z);
-    spec.wires[0].path = PathSpec::Straight { from: axis(-half), to: axis(half) };
-    spec.holds[1].force = -helix.tangent(0.0) * spec.holds[1].force.length();
-    spec.holds[2].velocity = helix.tangent(height) * spec.holds[2].velocity.length();
     let end = spec.stop.time.expect("the scene says when it ends");
-    let mut simulation = context.simulation_of(spec)?;
+    let scene = scene.changed(|spec| {
+        spec.wires[0].path = PathSpec::Straight { from: axis(-half), to: axis(half) };
+        spec.holds[1].force = -helix.tangent(0.0) * spec.holds[1].force.length();
+        spec.holds[2].velocity = helix.tangent(height) * spec.holds[2].velocity.length();
+    });
+    let mut simulation = context.simulation_of(scene)?;
     let bonds = simulation.bonds();
     let skipped = (ENDS * bonds as f64).round() as usize;
     let [first, last] = [skipped, bonds - 1 - skipped];

@@ -4,7 +4,7 @@ use super::case::VerificationCase;
 use super::comparison::{Comparison, Spent};
 use super::support::{Context, set};
 use crate::base::error::{Error, Result};
-use crate::reference::stability::{Ends, critical_step};
+use crate::reference::stability::critical_step;
 
 pub const CHAIN: VerificationCase = VerificationCase {
     name: "critical-step-chain",
@@ -83,8 +83,7 @@ fn edge(context: &Context, scene: &str, options: &[String]) -> Result<Edge> {
 fn chain(context: &Context) -> Result<Vec<Comparison>> {
     let still = context.simulation("verify/chain", &[])?;
     let (a, bar) = (still.engine.assembly(), still.bar());
-    let exact =
-        critical_step(Ends::FixedFixed, a.wires[0].len - 2, bar.young * bar.area() / a.rest_length[0], a.mass[1]);
+    let exact = critical_step(a.wires[0].len - 2, bar.young * bar.area() / a.rest_length[0], a.mass[1]);
     let edge = edge(context, "verify/chain", &[])?;
     Ok(vec![
         Comparison::new("greatest stable step", "s", edge.step, exact, edge.spent).within(5e-4),

@@ -24,11 +24,13 @@ fn window(time: f64, from: f64, to: f64) -> f64 {
 
 /// Tip over the length, across and along the clamp, under P L²/(E I) = `load` with a spacing of `spacing` diameters.
 fn tip(context: &Context, load: f64, spacing: f64) -> Result<(DVec2, Spent)> {
-    let mut spec = scene::load("verify/elastica", &[set("spacing", spacing)])?.spec;
-    let bar = context.simulation_of(spec.clone())?.bar();
-    spec.holds[1].force.x = load * bar.young * bar.second_moment() / bar.length.powi(2);
+    let scene = scene::load("verify/elastica", &[set("spacing", spacing)])?;
+    let bar = context.simulation_of(scene.clone())?.bar();
+    let scene =
+        scene.changed(|spec| spec.holds[1].force.x = load * bar.young * bar.second_moment() / bar.length.powi(2));
+    let spec = &scene.spec;
     let (from, to) = (spec.holds[1].ramp, spec.stop.time.expect("the scene says when it ends"));
-    let mut simulation = context.simulation_of(spec)?;
+    let mut simulation = context.simulation_of(scene)?;
     let end = simulation.bonds();
     let (mut along, mut weights) = (0.0, 0.0);
     let across = simulation.settled(from, to, |engine| {

@@ -60,10 +60,11 @@ struct FrameRun {
 }
 
 fn outcome(context: &Context, name: &str, frame: &Frame) -> Result<FrameRun> {
-    let mut spec = scene::load(name, &[])?.spec;
-    spec.time.step = Some(spec.time.step.unwrap_or(20e-9));
-    frame.see(&mut spec);
-    let mut simulation = context.simulation_of(spec)?;
+    let scene = scene::load(name, &[])?.changed(|spec| {
+        spec.time.step = Some(spec.time.step.unwrap_or(20e-9));
+        frame.see(spec);
+    });
+    let mut simulation = context.simulation_of(scene)?;
     simulation.run(|_| {})?;
     let s = simulation.engine.state();
     let home = frame.turn.transpose();

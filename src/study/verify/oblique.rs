@@ -37,16 +37,19 @@ struct Rebound {
 
 /// Two spheres meet at ψ₁ = `psi1` under the tangential law `law`, stepped `steps` times while they touch.
 fn collide(context: &Context, law: &str, psi1: f64, steps: f64) -> Result<Rebound> {
-    let mut spec = scene::load("verify/oblique", &[set("contact.tangential", law)])?.spec;
+    let scene = scene::load("verify/oblique", &[set("contact.tangential", law)])?;
+    let spec = &scene.spec;
     let (radius, m) = (0.5 * spec.spheres[0].diameter, spec.material);
     let theory = Spheres { poisson: m.poisson, gyration: GYRATION };
     let friction = spec.contact.as_ref().expect("the spheres touch").friction;
     let approach = spec.spheres[0].velocity.z - spec.spheres[1].velocity.z;
     let across = psi1 * friction / theory.stiffness_ratio() * approach;
-    (spec.spheres[0].velocity.x, spec.spheres[1].velocity.x) = (-0.5 * across, 0.5 * across);
     let whole = Pair::equal_spheres(radius, m.young, m.poisson, m.density).contact_time(approach);
-    spec.time.step = Some(whole / steps);
-    let mut simulation = context.simulation_of(spec)?;
+    let scene = scene.changed(|spec| {
+        (spec.spheres[0].velocity.x, spec.spheres[1].velocity.x) = (-0.5 * across, 0.5 * across);
+        spec.time.step = Some(whole / steps);
+    });
+    let mut simulation = context.simulation_of(scene)?;
     simulation.run_to(1.1 * whole, |_| {})?;
     let s = simulation.engine.state();
     // The contact has turned a little while it lasted.

@@ -53,7 +53,7 @@ fn figures(name: &str, finding: &Comparison, convergence: &Convergence) -> [Figu
     let finest = convergence.points.last().is_some_and(|p| (p.error - finding.error()).abs() < 1e-9);
     if finest && target.is_finite() && target > 0.0 {
         for figure in [&mut by_resolution, &mut by_time] {
-            figure.limits.push(Limit::Y(target, format!("target {} %", (100.0 * target) as f32)));
+            figure.limits.push(Limit { y: target, name: format!("target {} %", (100.0 * target) as f32) });
         }
     }
     [by_resolution, by_time]

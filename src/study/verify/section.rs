@@ -59,16 +59,19 @@ struct Path {
 
 /// What the bond carries at the end and how it flowed in the second half, against the yield surface and its normal.
 fn follow(context: &Context, path: &Path) -> Result<Vec<Comparison>> {
-    let mut spec = scene::load("verify/section", &[])?.spec;
+    let scene = scene::load("verify/section", &[])?;
+    let spec = &scene.spec;
     let BondLawSpec::ElastoPlastic(hardening) = &spec.bond.law else { unreachable!("the scene is plastic") };
     let yield_stress = hardening.stress(0.0);
     let axial = path.share * Section { radius: 0.5 * spec.wires[0].diameter, yield_stress }.plastic_force();
     let rates = if path.twist.is_finite() { [RATE, path.twist * RATE] } else { [0.0, RATE] };
     let spin = 0.5 * DVec3::new(rates[0], 0.0, rates[1]);
-    (spec.holds[0].spin, spec.holds[1].spin) = (-spin, spin);
-    spec.holds[1].force.z = axial;
     let end = spec.stop.time.expect("the scene says when it ends");
-    let mut simulation = context.simulation_of(spec)?;
+    let scene = scene.changed(|spec| {
+        (spec.holds[0].spin, spec.holds[1].spin) = (-spin, spin);
+        spec.holds[1].force.z = axial;
+    });
+    let mut simulation = context.simulation_of(scene)?;
     let bar = simulation.bar();
     simulation.run_to(0.6 * end, |_| {})?;
     let a = look(&simulation.engine, &bar, yield_stress, rates);

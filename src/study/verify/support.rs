@@ -4,9 +4,8 @@ use super::comparison::{Comparison, Spent};
 use crate::base::error::{Error, Result};
 use crate::engine::Engine;
 use crate::reference::beam::RoundBar;
-use crate::scene;
-use crate::scene::plan::Plan;
 use crate::scene::spec::Spec;
+use crate::scene::{self, Scene};
 use crate::strand;
 use crate::strand::assembly::Assembly;
 use std::cell::Cell;
@@ -80,21 +79,21 @@ impl<'a> Context<'a> {
         options: &[String],
         change: impl FnOnce(&mut Assembly),
     ) -> Result<Simulation<'_>> {
-        self.set_up(scene::load(scene, options)?.spec, change)
+        self.set_up(scene::load(scene, options)?, change)
     }
 
     /// A simulation of a scene that was changed where options do not reach, such as by a rotation.
     ///
     /// # Errors
     /// When the bodies cannot be built.
-    pub fn simulation_of(&self, spec: Spec) -> Result<Simulation<'_>> {
-        self.set_up(spec, |_| {})
+    pub fn simulation_of(&self, scene: Scene) -> Result<Simulation<'_>> {
+        self.set_up(scene, |_| {})
     }
 
-    fn set_up(&self, spec: Spec, change: impl FnOnce(&mut Assembly)) -> Result<Simulation<'_>> {
+    fn set_up(&self, Scene { spec, plan, .. }: Scene, change: impl FnOnce(&mut Assembly)) -> Result<Simulation<'_>> {
         let mut assembly = strand::build(&spec)?;
         change(&mut assembly);
-        let engine = Engine::new(&spec, &Plan::new(&spec), assembly)?;
+        let engine = Engine::new(&spec, &plan, assembly)?;
         Ok(Simulation { spec, engine, context: self, wall_s: 0.0 })
     }
 

@@ -108,12 +108,13 @@ fn sphere_on_wire(context: &Context) -> Result<Vec<Comparison>> {
             set("wire.0.diameter", format!("{diameter} mm")),
             set("sphere.0.position", format!(r#"["{place} mm", "0 mm", "0.13 mm"]"#)),
         ];
-        let spec = scene::load("verify/sphere-on-wire", &options)?.spec;
+        let scene = scene::load("verify/sphere-on-wire", &options)?;
+        let spec = &scene.spec;
         let (m, wire, sphere) = (spec.material, 0.5 * spec.wires[0].diameter, 0.5 * spec.spheres[0].diameter);
         let depth = wire + sphere - spec.spheres[0].position.x;
         let round = 1.0 / (1.0 / wire + 1.0 / sphere);
         let pair = Pair { radius: (round * sphere).sqrt(), ..Pair::equal_spheres(1.0, m.young, m.poisson, m.density) };
-        let mut simulation = context.simulation_of(spec)?;
+        let mut simulation = context.simulation_of(scene)?;
         simulation.run(|_| {})?;
         let s = simulation.engine.state();
         let force = s.force_from_contacts(s.len() - 1).x;

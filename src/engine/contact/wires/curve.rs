@@ -279,7 +279,7 @@ pub fn blend<R: Real>(t: R) -> [R; 4] {
 
 /// The weights of the point `t` of bond `slot`.
 #[inline(always)]
-pub fn arc_weights(state: &State, slot: usize, t: f64) -> Weights<4> {
+fn arc_weights(state: &State, slot: usize, t: f64) -> Weights<4> {
     let (t2, h) = (t * t, blend(t)[0]);
     let mut shares = [0.5 * (t2 - t - h), 1.0 - t2 + 1.5 * h, 0.5 * (t2 + t) - 1.5 * h, 0.5 * h];
     let (left, right) = (before(state, slot), state.whole[slot + 1]);

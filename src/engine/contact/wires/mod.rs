@@ -29,7 +29,7 @@ mod record;
 mod spread;
 mod store;
 
-use super::pair::{History, Laws, foreseen_stiffness, leave};
+use super::pair::{Laws, foreseen_stiffness, leave};
 use super::spheres::second::SecondSides;
 use super::stage::{Contacts, closing};
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
@@ -120,29 +120,9 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
             radius = (radius * a).sqrt();
         }
         let end_to_end = kind == Kind::Stretch && self.end_to_end(i, j, state);
-        let mut contact = Contact {
-            quiet_until: 0.0,
-            i,
-            kind,
-            taken: false,
-            end_to_end,
-            mode: Mode::Point,
-            edge: false,
-            place: Place { j, t: 0.0, joined: false },
-            history: History::new(radius),
-            dents: [0.0; CELLS],
-            shares: [1.0; CELLS],
-            cell_length: self.chains.cell_length(i as usize),
-            per_length: 0.0,
-            viscosity: 0.0,
-            overlap: 0.0,
-            reach: 0.0,
-            length: 0.0,
-            curvature: 0.0,
-            energy: 0.0,
-            u: 0.0,
-            arm: [0.0; 2],
-        };
+        let place = Place { j, t: 0.0, joined: false };
+        let mut contact =
+            Contact { end_to_end, ..Contact::untouched(i, place, kind, radius, self.chains.cell_length(i as usize)) };
         self.place(&mut contact, state);
         // During a run a new pair was beyond reach until now, or a bond has just broken.
         if state.step > 0 && kind != Kind::Ends && !end_to_end {

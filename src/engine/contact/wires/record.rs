@@ -8,6 +8,9 @@ use crate::law::contact::line::CELLS;
 use crate::law::tangential::TangentialLaw;
 use serde::{Deserialize, Serialize};
 
+/// All of every cell counts.
+pub const WHOLE: [f64; CELLS] = [1.0; CELLS];
+
 /// What meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Kind {
@@ -85,4 +88,34 @@ pub struct Contact<N: NormalLaw, T: TangentialLaw> {
     pub u: f64,
     /// Lever arms of the two sides (m).
     pub arm: [f64; 2],
+}
+
+impl<N: NormalLaw, T: TangentialLaw> Contact<N, T> {
+    /// Particle `i` before it has touched what is near `place`, of reduced radius `reduced_radius` (m).
+    #[inline(always)]
+    pub fn untouched(i: u32, place: Place, kind: Kind, reduced_radius: f64, cell_length: f64) -> Self {
+        Self {
+            quiet_until: 0.0,
+            place,
+            i,
+            kind,
+            mode: Mode::Point,
+            edge: false,
+            end_to_end: false,
+            taken: false,
+            history: History::new(reduced_radius),
+            dents: [0.0; CELLS],
+            shares: WHOLE,
+            cell_length,
+            per_length: 0.0,
+            viscosity: 0.0,
+            overlap: 0.0,
+            reach: 0.0,
+            length: 0.0,
+            curvature: 0.0,
+            energy: 0.0,
+            u: 0.0,
+            arm: [0.0; 2],
+        }
+    }
 }

@@ -5,7 +5,7 @@
 
 use super::chains::Chains;
 use super::curve::Place;
-use super::record::{Contact, Kind, Mode};
+use super::record::{Contact, Kind, Mode, WHOLE};
 use super::spread::FarSum;
 use crate::engine::bytes::behind;
 use crate::engine::contact::pair::History;
@@ -16,8 +16,6 @@ use crate::law::tangential::TangentialLaw;
 
 /// In the place of a place in a list.
 const NOTHING: u32 = u32::MAX;
-/// All of every cell counts.
-const WHOLE: [f64; CELLS] = [1.0; CELLS];
 
 /// What is kept of every candidate; see [`Contact`].
 #[derive(Clone, Copy)]
@@ -54,22 +52,6 @@ struct Touched<N: NormalLaw, T: TangentialLaw> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Touched<N, T> {
-    fn nothing(reduced_radius: f64) -> Self {
-        Self {
-            history: History::new(reduced_radius),
-            dents: [0.0; CELLS],
-            per_length: 0.0,
-            overlap: 0.0,
-            reach: 0.0,
-            length: 0.0,
-            curvature: 0.0,
-            energy: 0.0,
-            u: 0.0,
-            arm: [0.0; 2],
-            shares: NOTHING,
-        }
-    }
-
     fn of(c: &Contact<N, T>) -> Self {
         let Contact { history, dents, per_length, overlap, reach, length, curvature, energy, u, arm, .. } = *c;
         Self { history, dents, per_length, overlap, reach, length, curvature, energy, u, arm, shares: NOTHING }
@@ -139,32 +121,14 @@ impl<N: NormalLaw, T: TangentialLaw> Store<N, T> {
     pub fn contact(&self, k: usize, chains: &Chains) -> Contact<N, T> {
         let Candidate { t, viscosity, reduced_radius, i, j, touched, kind, mode, joined, edge, end_to_end } =
             self.candidates[k];
-        let touched = self.touched.get(touched as usize).copied();
-        let touched = touched.unwrap_or_else(|| Touched::nothing(reduced_radius));
-        let Touched { history, dents, per_length, overlap, reach, length, curvature, energy, u, arm, shares } = touched;
-        Contact {
-            quiet_until: self.quiet_until[k],
-            place: Place { j, t, joined },
-            i,
-            kind,
-            mode,
-            edge,
-            end_to_end,
-            taken: false,
-            history,
-            dents,
-            shares: self.shares.get(shares as usize).copied().unwrap_or(WHOLE),
-            cell_length: chains.cell_length(i as usize),
-            per_length,
-            viscosity,
-            overlap,
-            reach,
-            length,
-            curvature,
-            energy,
-            u,
-            arm,
-        }
+        let (quiet_until, cell_length) = (self.quiet_until[k], chains.cell_length(i as usize));
+        let untouched = Contact::untouched(i, Place { j, t, joined }, kind, reduced_radius, cell_length);
+        let contact = Contact { quiet_until, mode, edge, end_to_end, viscosity, ..untouched };
+        let Some(touched) = self.touched.get(touched as usize) else { return contact };
+        let Touched { history, dents, per_length, overlap, reach, length, curvature, energy, u, arm, shares } =
+            *touched;
+        let shares = self.shares.get(shares as usize).copied().unwrap_or(WHOLE);
+        Contact { history, dents, shares, per_length, overlap, reach, length, curvature, energy, u, arm, ..contact }
     }
 
     /// All contacts that push.

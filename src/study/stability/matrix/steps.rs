@@ -1,7 +1,6 @@
 //! The critical time step against the predicted bound.
 
-use super::super::case::{Base, StabilityCase};
-use super::super::critical::Critical;
+use super::super::case::{Base, Critical, StabilityCase};
 use super::scenes::{LIGHT_ON_HEAVY, SEVEN};
 
 const CHAIN: Base = Base::Builtin("verify/chain");

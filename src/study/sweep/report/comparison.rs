@@ -2,7 +2,7 @@
 
 use super::super::comparison::{PointComparison, QUANTITIES, Trend};
 use super::super::definition::Definition;
-use super::Findings;
+use super::findings::Findings;
 use crate::study::table::Table;
 
 /// Computed values beside published ones and theory's, point by point, and the trends; empty when the study compares with

@@ -1,11 +1,10 @@
 //! What each factor of a design moves: tables and figures.
 
 use super::super::definition::Definition;
-use super::super::gather::{CaseResult, Gathered};
 use super::super::quantity::{self, Quantity};
-use super::{Findings, Moved};
+use super::findings::{Findings, Moved, by_points};
 use crate::study::plot::{Axis, Figure, Legend, Limit, Mark, Series};
-use crate::study::screening::{Effects, Estimate, Interaction, Model, Term, effects};
+use crate::study::screening::{Effects, Estimate, Interaction, Term};
 use crate::study::table::Table;
 
 /// Quantities whose effects are drawn.
@@ -14,55 +13,6 @@ const DRAWN: [&str; 2] = ["strength", "elongation"];
 const SIZE: [u32; 2] = [860, 420];
 /// Probability below which a term is told from scatter (-).
 const SURE: f64 = 0.05;
-
-/// Effects on every quantity of a study with a design; none without one.
-pub fn of(definition: &Definition, gathered: &Gathered) -> Vec<Moved> {
-    let Some(model) = &definition.model else { return Vec::new() };
-    let one = |quantity: &&'static Quantity| Moved {
-        quantity: &quantity.name,
-        by_points: by_points(definition, model),
-        seeds_deviation: seeds_deviation(definition, gathered, quantity),
-        effects: effects(model, &responses(definition, gathered, quantity, model)).map_err(|why| why.to_string()),
-    };
-    definition.quantities.iter().map(one).collect()
-}
-
-/// Whether effects are judged by the means of points over seeds rather than by runs. Seeds of a point share what the model
-/// leaves out there, such as interactions of three factors: taken as independent, they make intervals too narrow. Only a
-/// design without points to spare leaves nothing but the scatter of seeds to judge by.
-fn by_points(definition: &Definition, model: &Model) -> bool {
-    definition.points.len() > model.parameters()
-}
-
-/// Levels and response of each point, or of each run.
-fn responses(
-    definition: &Definition,
-    gathered: &Gathered,
-    quantity: &Quantity,
-    model: &Model,
-) -> Vec<(Vec<usize>, f64)> {
-    if by_points(definition, model) {
-        let mean = |point: usize| gathered.stat(point, quantity).map_or(f64::NAN, |stat| stat.mean);
-        return (0..definition.points.len()).map(|point| (definition.points[point].clone(), mean(point))).collect();
-    }
-    let run = |case: &CaseResult| {
-        let value = case.result().map(|run| quantity.number(run).unwrap_or(f64::NAN))?;
-        Some((definition.points[case.point].clone(), value))
-    };
-    gathered.cases.iter().filter_map(run).collect()
-}
-
-/// Standard deviation from seed to seed, pooled over the points; `None` where no point has two runs.
-fn seeds_deviation(definition: &Definition, gathered: &Gathered, quantity: &Quantity) -> Option<f64> {
-    let of_points = (0..definition.points.len()).filter_map(|point| {
-        let stat = gathered.stat(point, quantity)?;
-        Some(((stat.count - 1) as f64, stat.standard_deviation?))
-    });
-    let (freedom, squares) = of_points.fold((0.0, 0.0), |(freedom, squares), (more, deviation)| {
-        (freedom + more, squares + more * deviation * deviation)
-    });
-    (freedom > 0.0).then(|| (squares / freedom).sqrt())
-}
 
 /// Which term moves what, the means of all levels, and how effects change with other factors.
 pub fn tables(definition: &Definition, findings: &Findings) -> Vec<Table> {
@@ -284,7 +234,7 @@ fn trend(definition: &Definition, quantity: &Quantity, effects: &Effects) -> Opt
     let label = format!("change of {} [{}]", quantity.heading, quantity.unit);
     let mut figure = Figure::new(title, Axis::named("", names), Axis::linear(label));
     figure.series = series;
-    figure.limits.push(Limit::Y(0.0, String::new()));
+    figure.limits.push(Limit { y: 0.0, name: String::new() });
     figure.legend = Legend::Beside;
     figure.size = [SIZE[0] + 360, SIZE[1]];
     Some(figure)

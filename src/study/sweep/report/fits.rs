@@ -3,7 +3,7 @@
 use super::super::comparison;
 use super::super::definition::Definition;
 use super::super::quantity;
-use super::{Findings, Fitted};
+use super::findings::{Findings, Fitted};
 use crate::study::fit::{Compared, Fit};
 use crate::study::table::Table;
 

@@ -3,93 +3,23 @@
 mod comparison;
 mod csv;
 mod effects;
+mod findings;
 mod fits;
 mod html;
 mod plots;
 mod tables;
 
+pub use findings::Findings;
 pub use tables::{built, case_list};
 
-use super::comparison::{self as compared, PointComparison, Trend};
 use super::definition::Definition;
 use super::gather::Gathered;
-use super::quantity::Quantity;
 use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
 use crate::run::folder::{STUDY, STUDY_PAGE};
-use crate::study::fit::{self, Fit, Model, ModelComparison};
-use crate::study::screening::Effects;
 use crate::study::table::Table;
-use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-
-/// What follows from the cases of a study.
-pub struct Findings {
-    /// Points compared with published results and theory.
-    pub comparison: Vec<PointComparison>,
-    /// How strength and elongation go over the axis.
-    pub trends: Vec<Trend>,
-    /// Curves over the axis.
-    pub fits: Vec<Fitted>,
-    /// What each factor of a design does.
-    pub effects: Vec<Moved>,
-}
-
-/// Curves through a quantity over the axis.
-#[derive(Serialize)]
-pub struct Fitted {
-    /// Name of the quantity.
-    pub quantity: &'static str,
-    /// All models, each with its cross-validation.
-    pub comparison: ModelComparison,
-}
-
-/// What the factors of a design do to a quantity.
-#[derive(Serialize)]
-pub struct Moved {
-    /// Name of the quantity.
-    pub quantity: &'static str,
-    /// Whether effects are judged by means of points rather than by runs.
-    pub by_points: bool,
-    /// Standard deviation from seed to seed, pooled over the points; `None` where no point has two runs.
-    pub seeds_deviation: Option<f64>,
-    /// Effects, or why there are none.
-    pub effects: std::result::Result<Effects, String>,
-}
-
-impl Findings {
-    /// From the cases that are there.
-    ///
-    /// # Errors
-    /// When strand theory cannot be calibrated.
-    pub fn new(definition: &Definition, gathered: &Gathered) -> Result<Self> {
-        let comparison = compared::points(definition, gathered)?;
-        let trends = compared::trends(definition, &comparison);
-        let fitted = |quantity: &&'static Quantity| Fitted {
-            quantity: &quantity.name,
-            comparison: fit::compare(&means_over_axis(definition, gathered, quantity)),
-        };
-        let fits = definition.fits.iter().map(fitted).collect();
-        Ok(Self { comparison, trends, fits, effects: effects::of(definition, gathered) })
-    }
-
-    /// A exp(B x) + C through a quantity, if it was asked for and found.
-    pub fn exponential(&self, quantity: &str) -> Option<&Fit> {
-        let fitted = self.fits.iter().find(|fitted| fitted.quantity == quantity)?;
-        fitted.comparison.model(Model::Exponential).fit.as_ref().ok()
-    }
-}
-
-/// (x, mean over seeds) of the points of a study over one axis.
-fn means_over_axis(definition: &Definition, gathered: &Gathered, quantity: &Quantity) -> Vec<[f64; 2]> {
-    let Some(axis) = definition.abscissa() else { return Vec::new() };
-    let at = |point: usize| {
-        let x = axis.levels[definition.points[point][0]].number?;
-        Some([x, gathered.stat(point, quantity)?.mean])
-    };
-    (0..definition.points.len()).filter_map(at).collect()
-}
 
 /// All tables, in their order.
 fn all_tables(definition: &Definition, gathered: &Gathered, findings: &Findings) -> Vec<Table> {

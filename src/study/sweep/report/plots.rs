@@ -5,7 +5,7 @@ use super::super::comparison::{self, PointComparison, QUANTITIES};
 use super::super::definition::Definition;
 use super::super::gather::Gathered;
 use super::super::quantity::{self, Quantity};
-use super::Findings;
+use super::findings::Findings;
 use crate::base::error::Result;
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series};
 use crate::study::tensile::Curve;
