@@ -30,7 +30,7 @@ impl Model {
         }
     }
 
-    /// Names of its parameters, in the order of [`Fit::parameters`].
+    /// Names of its parameters, in the order of [`Fit::parameters`](super::Fit::parameters).
     pub fn names(self) -> &'static [&'static str] {
         match self {
             Model::Constant => &["a"],
