@@ -11,6 +11,8 @@ pub mod constants;
 pub mod geometry;
 pub mod hertz;
 pub mod line;
+#[cfg(test)]
+mod line_resultants;
 pub mod thornton;
 
 use crate::base::lanes::Real;

@@ -200,7 +200,7 @@ mod tests {
     const RADIUS: f64 = 0.0975e-3;
 
     fn near(value: f64, expected: f64, tolerance: f64) {
-        assert!((value - expected).abs() <= tolerance * expected.abs(), "{value} is not {expected}");
+        assert!((value / expected - 1.0).abs() <= tolerance, "{value} is not {expected}");
     }
 
     fn yield_force() -> f64 {
