@@ -284,4 +284,15 @@ mod tests {
             [k.axial / expected.axial, k.shear / expected.shear, k.bend / expected.bend, k.twist / expected.twist];
         assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 1e-12), "{ratios:?}");
     }
+
+    /// What is saved of a bond is its whole history, number by number.
+    #[test]
+    fn a_history_is_its_numbers() {
+        let state = elasto_plastic::ElastoPlastic::history(|k| 1.5 + k as f64);
+        let mut seen = Vec::new();
+        elasto_plastic::ElastoPlastic::each_number(&state, |k, number| seen.push((k, number)));
+        let expected: Vec<(usize, f64)> =
+            (0..elasto_plastic::ElastoPlastic::HISTORY).map(|k| (k, 1.5 + k as f64)).collect();
+        assert_eq!(seen, expected);
+    }
 }
