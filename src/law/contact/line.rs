@@ -556,6 +556,10 @@ mod tests {
         }
         assert_eq!((before, state), (0.0, 4e-6));
         near(plastic, work, 1e-2);
+        // On the way back the stiffness is the slope of the force, of the length that still pushes.
+        let back = |overlap: f64| respond(&crossing(0.2, overlap), 4e8, &mut state.clone());
+        let slope = (back(3.8e-6 + 1e-9).force - back(3.8e-6 - 1e-9).force) / 2e-9;
+        near(back(3.8e-6).stiffness, slope, 0.05);
         let dent = respond(&crossing(0.2, 3.4e-6), 4e8, &mut state.clone());
         assert_eq!(dent.force, 0.0, "what has sprung back no longer touches");
     }

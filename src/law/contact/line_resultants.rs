@@ -104,4 +104,5 @@ fn the_greatest_stiffness_of_hertz_is_the_present_one() {
     let now: NormalResponse = law.response(&mut (), RADIUS, 1e-6);
     near(law.greatest_stiffness(&(), RADIUS, 1e-6), now.stiffness);
     assert_eq!(law.greatest_stiffness(&(), RADIUS, -1e-6), 0.0);
+    assert_eq!((law.effective_modulus(), law.limiting_pressure()), (65e9, f64::INFINITY));
 }
