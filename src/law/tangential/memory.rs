@@ -244,5 +244,11 @@ mod tests {
             state.forget_passed_turns();
             assert_eq!(state.branch, expected, "at {pull}");
         }
+        // Off the line of the loop, towards the peak from the valley is what counts.
+        let turned = Branch::Reloading { peak, valley: DVec3::new(-0.9, 0.1, 0.0) };
+        let pull = DVec3::new(-0.8, -0.1, 0.0);
+        let mut state = MindlinDeresiewiczState { pull, branch: turned, ..Default::default() };
+        state.forget_passed_turns();
+        assert_eq!(state.branch, turned);
     }
 }

@@ -410,9 +410,13 @@ mod tests {
         step(&mut state, 0.5 * reach(), NORMAL_FORCE);
         let stored = state.energy;
         assert!(stored > 0.5 * state.pull.length_squared() / stiffness(NORMAL_FORCE));
-        let response = step(&mut state, reach(), 0.0);
-        assert_eq!(response, TangentialResponse { friction_work: stored, ..Default::default() });
-        assert_eq!(state, MindlinDeresiewiczState::default());
+        // Nothing presses, or on nothing.
+        for (force, radius) in [(0.0, 0.0), (0.0, 1e-5), (1.0, 0.0)] {
+            let mut state = state;
+            let response = LAW.one(&mut state, &TangentialInput::at_rest(force, radius));
+            assert_eq!(response, TangentialResponse { friction_work: stored, ..Default::default() });
+            assert_eq!(state, MindlinDeresiewiczState::default());
+        }
     }
 
     /// No Hertzian curve does that, but a normal law may: the contact stiffens no spring that it has loaded.
@@ -438,8 +442,9 @@ mod tests {
             assert_eq!(MindlinDeresiewiczState::from_numbers(&numbers), state);
             step(&mut state, slip * reach(), NORMAL_FORCE);
         }
-        assert!(matches!(state.branch, Branch::Reloading { .. }));
+        assert!(matches!(state.branch, Branch::Reloading { .. }) && state.energy > 0.0);
         assert_eq!(MindlinDeresiewiczState::from_numbers(&state.numbers()), state);
+        assert_eq!(LAW.elastic_energy(&state.numbers()), state.energy);
     }
 
     proptest! {
