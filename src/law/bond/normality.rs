@@ -172,25 +172,26 @@ fn a_bond_pulled_out_sheds_what_it_holds_across() {
 }
 
 /// With linear hardening one mode ends each step, however long, on the surface of the yield stress that the step itself
-/// has brought: the plastic work per multiplier is 2 in tension and torsion, 1 in bending.
+/// has brought: the plastic work per multiplier is 2 in torsion and shear, 1 in bending.
 #[test]
 fn a_long_step_ends_on_the_surface_that_it_has_hardened_to() {
     let hardening = Hardening::Table(vec![[0.0, 100e6], [1.0, 5100e6]]);
     let law = ElastoPlastic { moduli: Moduli::new(YOUNG, POISSON), hardening: hardening.clone() };
-    for mode in 0..2 {
+    let virgin = bond(100e6, 0.0);
+    for mode in 0..3 {
         let (mut force, mut state) = (BondForce::default(), law.initial());
         for _ in 0..20 {
             let mut step = BondIncrement { length: LENGTH, ..Default::default() };
-            if mode == 0 {
-                step.bend = [2e-3, 0.0];
-            } else {
-                step.twist = 4e-3;
+            match mode {
+                0 => step.bend = [virgin.limits[1] / virgin.bend, 0.0],
+                1 => step.twist = virgin.limits[2] / virgin.twist,
+                _ => step.shear = [0.0, virgin.limits[3] / virgin.shear],
             }
             law.response(&shape(), &mut force, &mut state, &step, true);
         }
         assert!(state.equivalent > 1e-3, "{state:?}");
-        let [_, bending, twisting, _] = bond(hardening.stress(state.equivalent), 0.0).limits;
-        let reached = [force.bend[0] / bending, force.twist / twisting][mode];
-        near(reached, 1.0, 1e-6, ["M", "T"][mode]);
+        let [_, bending, twisting, shearing] = bond(hardening.stress(state.equivalent), 0.0).limits;
+        let reached = [force.bend[0] / bending, force.twist / twisting, force.shear[1] / shearing][mode];
+        near(reached, 1.0, 1e-6, ["M", "T", "V"][mode]);
     }
 }
