@@ -5,6 +5,7 @@ mod drive;
 
 use drive::*;
 use strandsnap::base::finding::{Body, Member};
+use strandsnap::engine::measure::MEAN_LAG;
 use strandsnap::engine::view::BondState;
 
 const YOUNG: f64 = 115e9;
@@ -41,7 +42,10 @@ fn strain_lags_by_half_its_window() {
     let low = z.iter().copied().filter(|z| *z < 1.2e-3 + 1e-9).fold(0.0, f64::max);
     let high = z.iter().copied().filter(|z| *z > 8.8e-3 - 1e-9).fold(f64::MAX, f64::min);
     let dt = engine.time_step();
-    let window = (0.125 * 10e-3 / (YOUNG / DENSITY).sqrt() / dt).ceil() as usize;
+    let passage = 10e-3 / (YOUNG / DENSITY).sqrt();
+    let window = (0.125 * passage / dt).ceil() as usize;
+    let lag = 0.5 * (window as f64 + 1.0) * dt;
+    assert!((MEAN_LAG * passage - lag).abs() <= dt, "{MEAN_LAG} of a passage is not {lag} s");
     assert!(window > 3, "a window of {window} steps shows nothing");
     let mut strains = Vec::new();
     for _ in 0..10 * window {
