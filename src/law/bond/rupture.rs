@@ -77,6 +77,18 @@ mod tests {
         }
     }
 
+    /// Half of the wires of one bond break by 1, three quarters by 2^(1/m); a bond that is one of n is n^(1/m) as strong.
+    #[test]
+    fn a_bond_follows_weibulls_distribution() {
+        for (uniform, modulus, bonds, factor) in
+            [(0.5, 3.0, 1.0, 1.0), (0.75, 10.0, 1.0, 2f64.powf(0.1)), (0.5, 3.0, 8.0, 2.0), (0.75, 4.0, 8.0, 2.0)]
+        {
+            let found = weibull_factor(uniform, modulus, bonds);
+            assert!((found / factor - 1.0).abs() < 1e-14, "{found} instead of {factor}");
+        }
+        assert_eq!(weibull_factor(0.75, f64::INFINITY, 8.0), 1.0);
+    }
+
     #[test]
     fn compression_never_breaks_a_bond() {
         let criterion = BeamStress { tensile: 1e6, shear: 1e9, moment_share: 1.0 };
