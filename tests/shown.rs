@@ -60,6 +60,36 @@ fn strain_lags_by_half_its_window() {
     }
 }
 
+/// Until the wave has run along the wire, its end that is pulled feels E A v/c and the other nothing; stress is the former's.
+#[test]
+fn stress_is_that_of_the_upper_grip() {
+    let mut engine = engine(WIRE, &["bond.damping=0.1"]);
+    let speed_of_sound = (YOUNG / DENSITY).sqrt();
+    run_to(&mut engine, 0.5 * 8e-3 / speed_of_sound);
+    let [lower, upper] = engine.sample().grip_force;
+    let area = std::f64::consts::PI * 0.2e-3 * 0.2e-3;
+    let impact = YOUNG * 5.0 / speed_of_sound * area;
+    assert!((upper / impact - 1.0).abs() < 0.1, "{upper} N instead of {impact} N");
+    assert!(lower.abs() < 0.01 * upper, "{lower} N before the wave has come");
+    assert!((engine.stress() * area / upper - 1.0).abs() < 1e-12, "{} Pa", engine.stress());
+}
+
+/// A saved engine goes on as the one that it was saved from; another body's engine refuses it.
+#[test]
+fn what_was_measured_is_saved() {
+    let mut whole = engine(STRAND, &[]);
+    run_steps(&mut whole, 50);
+    let bytes = whole.save();
+    let mut other = engine(STRAND, &[]);
+    other.restore(&bytes).unwrap_or_else(|unfit| panic!("{unfit:?}"));
+    for _ in 0..20 {
+        assert_eq!(other.sample(), whole.sample());
+        run_steps(&mut whole, 1);
+        run_steps(&mut other, 1);
+    }
+    assert!(engine(WIRE, &[]).restore(&bytes).is_err());
+}
+
 /// Hooke's law of a wire whose waves have passed a hundred times, in every measure of it.
 #[test]
 fn forces_and_stresses_of_a_pulled_wire_are_those_of_its_section() {

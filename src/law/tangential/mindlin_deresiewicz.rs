@@ -359,10 +359,12 @@ mod tests {
         let turned_twice_far = ([0.7, -0.6, 0.3], 0.0, 0.3);
         // The loop closes when unloading, which falls twice as fast, has come down to reloading.
         let closed = ([0.7, -0.6, 0.5], 0.0, 0.4);
-        let paths = [turned, turned_far, turned_twice, turned_twice_far, closed];
+        // Reloading is undone first, then unloading goes on alone.
+        let undone = ([0.7, -0.8, 0.2], 0.0, 0.5);
+        let paths = [turned, turned_far, turned_twice, turned_twice_far, closed, undone];
         // Without slip a fall of the load is one step as well as many.
         for ((path, last, end), steps) in
-            paths.map(|p| (p, 1000)).into_iter().chain([turned_twice_far, closed].map(|p| (p, 1)))
+            paths.map(|p| (p, 1000)).into_iter().chain([turned_twice_far, closed, undone].map(|p| (p, 1)))
         {
             let (mut state, mut springs) = (MindlinDeresiewiczState::default(), vec![0.0f64; count]);
             let mut go = |depth: f64, slip: f64| {
@@ -422,7 +424,7 @@ mod tests {
     /// No Hertzian curve does that, but a normal law may: the contact stiffens no spring that it has loaded.
     #[test]
     fn a_radius_that_falls_while_the_force_rises_creates_no_energy() {
-        for slips in [[0.6, 0.0], [0.6, -0.3]] {
+        for slips in [[0.1, 0.0], [0.6, 0.0], [0.6, -0.3]] {
             let mut state = MindlinDeresiewiczState::default();
             for slip in slips {
                 step(&mut state, slip * reach(), NORMAL_FORCE);
