@@ -6,11 +6,14 @@
 #   examples/mutants.sh                     law, engine and tables
 #   examples/mutants.sh law engine          some of them: law, engine, tables, recording
 #   SHARD=0/8 examples/mutants.sh law       an eighth of a part, spread evenly over it
-#   RE='hertz.rs:20:' examples/mutants.sh law   only mutants whose name matches: for those that survived, once more
+#   RE='hertz.rs:20:' examples/mutants.sh law   only those whose name matches (and all that leave out a field, which cargo-mutants
+#                                           does not filter): for those that survived, once more
 #   LIST=1 examples/mutants.sh              only list the mutants
+#   TESTS='--no-default-features --test=measures' SHARD=0/5 examples/mutants.sh engine    other tests than those below
 #
 # `law` needs nothing but the numbers of `base`, so it is built as a crate of its own: a mutant takes 2 to 5 s (two cores),
-# the part one to two hours. In the other parts a mutant is a build of the engine, half a minute to a minute: take shards.
+# the part one to two hours. In the other parts a mutant is a build of the engine, a minute or two, half of that without `--lib`: take
+# shards.
 # `recording` needs rerun and has not been run.
 #
 # Works in out/mutants/PART; results: out/mutants/PART/mutants.out/{caught,missed,timeout,unviable}.txt. A build that fails
@@ -31,7 +34,7 @@ export PROPTEST_RNG_SEED=1
 
 files() {
     case $1 in
-    law) echo 'src/law/**/*.rs' ;;
+    law) echo 'src/law/*.rs src/law/**/*.rs' ;;
     engine) echo 'src/engine/measure.rs src/engine/step_view.rs src/engine/info.rs' ;;
     tables) echo 'src/observe/tables.rs src/observe/summary.rs src/observe/stiffness.rs' ;;
     recording) echo 'src/observe/recording/curve.rs src/observe/recording/particles.rs src/observe/recording/states.rs' ;;
@@ -42,8 +45,12 @@ files() {
     esac
 }
 
-# What is built, and the tests that look at these numbers, for `cargo test`.
+# What is built, and the tests that look at these numbers, for `cargo test`. `--lib` builds the library once more.
 tests() {
+    if [ -n "${TESTS:-}" ]; then
+        echo "$TESTS"
+        return
+    fi
     case $1 in
     law) echo '--lib' ;;
     engine) echo '--no-default-features --lib --test=measures --test=shown' ;;
