@@ -216,6 +216,7 @@ mod tests {
     use super::super::testing::{ball_on_ball, check_walk, walk};
     use super::*;
     use proptest::prelude::*;
+    use std::f64::consts::TAU;
 
     const LAW: MindlinDeresiewicz = MindlinDeresiewicz { shear_modulus_star: 13e9, friction: 0.2 };
     const NORMAL_FORCE: f64 = 1.5;
@@ -457,6 +458,24 @@ mod tests {
         #[test]
         fn no_walk_creates_energy_or_passes_the_cap(steps in walk()) {
             check_walk(&LAW, LAW.friction, LAW.shear_modulus_star, &steps)?;
+        }
+
+        /// Also where a loop is not along one line: then it is forgotten.
+        #[test]
+        fn shrinking_never_stores_more(
+            peak in 0.05..1.0f64, turns in [(0.0..1.0f64, 0.0..TAU), (0.0..1.0f64, 0.0..TAU)], left in 0.05..1.0f64,
+        ) {
+            let peak = DVec3::X * (peak * CAP);
+            let [pull, valley] = turns.map(|(part, angle)| part * peak.length() * DVec3::new(angle.cos(), angle.sin(), 0.0));
+            let old = Curve::new(CAP, stiffness(NORMAL_FORCE));
+            let radius = ball_on_ball(NORMAL_FORCE).radius;
+            let branch = Branch::Reloading { peak, valley };
+            let mut state = MindlinDeresiewiczState { pull, branch, cap: CAP, radius, ..Default::default() };
+            state.energy = state.stored(&old);
+            prop_assume!(state.can_hold_memory(&old));
+            let new = Curve::new(left * CAP, stiffness(left * NORMAL_FORCE));
+            LAW.shrink(&mut state, &new, ball_on_ball(left * NORMAL_FORCE).radius);
+            prop_assert!(state.stored(&new) <= state.energy * (1.0 + 1e-9), "{state:?}");
         }
 
         /// Of all states with one pull the virgin one stores least.
