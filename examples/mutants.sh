@@ -6,15 +6,14 @@
 #   examples/mutants.sh                     law, engine and tables
 #   examples/mutants.sh law engine          some of them: law, engine, tables, recording
 #   SHARD=0/8 examples/mutants.sh law       an eighth of a part, spread evenly over it
-#   RE='hertz.rs:20:' examples/mutants.sh law   only those whose name matches (and all that leave out a field, which cargo-mutants
-#                                           does not filter): for those that survived, once more
+#   RE='hertz.rs:20:' examples/mutants.sh law    only those whose name matches, for those that survived once more (and all
+#                                           that leave out a field, which cargo-mutants does not filter)
 #   LIST=1 examples/mutants.sh              only list the mutants
 #   TESTS='--no-default-features --test=measures' SHARD=0/5 examples/mutants.sh engine    other tests than those below
 #
 # `law` needs nothing but the numbers of `base`, so it is built as a crate of its own: a mutant takes 2 to 5 s (two cores),
-# the part one to two hours. In the other parts a mutant is a build of the engine, a minute or two, half of that without `--lib`: take
-# shards.
-# `recording` needs rerun and has not been run.
+# the part one to two hours. In the other parts a mutant is a build of the engine, a minute or two, half of that without
+# `--lib`: take shards. `recording` needs rerun and has not been run.
 #
 # Works in out/mutants/PART; results: out/mutants/PART/mutants.out/{caught,missed,timeout,unviable}.txt. A build that fails
 # counts as unviable: look into the log of one before believing many.
