@@ -177,3 +177,49 @@ fn middle(assembly: &Assembly, w: usize, gauge: [f64; 2]) -> Vec<usize> {
         near
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wires of 40 mm, of particles 0.4 mm apart.
+    fn assembly() -> Assembly {
+        let text = r#"
+            about = "Two wires, one of them half as long."
+            [bond]
+            law = "elastic"
+            [[wire]]
+            diameter = "0.4 mm"
+            from = ["0 mm", "0 mm", "0 mm"]
+            to = ["0 mm", "0 mm", "40 mm"]
+            [[wire]]
+            diameter = "0.4 mm"
+            from = ["1 mm", "0 mm", "0 mm"]
+            to = ["1 mm", "0 mm", "20 mm"]
+            [stop]
+            steps = 1
+        "#;
+        let scene = crate::scene::parse(text, "two.toml", std::path::Path::new("."), &[]).unwrap();
+        crate::strand::build(&scene.spec).unwrap()
+    }
+
+    #[test]
+    fn the_middle_of_a_wire_is_a_twentieth_of_the_gauge() {
+        let a = assembly();
+        let centre = |slot: &usize| 0.5 * (a.position.z[*slot] + a.position.z[*slot + 1]);
+        // 18 ± 0.4 mm: two or three bonds of 0.4 mm.
+        let found = middle(&a, 0, [10e-3, 26e-3]);
+        let expected: Vec<usize> = a.wires[0].bonds().filter(|s| (17.6e-3..=18.4e-3).contains(&centre(s))).collect();
+        assert!(expected.len() >= 2, "{expected:?}");
+        assert_eq!(found, expected);
+        // A gauge too short for the spacing takes the nearest bond.
+        let nearest = middle(&a, 1, [9.99e-3, 10.01e-3]);
+        assert!(nearest.len() == 1 && (centre(&nearest[0]) - 10e-3).abs() <= 0.2e-3 + 1e-9, "{nearest:?}");
+        assert!(a.wires[1].bonds().contains(&nearest[0]));
+        // Without a gauge, the bond at half its length.
+        for (w, half) in [(0, 20e-3), (1, 10e-3)] {
+            let free = middle(&a, w, [0.0, 0.0]);
+            assert!(free.len() == 1 && (centre(&free[0]) - half).abs() <= 0.4e-3, "{free:?}");
+        }
+    }
+}

@@ -10,6 +10,8 @@
 pub mod elastic;
 pub mod elasto_plastic;
 pub mod hardening;
+#[cfg(test)]
+mod normality;
 mod return_mapping;
 pub mod rupture;
 
@@ -265,12 +267,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shear_stiffness_is_timoshenkos() {
-        let moduli = Moduli::new(115e9, 0.34);
-        let (section, l) = (Section::round(0.195e-3), 0.39e-3);
-        let phi = 12.0 * moduli.young * section.inertia / (moduli.kappa * moduli.shear * section.area * l * l);
-        let expected = 12.0 * moduli.young * section.inertia / (l.powi(3) * (1.0 + phi));
-        let k = section.stiffness(&moduli, 1.0 / l).shear;
-        assert!((k / expected - 1.0).abs() < 1e-12, "{k} {expected}");
+    fn stiffnesses_are_those_of_a_round_beam() {
+        let (e, poisson, r, l) = (115e9, 0.34, 0.195e-3f64, 0.39e-3f64);
+        let g = e / (2.0 * (1.0 + poisson));
+        let (area, inertia) = (PI * r * r, PI * r.powi(4) / 4.0);
+        // Cowper's coefficient 6(1 + ν)/(7 + 6ν) at ν = 0.34.
+        let phi = 12.0 * e * inertia / (8.04 / 9.04 * g * area * l * l);
+        let expected = BondStiffness {
+            axial: e * area / l,
+            shear: 12.0 * e * inertia / (l.powi(3) * (1.0 + phi)),
+            bend: e * inertia / l,
+            twist: g * 2.0 * inertia / l,
+        };
+        let k = Section::round(r).stiffness(&Moduli::new(e, poisson), 1.0 / l);
+        let ratios =
+            [k.axial / expected.axial, k.shear / expected.shear, k.bend / expected.bend, k.twist / expected.twist];
+        assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 1e-12), "{ratios:?}");
+    }
+
+    /// What is saved of a bond is its whole history, number by number.
+    #[test]
+    fn a_history_is_its_numbers() {
+        let state = elasto_plastic::ElastoPlastic::history(|k| 1.5 + k as f64);
+        let mut seen = Vec::new();
+        elasto_plastic::ElastoPlastic::each_number(&state, |k, number| seen.push((k, number)));
+        let expected: Vec<(usize, f64)> =
+            (0..elasto_plastic::ElastoPlastic::HISTORY).map(|k| (k, 1.5 + k as f64)).collect();
+        assert_eq!(seen, expected);
     }
 }

@@ -77,11 +77,39 @@ mod tests {
         }
     }
 
+    /// Half of the wires of one bond break by 1, three quarters by 2^(1/m); a bond that is one of n is n^(1/m) as strong.
+    #[test]
+    fn a_bond_follows_weibulls_distribution() {
+        for (uniform, modulus, bonds, factor) in
+            [(0.5, 3.0, 1.0, 1.0), (0.75, 10.0, 1.0, 2f64.powf(0.1)), (0.5, 3.0, 8.0, 2.0), (0.75, 4.0, 8.0, 2.0)]
+        {
+            let found = weibull_factor(uniform, modulus, bonds);
+            assert!((found / factor - 1.0).abs() < 1e-14, "{found} instead of {factor}");
+        }
+        assert_eq!(weibull_factor(0.75, f64::INFINITY, 8.0), 1.0);
+    }
+
     #[test]
     fn compression_never_breaks_a_bond() {
         let criterion = BeamStress { tensile: 1e6, shear: 1e9, moment_share: 1.0 };
         let section = Section::round(0.2e-3);
         let force = BondForce { axial: -1e4, bend: [1.0, 0.0], ..Default::default() };
         assert_eq!(criterion.utilisation(&force, &section)[0], 0.0);
+    }
+
+    /// By hand for r = 0.2 mm: A = 1.256637e-7 m², I = 1.256637e-15 m⁴, J = 2.513274e-15 m⁴. N/A and |M|r/I are
+    /// 15.91549 MPa each; |V|/A is 39.78874 MPa and |T|r/J 31.83099 MPa.
+    #[test]
+    fn stresses_are_those_of_the_outermost_fibre() {
+        let criterion = BeamStress { tensile: 100e6, shear: 200e6, moment_share: 0.5 };
+        let force = BondForce { axial: 2.0, shear: [3.0, -4.0], bend: [-0.6e-4, 0.8e-4], twist: -4e-4 };
+        let [tension, shear] = criterion.utilisation(&force, &Section::round(0.2e-3));
+        assert!((tension - 0.238_732_4).abs() < 1e-7, "{tension}");
+        assert!((shear - 0.278_521_2).abs() < 1e-7, "{shear}");
+    }
+
+    #[test]
+    fn the_outermost_fibre_of_a_bent_bond_is_strained_by_r_over_the_radius_of_bending() {
+        assert!((fibre_strain(0.01, 1.0 / 0.02, 0.2e-3) - 0.02).abs() < 1e-15);
     }
 }

@@ -10,6 +10,8 @@
 pub mod constants;
 pub mod hertz;
 pub mod line;
+#[cfg(test)]
+mod line_resultants;
 pub mod thornton;
 
 use crate::base::lanes::Real;

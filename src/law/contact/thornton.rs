@@ -200,7 +200,7 @@ mod tests {
     const RADIUS: f64 = 0.0975e-3;
 
     fn near(value: f64, expected: f64, tolerance: f64) {
-        assert!((value - expected).abs() <= tolerance * expected.abs(), "{value} is not {expected}");
+        assert!((value / expected - 1.0).abs() <= tolerance, "{value} is not {expected}");
     }
 
     fn yield_force() -> f64 {
@@ -268,6 +268,14 @@ mod tests {
     }
 
     #[test]
+    fn a_history_is_its_numbers_and_constants_are_told() {
+        let mut seen = Vec::new();
+        Thornton::each_number(&Thornton::history(|k| 1.5 + k as f64), |k, number| seen.push((k, number)));
+        assert_eq!(seen, [(0, 1.5), (1, 2.5), (2, 3.5)]);
+        assert_eq!((LAW.effective_modulus(), LAW.limiting_pressure()), (65.0e9, 252e6));
+    }
+
+    #[test]
     fn a_dent_stays_and_never_pulls() {
         let (mut state, _) = loaded_to(300.0 * LAW.yield_overlap(RADIUS));
         let dent = state;
@@ -311,6 +319,11 @@ mod tests {
             let (mut state, first) = loaded_to(overlap);
             let bound = LAW.greatest_stiffness(&state, RADIUS, overlap);
             near(bound, virgin, 1e-12);
+            // It is the slope where unloading begins, and the energy there the same before and after.
+            let stored = LAW.elastic_energy(&ThorntonState::default(), RADIUS, overlap);
+            near(stored, LAW.elastic_energy(&state, RADIUS, overlap), 1e-12);
+            let unloading = LAW.response(&mut { state }, RADIUS, overlap * (1.0 - 1e-9)).stiffness;
+            near(bound, unloading, 1e-6);
             assert!(first.stiffness <= bound * (1.0 + 1e-12));
             for i in 0..=1000 {
                 let slope = LAW.response(&mut state, RADIUS, overlap * i as f64 / 1000.0).stiffness;

@@ -222,3 +222,33 @@ impl MindlinDeresiewiczState {
         Self { pull: vector(0), branch, cap: n[10], radius: n[11], normal: vector(12), energy: n[15] }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between the turns a branch goes on; beyond the valley it is unloading, at the peak the virgin curve.
+    #[test]
+    fn turns_that_the_pull_has_passed_are_forgotten() {
+        let (peak, valley) = (DVec3::X, -0.5 * DVec3::X);
+        let reloading = Branch::Reloading { peak, valley };
+        for (pull, expected) in [
+            (0.2, reloading),
+            (-0.5, reloading),
+            (-0.6, Branch::Unloading { peak }),
+            (0.999, reloading),
+            (1.0, Branch::Loading),
+            (-1.1, Branch::Loading),
+        ] {
+            let mut state = MindlinDeresiewiczState { pull: pull * DVec3::X, branch: reloading, ..Default::default() };
+            state.forget_passed_turns();
+            assert_eq!(state.branch, expected, "at {pull}");
+        }
+        // Off the line of the loop, towards the peak from the valley is what counts.
+        let turned = Branch::Reloading { peak, valley: DVec3::new(-0.9, 0.1, 0.0) };
+        let pull = DVec3::new(-0.8, -0.1, 0.0);
+        let mut state = MindlinDeresiewiczState { pull, branch: turned, ..Default::default() };
+        state.forget_passed_turns();
+        assert_eq!(state.branch, turned);
+    }
+}

@@ -138,9 +138,13 @@ mod tests {
         LAW.response(&mut state, &input(1e-9, 1.0));
         let stored = LAW.elastic_energy(&state);
         assert!(stored > 0.0);
-        let response = LAW.response(&mut state, &input(1e-9, 0.0));
-        assert_eq!(response, TangentialResponse { friction_work: stored, ..Default::default() });
-        assert_eq!(state, MindlinState::default());
+        // Nothing presses, or on nothing.
+        for (force, radius) in [(0.0, 0.0), (0.0, 1e-5), (1.0, 0.0)] {
+            let mut state = state;
+            let response = LAW.response(&mut state, &TangentialInput::at_rest(force, radius));
+            assert_eq!(response, TangentialResponse { friction_work: stored, ..Default::default() });
+            assert_eq!(state, MindlinState::default());
+        }
     }
 
     proptest! {

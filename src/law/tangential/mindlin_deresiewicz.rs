@@ -216,6 +216,7 @@ mod tests {
     use super::super::testing::{ball_on_ball, check_walk, walk};
     use super::*;
     use proptest::prelude::*;
+    use std::f64::consts::TAU;
 
     const LAW: MindlinDeresiewicz = MindlinDeresiewicz { shear_modulus_star: 13e9, friction: 0.2 };
     const NORMAL_FORCE: f64 = 1.5;
@@ -357,7 +358,15 @@ mod tests {
         let turned_far = ([0.5, -0.2, 0.0], 0.0, 0.2);
         let turned_twice = ([0.7, -0.9, 0.3], 0.07, 0.8);
         let turned_twice_far = ([0.7, -0.6, 0.3], 0.0, 0.3);
-        for (path, last, end) in [turned, turned_far, turned_twice, turned_twice_far] {
+        // The loop closes when unloading, which falls twice as fast, has come down to reloading.
+        let closed = ([0.7, -0.6, 0.5], 0.0, 0.4);
+        // Reloading is undone first, then unloading goes on alone.
+        let undone = ([0.7, -0.8, 0.2], 0.0, 0.5);
+        let paths = [turned, turned_far, turned_twice, turned_twice_far, closed, undone];
+        // Without slip a fall of the load is one step as well as many.
+        for ((path, last, end), steps) in
+            paths.map(|p| (p, 1000)).into_iter().chain([turned_twice_far, closed, undone].map(|p| (p, 1)))
+        {
             let (mut state, mut springs) = (MindlinDeresiewiczState::default(), vec![0.0f64; count]);
             let mut go = |depth: f64, slip: f64| {
                 let pull = law.one(&mut state, &input(depth, slip)).pull.x;
@@ -372,9 +381,9 @@ mod tests {
             for slip in path {
                 go(1.0, slip);
             }
-            for i in 1..=1000 {
-                let depth = 1.0 + (end - 1.0) * i as f64 / 1000.0;
-                let (pull, sum) = go(depth, 1e-3 * last);
+            for i in 1..=steps {
+                let depth = 1.0 + (end - 1.0) * f64::from(i) / f64::from(steps);
+                let (pull, sum) = go(depth, last / f64::from(steps));
                 near(pull, sum, 2e-4);
             }
         }
@@ -404,9 +413,31 @@ mod tests {
         step(&mut state, 0.5 * reach(), NORMAL_FORCE);
         let stored = state.energy;
         assert!(stored > 0.5 * state.pull.length_squared() / stiffness(NORMAL_FORCE));
-        let response = step(&mut state, reach(), 0.0);
-        assert_eq!(response, TangentialResponse { friction_work: stored, ..Default::default() });
-        assert_eq!(state, MindlinDeresiewiczState::default());
+        // Nothing presses, or on nothing.
+        for (force, radius) in [(0.0, 0.0), (0.0, 1e-5), (1.0, 0.0)] {
+            let mut state = state;
+            let response = LAW.one(&mut state, &TangentialInput::at_rest(force, radius));
+            assert_eq!(response, TangentialResponse { friction_work: stored, ..Default::default() });
+            assert_eq!(state, MindlinDeresiewiczState::default());
+        }
+    }
+
+    /// Radius and force go together on a Hertzian curve; a normal law may part them.
+    #[test]
+    fn a_radius_that_does_not_follow_the_force_creates_no_energy() {
+        for slips in [[0.1, 0.0], [0.6, 0.0], [0.6, -0.3]] {
+            let mut loaded = MindlinDeresiewiczState::default();
+            for slip in slips {
+                step(&mut loaded, slip * reach(), NORMAL_FORCE);
+            }
+            for (force, radius) in [(1.1, 0.8), (0.3, 1.1)] {
+                let mut state = loaded;
+                let (force, radius) = (force * NORMAL_FORCE, radius * ball_on_ball(NORMAL_FORCE).radius);
+                let response = LAW.one(&mut state, &TangentialInput::at_rest(force, radius));
+                assert!(response.friction_work >= 0.0 && state.energy <= loaded.energy, "{state:?}");
+                assert!(state.pull.length() <= LAW.friction * force * (1.0 + 1e-12), "{state:?}");
+            }
+        }
     }
 
     #[test]
@@ -417,8 +448,9 @@ mod tests {
             assert_eq!(MindlinDeresiewiczState::from_numbers(&numbers), state);
             step(&mut state, slip * reach(), NORMAL_FORCE);
         }
-        assert!(matches!(state.branch, Branch::Reloading { .. }));
+        assert!(matches!(state.branch, Branch::Reloading { .. }) && state.energy > 0.0);
         assert_eq!(MindlinDeresiewiczState::from_numbers(&state.numbers()), state);
+        assert_eq!(LAW.elastic_energy(&state.numbers()), state.energy);
     }
 
     proptest! {
@@ -426,6 +458,37 @@ mod tests {
         #[test]
         fn no_walk_creates_energy_or_passes_the_cap(steps in walk()) {
             check_walk(&LAW, LAW.friction, LAW.shear_modulus_star, &steps)?;
+        }
+
+        /// Also where a loop is not along one line: then it is forgotten.
+        #[test]
+        fn shrinking_never_stores_more(
+            peak in 0.05..1.0f64, turns in [(0.0..1.0f64, 0.0..TAU), (0.0..1.0f64, 0.0..TAU)], left in 0.05..1.0f64,
+        ) {
+            let peak = DVec3::X * (peak * CAP);
+            let [pull, valley] = turns.map(|(part, angle)| part * peak.length() * DVec3::new(angle.cos(), angle.sin(), 0.0));
+            let old = Curve::new(CAP, stiffness(NORMAL_FORCE));
+            let radius = ball_on_ball(NORMAL_FORCE).radius;
+            let branch = Branch::Reloading { peak, valley };
+            let mut state = MindlinDeresiewiczState { pull, branch, cap: CAP, radius, ..Default::default() };
+            state.energy = state.stored(&old);
+            prop_assume!(state.can_hold_memory(&old));
+            let new = Curve::new(left * CAP, stiffness(left * NORMAL_FORCE));
+            LAW.shrink(&mut state, &new, ball_on_ball(left * NORMAL_FORCE).radius);
+            prop_assert!(state.stored(&new) <= state.energy * (1.0 + 1e-9), "{state:?}");
+        }
+
+        /// Of all states with one pull the virgin one stores least.
+        #[test]
+        fn what_is_remembered_is_worth_its_energy(slips in prop::collection::vec([-1.0..1.0f64, -1.0..1.0], 3..30)) {
+            let mut state = MindlinDeresiewiczState::default();
+            let curve = Curve::new(CAP, stiffness(NORMAL_FORCE));
+            for [x, y] in slips {
+                let slip = DVec3::new(x, y, 0.0) * 0.7 * reach();
+                LAW.one(&mut state, &TangentialInput { slip: slip.into(), ..ball_on_ball(NORMAL_FORCE) });
+                let least = curve.stored(state.pull.length());
+                prop_assert!(state.energy >= least * (1.0 - 1e-9), "{} below {least}: {state:?}", state.energy);
+            }
         }
     }
 }

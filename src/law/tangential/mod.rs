@@ -117,6 +117,22 @@ mod tests {
         }
     }
 
+    /// What is saved of a contact is its whole history, number by number.
+    fn numbers_come_back<L: TangentialLaw>() {
+        let state = L::history(|k| 1.5 + k as f64);
+        let mut seen = Vec::new();
+        L::each_number(&state, |k, number| seen.push((k, number)));
+        let expected: Vec<(usize, f64)> = (0..L::HISTORY).map(|k| (k, 1.5 + k as f64)).collect();
+        assert_eq!(seen, expected);
+    }
+
+    #[test]
+    fn a_history_is_its_numbers() {
+        numbers_come_back::<none::Frictionless>();
+        numbers_come_back::<mindlin::Mindlin>();
+        numbers_come_back::<mindlin_deresiewicz::MindlinDeresiewicz>();
+    }
+
     #[test]
     fn a_vector_along_the_normal_has_no_direction_left() {
         assert_eq!(turn(DVec3::Z.into(), DVec3::Z.into()), Triple::default());
