@@ -11,7 +11,7 @@ get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that nee
 get_readers || printf '\nPrograms that read exports cannot be installed here; tests that need them will be SKIPPED.\n'
 
 say "Shell syntax"
-for script in demo.sh test.sh .ci/run .ci/features .ci/prepare.sh examples/peers/compare.sh; do
+for script in demo.sh test.sh .ci/run .ci/features .ci/prepare.sh examples/peers/compare.sh examples/long_tests.sh examples/mutants.sh; do
     bash -n "$script"
 done
 
