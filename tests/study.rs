@@ -116,7 +116,7 @@ fn kill_at_a_checkpoint(folder: &Path) -> bool {
         kept.map(|(checkpoint, _)| (checkpoint.identity.scene, checkpoint.number)).max()
     };
     let before = newest();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strandsnap"));
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_strandsnap"));
     command.args(["study", "own.toml", "--jobs", "1"]).current_dir(folder);
     command.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
     let mut child = command.spawn().unwrap();
