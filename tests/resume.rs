@@ -232,13 +232,11 @@ fn of_two_trajectories_the_one_that_reaches_the_checkpoint_is_taken() {
     }
 }
 
-/// Every picture in a folder, by its name.
+/// Every file in a folder, by its name there.
 #[cfg(feature = "render")]
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    // A killed process may leave the hidden file behind that it was writing; it never has the name of a picture.
-    let named = entries.filter(|path| path.extension().is_some_and(|extension| extension == "png"));
-    named.map(|path| (path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap())).collect()
+    entries.map(|path| (path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap())).collect()
 }
 
 /// Frames are drawn and samples recorded again up to the checkpoint, so that nothing of the killed process stays in them.

@@ -42,6 +42,7 @@ fn a_tiny_study_runs_is_not_run_twice_and_writes_everything() {
     {
         assert!(first.contains(part), "{part} is not in\n{first}");
     }
+    assert!(first.contains("[MPa]") && !first.contains("]]"), "{first}");
     let out = folder.path().join("out/study/own");
     let cases = rows(&out.join("cases.csv"));
     assert_eq!(cases.len(), 8);

@@ -276,9 +276,13 @@ fn clear_pictures(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file is named as the frames are: a PNG (or the beginning of one) with a number in its name.
+/// Whether a file is named as the frames are: a PNG (or the beginning of one) with a number in its name, or what a process
+/// that was killed had begun to write.
 fn is_picture(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    if name.starts_with(".frame-") && name.ends_with(".tmp") {
+        return true;
+    }
     let stem = name.strip_suffix(".partial").unwrap_or(&name).strip_suffix(".png");
     stem.is_some_and(|stem| stem.contains(|c: char| c.is_ascii_digit()))
 }
@@ -302,13 +306,16 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         fs::create_dir(at(FRAMES)).unwrap();
-        for name in ["notes.txt", "curve.csv", "summary.json", "frames/0001.png", "frames/mine.svg"] {
+        for name in
+            ["notes.txt", "curve.csv", "summary.json", "frames/0001.png", "frames/.frame-a1.tmp", "frames/mine.svg"]
+        {
             fs::write(at(name), "x").unwrap();
         }
         let _lock = OutFolder::check(folder.path(), true).unwrap().open().unwrap();
         let left = |name: &str| at(name).exists();
         assert!(left("notes.txt") && left("frames/mine.svg"));
         assert!(!left("curve.csv") && !left("summary.json") && !left("frames/0001.png"));
+        assert!(!left("frames/.frame-a1.tmp"));
     }
 
     #[test]

@@ -33,7 +33,7 @@ impl Table {
     pub fn to_text(&self) -> String {
         // Units stand below what they belong to, which keeps columns narrow.
         let split = |head: &String| match head.split_once(" [") {
-            Some((what, unit)) => [what.to_string(), format!("[{unit}]")],
+            Some((what, unit)) => [what.to_string(), format!("[{unit}")],
             None => [head.clone(), String::new()],
         };
         let heads: Vec<[String; 2]> = self.heads.iter().map(split).collect();
