@@ -298,7 +298,10 @@ fn one_command_starts_a_run_and_starts_it_again() {
         program(&[&lean[..], others].concat()).output().unwrap()
     };
     assert!(run(&whole, &["--resume"]).status.success());
-    assert_eq!(run(&whole, &["--resume"]).status.code(), Some(2), "a finished run is not replaced");
+    let again = run(&whole, &["--resume"]);
+    assert_eq!(again.status.code(), Some(2), "a finished run is not replaced");
+    let said = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert!(said.contains("has come to its end"), "{said}");
 
     // A time limit ends it as Ctrl-C does.
     let limited = run(&out, &["--resume", "--time-limit", "0.1s", "--threads", "1", "--set", "output.checkpoint=20"]);

@@ -48,5 +48,5 @@ pub(super) fn go_on(resumable: Resumable, time_limit: Option<Duration>, quiet: b
         resumable.go_on(watchers, stop)
     })??;
     print(&summary, &options, quiet);
-    interrupt::ended(stop)
+    interrupt::ended_run(&summary.stopped)
 }

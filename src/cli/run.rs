@@ -8,9 +8,9 @@ use super::look::LookArgs;
 use super::progress::Progress;
 use super::resume::{go_on, note};
 use super::values::{SceneArgs, duration};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::observe::Observer;
-use crate::run::folder::ANIMATION;
+use crate::run::folder::{ANIMATION, SUMMARY};
 use crate::run::{self, Resumable, RunOptions, cautions, outputs};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -69,6 +69,12 @@ pub fn run(args: Args) -> Result<Ended> {
         resumable.check_scene(&scene)?;
         return go_on(resumable, args.time_limit, args.quiet);
     }
+    if args.resume && !args.overwrite && out.join(SUMMARY).is_file() && !run::folder::is_unfinished(&out) {
+        return Err(Error::input(
+            format!("the run in {} has come to its end", out.display()),
+            "there is nothing to go on with; --overwrite runs it again, in place of its results",
+        ));
+    }
     let options = RunOptions {
         animation: args.animation.resolve(&out.join(ANIMATION)),
         // What was ended before its first checkpoint begins anew.
@@ -90,7 +96,7 @@ pub fn run(args: Args) -> Result<Ended> {
         run::run_watched(&scene, &options, watchers, stop)
     })??;
     print(&summary, &options, args.quiet);
-    interrupt::ended(stop)
+    interrupt::ended_run(&summary.stopped)
 }
 
 /// Frames and recording are on unless refused; a program that cannot make them must say so.

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Histories over strain, one entry per row of the curve.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -240,6 +240,9 @@ impl Case for TensileCase<'_> {
         // Another process may be at the same case.
         let unfinished = self.store.unfinished(&identity);
         lock::wait(&unfinished, stop);
+        if stop.load(Ordering::Relaxed) {
+            return Err(Error::Interrupted);
+        }
         if let Some(record) = self.store.find(&identity) {
             return Ok(record);
         }
