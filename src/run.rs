@@ -48,7 +48,7 @@ use drive::{LoopState, Resumed};
 use folder::OutFolder;
 use std::path::Path;
 use std::sync::PoisonError;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Runs a scene and writes its results; `stop` ends it cleanly after the step in progress.
@@ -213,39 +213,7 @@ pub fn in_pool<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send)
         what: format!("cannot start the threads: {e}"),
         help: Some("ask for fewer with --threads".into()),
     })?;
-    Ok(pool.install(|| awake(work)))
-}
-
-/// Runs `work` while the other threads of the pool look for jobs without ever falling asleep.
-///
-/// A step has half a dozen parallel loops of some 100 µs with serial work between them; a thread that sleeps through
-/// that takes as long as a loop to wake. Threads that find nothing give their core to whoever else wants it.
-fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    let done = AtomicBool::new(false);
-    let caller = rayon::current_thread_index();
-    rayon::scope(|scope| {
-        // One for each thread, run by that thread alone: the caller could not finish if it took up a loop that waits
-        // for it.
-        scope.spawn_broadcast(|_, thread| {
-            while Some(thread.index()) != caller && !done.load(Ordering::Relaxed) {
-                if rayon::yield_now() != Some(rayon::Yield::Executed) {
-                    std::thread::yield_now();
-                }
-            }
-        });
-        // Dropped also when `work` panics, or the scope would wait for ever.
-        let _ending = Ending(&done);
-        work()
-    })
-}
-
-/// Says that the work is done when it is dropped.
-struct Ending<'a>(&'a AtomicBool);
-
-impl Drop for Ending<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
+    Ok(pool.install(work))
 }
 
 struct Clock {
@@ -272,7 +240,8 @@ impl Clock {
             wall_s: self.before[0] + self.wall.elapsed().as_secs_f64(),
             cpu_s: cost::cpu_time().zip(self.cpu).map(|(now, begin)| self.before[1] + now - begin),
             ms_per_step: (outcome.steps > 0).then(|| stepping_ms / outcome.steps as f64),
-            threads: rayon::current_num_threads(),
+            threads: outcome.threads[0],
+            threads_available: outcome.threads[1],
             frames,
             versions: cost::versions(),
         }
@@ -291,12 +260,15 @@ struct Job<'a> {
 
 fn drive_and_summarise(
     mut job: Job,
-    engine: Engine,
+    mut engine: Engine,
     mut written: outputs::Written,
     watchers: Vec<&mut dyn Observer>,
     stop: &AtomicBool,
     resumed: Option<Resumed>,
 ) -> Result<RunSummary> {
+    if job.options.threads.is_none() {
+        engine.tune_threads();
+    }
     let spec = &job.scene.spec;
     let mut summariser = Summariser::new();
     let mut tables = Tables::new(&job.options.out);

@@ -61,8 +61,8 @@ pub struct Stages<T> {
 }
 
 impl Row {
-    /// Share of its cores that the run really got (-): others may use the machine. Waiting threads spin, so that an
-    /// undisturbed run is busy on all of them.
+    /// Share of its cores that the run really got (-): others may use the machine. Waiting threads spin from one loop to the
+    /// next, so that an undisturbed run is busy on all of them.
     pub fn got(&self) -> f64 {
         self.cpu_ms_per_step.map_or(1.0, |cpu| (cpu / (self.ms_per_step * self.threads as f64)).min(1.0))
     }
@@ -144,7 +144,8 @@ pub fn rows(args: &Args, factor: f64) -> Result<Vec<Row>> {
     let (mut engine, pull) = in_pool(args.threads.iter().copied().max(), || pulled(args, &scene))??;
     let mut measured = Vec::new();
     for threads in &args.threads {
-        measured.push(in_pool(Some(*threads), || time(args, &mut engine))??);
+        engine.set_threads(*threads)?;
+        measured.push(time(args, &mut engine)?);
     }
     let peak = memory::peak();
     let bytes = engine.bytes();

@@ -25,6 +25,11 @@ impl Vectors {
         [&self.x, &self.y, &self.z]
     }
 
+    /// The three streams, to write to.
+    pub fn rows_mut(&mut self) -> [&mut [f64]; 3] {
+        [&mut self.x, &mut self.y, &mut self.z]
+    }
+
     /// None yet, with room for `n`.
     pub fn with_capacity(n: usize) -> Self {
         Self { x: Vec::with_capacity(n), y: Vec::with_capacity(n), z: Vec::with_capacity(n) }

@@ -4,7 +4,7 @@ use super::ended::Ended;
 use super::finished::print;
 use super::interrupt;
 use super::progress::Progress;
-use super::values::duration;
+use super::values::{Threads, duration, threads};
 use crate::base::error::Result;
 use crate::observe::Observer;
 use crate::run::{self, Resumable};
@@ -15,9 +15,9 @@ use std::time::Duration;
 pub struct Args {
     /// Folder of a run that was interrupted or killed, such as out/ka4
     run: PathBuf,
-    /// Threads [default: one per core]; the results are the same on any number
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    /// Threads: a number, or as many as make it faster, up to one per core; the results are the same on any number
+    #[arg(long, value_name = "N|auto", value_parser = threads, default_value = "auto")]
+    threads: Threads,
     /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept, exit code 130
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time_limit: Option<Duration>,
@@ -27,7 +27,7 @@ pub struct Args {
 }
 
 pub fn resume(args: &Args) -> Result<Ended> {
-    let threads = args.threads.map(usize::from);
+    let threads = args.threads.count();
     let resumable = Resumable::open(&args.run, threads, &mut note)?;
     go_on(resumable, args.time_limit, args.quiet)
 }

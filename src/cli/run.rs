@@ -7,7 +7,7 @@ use super::interrupt;
 use super::look::LookArgs;
 use super::progress::Progress;
 use super::resume::{go_on, note};
-use super::values::{SceneArgs, duration};
+use super::values::{SceneArgs, Threads, duration, threads};
 use crate::base::error::{Error, Result};
 use crate::observe::Observer;
 use crate::run::folder::{ANIMATION, SUMMARY};
@@ -38,9 +38,9 @@ pub struct Args {
     /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept, exit code 130
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time_limit: Option<Duration>,
-    /// Threads [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    /// Threads: a number, or as many as make it faster, up to one per core; the results are the same on any number
+    #[arg(long, value_name = "N|auto", value_parser = threads, default_value = "auto")]
+    threads: Threads,
     /// Draw no frames (this needs no graphics adapter)
     #[arg(long, conflicts_with = "animation")]
     no_frames: bool,
@@ -65,7 +65,7 @@ pub fn run(args: Args) -> Result<Ended> {
     args.look.apply(&mut scene.spec.output);
     let out = args.out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name));
     if args.resume && run::folder::has_checkpoint(&out) {
-        let resumable = Resumable::open(&out, args.threads.map(usize::from), &mut note)?;
+        let resumable = Resumable::open(&out, args.threads.count(), &mut note)?;
         resumable.check_scene(&scene)?;
         return go_on(resumable, args.time_limit, args.quiet);
     }
@@ -81,7 +81,7 @@ pub fn run(args: Args) -> Result<Ended> {
         overwrite: args.overwrite || (args.resume && run::folder::is_unfinished(&out)),
         out,
         wait: args.wait,
-        threads: args.threads.map(usize::from),
+        threads: args.threads.count(),
         frames: outputs::HAS_RENDER && !args.no_frames,
         recording: outputs::HAS_RECORD && !args.no_recording,
         live: args.live,

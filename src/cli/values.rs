@@ -53,6 +53,38 @@ impl SceneArgs {
     }
 }
 
+/// Threads of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Threads {
+    /// As many as help, found while it runs.
+    Auto,
+    /// So many.
+    Count(u16),
+}
+
+impl Threads {
+    /// The number, if one was given.
+    pub fn count(self) -> Option<usize> {
+        match self {
+            Self::Auto => None,
+            Self::Count(count) => Some(count.into()),
+        }
+    }
+}
+
+/// Reads a number of threads, or `auto`.
+pub fn threads(text: &str) -> std::result::Result<Threads, String> {
+    match text {
+        "auto" => Ok(Threads::Auto),
+        _ => text
+            .parse()
+            .ok()
+            .filter(|count| *count > 0)
+            .map(Threads::Count)
+            .ok_or_else(|| format!("not auto, nor a whole number from 1 to {}", u16::MAX)),
+    }
+}
+
 /// Reads what may be a built-in name or a path. Scenes and results name files in text, so a path must be text too.
 pub fn name_or_path() -> impl TypedValueParser<Value = String> {
     OsStringValueParser::new().try_map(|given| {

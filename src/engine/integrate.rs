@@ -1,11 +1,11 @@
 //! Leapfrog: forces gathered per particle in a fixed order, velocities kicked, positions drifted.
 
 use super::contact::spheres::second::SecondSides;
-use super::state::{BondActions, CHUNK, State};
+use super::state::{BondActions, CHUNK, RowChunks, State};
+use super::team::Team;
 use crate::base::lanes::{BLOCK, Lanes, Real};
 use crate::base::vectors::Vectors;
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// What there is to add up.
 #[derive(Clone, Copy)]
@@ -20,33 +20,20 @@ pub struct Parts<'a> {
 
 /// Adds up what bonds and contacts do to each particle: F_n and torques. Also lets wires thin: the radius of a particle
 /// is the mean over its bonds.
-pub fn gather(state: &mut State, parts: Parts, arch: Arch) {
+pub fn gather(state: &mut State, parts: Parts, arch: Arch, team: &Team) {
     let (bond, radius0) = (&state.bond, &state.radius0);
     let first_sides = parts.contacts.is_some().then_some([&state.contact_force, &state.contact_torque]);
     let (f, t) = (&mut state.force, &mut state.torque);
-    (
-        f.x.par_chunks_mut(CHUNK),
-        f.y.par_chunks_mut(CHUNK),
-        f.z.par_chunks_mut(CHUNK),
-        t.x.par_chunks_mut(CHUNK),
-        t.y.par_chunks_mut(CHUNK),
-        t.z.par_chunks_mut(CHUNK),
-        state.radius.par_chunks_mut(CHUNK),
-        state.thinned.par_chunks_mut(CHUNK),
-    )
-        .into_par_iter()
-        .with_max_len(1)
-        .enumerate()
-        .for_each(|(chunk, (fx, fy, fz, tx, ty, tz, radius, thinned))| {
-            let first = chunk * CHUNK;
-            let rows =
-                Rows { bond, first, actions: &bond.data[first * bond.fields()..(first + CHUNK) * bond.fields()] };
-            let (force, torque) = ([fx, fy, fz], [tx, ty, tz]);
-            arch.dispatch(Gather { rows, first_sides, parts, force, torque });
-            if parts.thin {
-                arch.dispatch(Thin { rows, radius, thinned, radius0: &radius0[first..] });
-            }
-        });
+    let radii = RowChunks::of([&mut state.radius, &mut state.thinned]);
+    let chunks = RowChunks::of(f.rows_mut()).zip(RowChunks::of(t.rows_mut())).zip(radii);
+    team.for_each(chunks, |chunk, ((force, torque), [radius, thinned])| {
+        let first = chunk * CHUNK;
+        let rows = Rows { bond, first, actions: &bond.data[first * bond.fields()..(first + CHUNK) * bond.fields()] };
+        arch.dispatch(Gather { rows, first_sides, parts, force, torque });
+        if parts.thin {
+            arch.dispatch(Thin { rows, radius, thinned, radius0: &radius0[first..] });
+        }
+    });
 }
 
 /// What the bonds of one chunk do.
@@ -167,31 +154,17 @@ impl WithSimd for Thin<'_> {
     }
 }
 
-/// Chunks that one task takes when there is little to do in each.
-const GRAIN: usize = 4;
-
 /// Velocities and spins over `dt` (s).
-pub fn kick(state: &mut State, dt: f64, turn: bool, arch: Arch) {
+pub fn kick(state: &mut State, dt: f64, turn: bool, arch: Arch, team: &Team) {
     let State { v, w, force, torque, inverse_mass, inverse_inertia, .. } = state;
     let (v, w) = (&mut *v, &mut *w);
-    (
-        v.x.par_chunks_mut(CHUNK),
-        v.y.par_chunks_mut(CHUNK),
-        v.z.par_chunks_mut(CHUNK),
-        w.x.par_chunks_mut(CHUNK),
-        w.y.par_chunks_mut(CHUNK),
-        w.z.par_chunks_mut(CHUNK),
-    )
-        .into_par_iter()
-        .with_min_len(GRAIN)
-        .enumerate()
-        .for_each(|(chunk, (vx, vy, vz, wx, wy, wz))| {
-            let first = chunk * CHUNK;
-            arch.dispatch(Kick { v: [vx, vy, vz], force, inverse_mass, first, dt });
-            if turn {
-                arch.dispatch(Kick { v: [wx, wy, wz], force: torque, inverse_mass: inverse_inertia, first, dt });
-            }
-        });
+    team.for_each(RowChunks::of(v.rows_mut()).zip(RowChunks::of(w.rows_mut())), |chunk, (v, w)| {
+        let first = chunk * CHUNK;
+        arch.dispatch(Kick { v, force, inverse_mass, first, dt });
+        if turn {
+            arch.dispatch(Kick { v: w, force: torque, inverse_mass: inverse_inertia, first, dt });
+        }
+    });
 }
 
 /// Velocities of one chunk: v += F/m dt.
@@ -223,19 +196,15 @@ impl WithSimd for Kick<'_> {
 
 /// Positions over `state.dt`; returns the greatest squared displacement of the step (m²), NaN when a position is not a
 /// number.
-pub fn drift(state: &mut State, arch: Arch) -> f64 {
+pub fn drift(state: &mut State, arch: Arch, team: &Team) -> f64 {
     let dt = state.dt;
     let (v, x) = (&state.v, &mut state.x);
-    (x.x.par_chunks_mut(CHUNK), x.y.par_chunks_mut(CHUNK), x.z.par_chunks_mut(CHUNK))
-        .into_par_iter()
-        .with_min_len(GRAIN)
-        .enumerate()
-        .map(|(chunk, (x, y, z))| {
-            let here = chunk * CHUNK..chunk * CHUNK + x.len();
-            let v = v.rows().map(|row| &row[here.clone()]);
-            arch.dispatch(Drift { x: [x, y, z], v, dt })
-        })
-        .reduce(|| 0.0, larger)
+    let largest = team.map(RowChunks::of(x.rows_mut()), |chunk, x| {
+        let here = chunk * CHUNK..chunk * CHUNK + x[0].len();
+        let v = v.rows().map(|row| &row[here.clone()]);
+        arch.dispatch(Drift { x, v, dt })
+    });
+    largest.into_iter().fold(0.0, larger)
 }
 
 /// Positions of one chunk.

@@ -23,6 +23,7 @@ pub mod state;
 mod step_choice;
 pub mod step_view;
 mod straight;
+pub mod team;
 pub mod time_step;
 mod timings;
 pub mod view;
@@ -44,12 +45,12 @@ use memory::StageBytes;
 use monitor::{Action, Monitor};
 use neighbours::Neighbours;
 use pulp::Arch;
-use rayon::prelude::*;
 use rupture::RuptureCheck;
 use saved::{Reader, Unfit, Writer};
 use state::{CHUNK, State};
 use std::time::Instant;
 use step_view::StepView;
+use team::{Team, Tuning};
 use time_step::{Bound, Element, Stiffness};
 pub use timings::Timings;
 use view::{Energy, Findings, RunInfo, Rupture, Sample, Snapshot};
@@ -91,6 +92,9 @@ pub struct Engine {
     timings: Timings,
     arch: Arch,
     monitor: Monitor,
+    team: Team,
+    /// None while all threads of the team work.
+    tuning: Option<Tuning>,
 }
 
 impl Engine {
@@ -122,7 +126,10 @@ impl Engine {
         let bonds = if plan.bonds { Some(build_bonds(spec, plan, &assembly)) } else { None };
         let measures = Measures::new(spec, &assembly, &holds);
         let least_radius = assembly.radius.iter().copied().fold(f64::MAX, f64::min);
+        let team = Team::new(rayon::current_num_threads().min(state.len().div_ceil(CHUNK)))?;
         let mut engine = Self {
+            team,
+            tuning: None,
             spec: spec.clone(),
             plan: plan.clone(),
             state,
@@ -164,12 +171,40 @@ impl Engine {
         });
     }
 
+    /// Works with `threads` threads from now on, or fewer where there is no work for as many. Bits do not depend on it.
+    ///
+    /// # Errors
+    /// [`Error::Missing`] when the system refuses them.
+    pub fn set_threads(&mut self, threads: usize) -> Result<()> {
+        (self.team, self.tuning) = (Team::new(threads.min(self.state.len().div_ceil(CHUNK)))?, None);
+        Ok(())
+    }
+
+    /// Finds out by itself from now on how many of its threads are worth having. Bits do not depend on it.
+    pub fn tune_threads(&mut self) {
+        self.tuning = Some(Tuning::new(self.team.size()));
+    }
+
+    /// Threads that work at its loops now, and how many it has.
+    pub fn threads(&self) -> [usize; 2] {
+        [self.team.working(), self.team.size()]
+    }
+
     /// Advances by one step.
     ///
     /// # Errors
     /// [`Error::Simulation`] when a value stops being finite or runs away, when wires pass through each other, and when a
     /// stage that was left out turns out to be needed.
     pub fn step(&mut self) -> Result<()> {
+        let began = Instant::now();
+        self.advance()?;
+        if let Some(tuning) = &mut self.tuning {
+            self.team.set_working(tuning.after_step(began.elapsed().as_secs_f64()));
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self) -> Result<()> {
         if self.state.step.is_multiple_of(BOUND_INTERVAL) && self.state.step > 0 {
             self.choose_step()?;
             self.watch()?;
@@ -177,12 +212,12 @@ impl Engine {
         let began = Instant::now();
         let kicked = 0.5 * (self.state.dt + self.next_dt);
         let turn = self.plan.rotations;
-        integrate::kick(&mut self.state, kicked, turn, self.arch);
+        integrate::kick(&mut self.state, kicked, turn, self.arch, &self.team);
         self.state.dt = self.next_dt;
         // Of the instant at which the forces act that the grips hold against.
         let strain = self.holds.strain();
         self.holds.apply(&mut self.state, kicked, self.arch);
-        let largest2 = integrate::drift(&mut self.state, self.arch);
+        let largest2 = integrate::drift(&mut self.state, self.arch, &self.team);
         self.state.step += 1;
         self.state.time += self.state.dt;
         self.measures.take(strain, &self.holds.reaction, self.bonds.as_deref(), self.state.dt);
@@ -193,7 +228,7 @@ impl Engine {
             return Err(self.failed(monitor::ran_away(&self.view(), RUNAWAY)));
         }
         if let Some(c) = &mut self.contacts {
-            c.stale |= c.neighbours.stale(&self.state, &self.holds.stretch);
+            c.stale |= c.neighbours.stale(&self.state, &self.holds.stretch, &self.team);
         }
         self.forces()
     }
@@ -202,7 +237,7 @@ impl Engine {
     fn forces(&mut self) -> Result<()> {
         let began = Instant::now();
         if let Some(bonds) = &mut self.bonds {
-            let partial = bonds.compute(&mut self.state);
+            let partial = bonds.compute(&mut self.state, &self.team);
             self.energy.plastic_bonds += partial.plastic;
             self.energy.damping += partial.damping;
         }
@@ -217,15 +252,15 @@ impl Engine {
         }
         if let Some(c) = &mut self.contacts {
             if c.stale {
-                let list = c.neighbours.search(&self.state, self.holds.stretch);
-                let lost = c.stage.rebuild(list, &self.state);
+                let list = c.neighbours.search(&self.state, self.holds.stretch, &self.team);
+                let lost = c.stage.rebuild(list, &self.state, &self.team);
                 self.energy.friction += lost.friction;
                 self.energy.released += lost.released;
                 c.stale = false;
             }
             let after_search = Instant::now();
             self.timings.neighbours += after_search - after_bonds;
-            let partial = c.stage.compute(&mut self.state);
+            let partial = c.stage.compute(&mut self.state, &self.team);
             self.energy.plastic_contacts += partial.plastic;
             self.energy.plastic_thinning += partial.thinning;
             self.energy.friction += partial.friction;
@@ -244,7 +279,7 @@ impl Engine {
             contacts: self.contacts.as_ref().map(|c| c.stage.second_sides()),
             thin: matches!(self.spec.bond.law, BondLawSpec::ElastoPlastic(_)),
         };
-        integrate::gather(&mut self.state, parts, self.arch);
+        integrate::gather(&mut self.state, parts, self.arch, &self.team);
         self.timings.integrate += before_gather.elapsed();
         Ok(())
     }
@@ -297,7 +332,7 @@ impl Engine {
         let (chunks, horizon) = (state.len().div_ceil(CHUNK), BOUND_INTERVAL as f64 * self.next_dt);
         // The laws of contacts are asked once; what follows from their answers is cheap, and made twice.
         let stiffness = |chunk: usize| contacts.map_or_else(Vec::new, |c| c.stage.stiffness(state, chunk, horizon));
-        let stiffness: Vec<_> = (0..chunks).into_par_iter().map(stiffness).collect();
+        let stiffness = self.team.map(0..chunks, |chunk, _| stiffness(chunk));
         // All bonds come before all contacts.
         let elements = |part: usize, each: &mut dyn FnMut(Element)| match (part.checked_sub(chunks), bonds, contacts) {
             (None, Some(bonds), _) => bonds.elements(state, part, each),
@@ -305,7 +340,7 @@ impl Engine {
             _ => {}
         };
         let (resolution, held) = (self.spec.time.contact_resolution, |p: usize| state.hold[p] != 0);
-        self.bound = self.stiffness.bound(2 * chunks, elements, state, resolution, held);
+        self.bound = self.stiffness.bound(2 * chunks, elements, state, resolution, held, &self.team);
         self.timings.time_step += began.elapsed();
         self.next_dt = step_choice::choose(&self.view())?;
         self.show(|monitor, view| monitor.look_at_step(view));
@@ -409,6 +444,7 @@ impl Engine {
             bonds: self.bonds.as_deref(),
             contacts: self.contacts.as_ref().map(|c| &*c.stage),
             neighbours: self.contacts.as_ref().map(|c| &c.neighbours),
+            team: &self.team,
             holds: &self.holds,
             measures: &self.measures,
             ledger: &self.energy,

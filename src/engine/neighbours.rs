@@ -6,11 +6,11 @@
 use super::bytes::{behind, behind_all};
 use super::saved::{Reader, Unfit, Writer};
 use super::state::{CHUNK, State};
+use super::team::Team;
 use crate::base::vectors::Vectors;
 use crate::scene::spec::Shape;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// The search follows bonds up to this multiple of the longest stress-free length (-): one bond that necks without end
@@ -104,7 +104,7 @@ impl Neighbours {
 
     /// Whether a pair may have come within reach unseen. Particles are looked at only once [`State::travel`] allows that
     /// one has: a search lasts for hundreds of steps.
-    pub fn stale(&mut self, state: &State, now: &Stretch) -> bool {
+    pub fn stale(&mut self, state: &State, now: &Stretch, team: &Team) -> bool {
         if self.rebuilds == 0 {
             return true;
         }
@@ -114,7 +114,7 @@ impl Neighbours {
         let length = self.stretch.gauge[1] + self.stretch.displacement - self.stretch.gauge[0];
         let strain = if length > 0.0 { ((now.displacement - self.stretch.displacement) / length).abs() } else { 0.0 };
         let reach = 2.0 * self.largest + self.margin + self.skin;
-        let left = self.skin - 2.0 * self.residual(state, now) - strain * reach;
+        let left = self.skin - 2.0 * self.residual(state, now, team) - strain * reach;
         // While no particle goes further than 1, held ones included, a residual grows by 2 and the strain by 1/length.
         let closing = 4.0 + if length > 0.0 { reach / length } else { 0.0 };
         self.safe_until = state.travel + left / closing;
@@ -122,7 +122,7 @@ impl Neighbours {
     }
 
     /// Greatest distance of a particle from where the affine stretch since the last search would have it (m).
-    fn residual(&self, state: &State, now: &Stretch) -> f64 {
+    fn residual(&self, state: &State, now: &Stretch, team: &Team) -> f64 {
         let [low, high] = self.stretch.gauge;
         let length = high + self.stretch.displacement - low;
         let moved = now.displacement - self.stretch.displacement;
@@ -132,8 +132,10 @@ impl Neighbours {
             let affine = moved * ((before.z - low) * inverse_length).clamp(0.0, 1.0);
             (state.x.get(p) - before - DVec3::Z * affine).length_squared()
         };
-        let particles = (0..state.len()).into_par_iter().with_min_len(CHUNK);
-        particles.map(square).reduce(|| 0.0, f64::max).sqrt()
+        let greatest =
+            |chunk: usize| (chunk * CHUNK..state.len().min((chunk + 1) * CHUNK)).map(square).fold(0.0, f64::max);
+        let found = team.map(0..state.len().div_ceil(CHUNK), |chunk, _| greatest(chunk));
+        found.into_iter().fold(0.0, f64::max).sqrt()
     }
 
     /// Puts in the last search.
@@ -163,7 +165,7 @@ impl Neighbours {
     }
 
     /// Finds all candidate pairs anew.
-    pub fn search(&mut self, state: &State, now: Stretch) -> &PairList {
+    pub fn search(&mut self, state: &State, now: Stretch, team: &Team) -> &PairList {
         self.reference.clone_from(&state.x);
         self.stretch = now;
         self.safe_until = 0.0;
@@ -189,7 +191,7 @@ impl Neighbours {
             }
             out
         };
-        let found: Vec<Vec<(u32, u32)>> = (0..chunks).into_par_iter().map(around).collect();
+        let found = team.map(0..chunks, |chunk, _| around(chunk));
         self.list.pairs = found.concat();
         self.add_parted(state);
         &self.list
@@ -415,7 +417,7 @@ mod tests {
     fn search_finds_what_brute_force_finds() {
         let (assembly, state) = cloud(700, 1.0, 0.04);
         let mut neighbours = Neighbours::new(&assembly, 0.01, Shape::Sphere);
-        let found = neighbours.search(&state, Stretch::default()).pairs.clone();
+        let found = neighbours.search(&state, Stretch::default(), &Team::alone()).pairs.clone();
         let mut expected = Vec::new();
         for i in 0..state.len() {
             for j in i + 1..state.len() {
@@ -438,7 +440,9 @@ mod tests {
         assembly.position =
             [0.0, 0.6, 0.3].map(|x| DVec3::new(x, if x == 0.3 { 0.119 } else { 0.0 }, 0.0)).into_iter().collect();
         let state = State::new(&assembly, true);
-        let found = |shape| Neighbours::new(&assembly, 0.01, shape).search(&state, Stretch::default()).pairs.clone();
+        let found = |shape| {
+            Neighbours::new(&assembly, 0.01, shape).search(&state, Stretch::default(), &Team::alone()).pairs.clone()
+        };
         assert!(found(Shape::Wire).contains(&(0, 2)) && found(Shape::Wire).contains(&(1, 2)));
     }
 
@@ -464,8 +468,8 @@ mod tests {
             }
             // What the motion until here amounts to.
             state.travel = d;
-            if neighbours.stale(&state, &now) {
-                neighbours.search(&state, now);
+            if neighbours.stale(&state, &now, &Team::alone()) {
+                neighbours.search(&state, now, &Team::alone());
             }
         }
         // Each search lasts for a strain of about skin / (diameter + skin) = 13 %.

@@ -4,9 +4,36 @@ use crate::base::vectors::Vectors;
 use crate::strand::assembly::Assembly;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::slice::ChunksMut;
 
 /// Number of items that one task works on. Fixed, so that partial sums do not depend on the number of threads.
 pub const CHUNK: usize = 256;
+
+/// Rows of numbers of all particles, chunk by chunk: as many rows at a time, from the same particles.
+pub struct RowChunks<'a, const N: usize>([ChunksMut<'a, f64>; N]);
+
+impl<'a, const N: usize> RowChunks<'a, N> {
+    /// Of `rows` that are all of one length.
+    pub fn of(rows: [&'a mut [f64]; N]) -> Self {
+        Self(rows.map(|row| row.chunks_mut(CHUNK)))
+    }
+}
+
+impl<'a, const N: usize> Iterator for RowChunks<'a, N> {
+    type Item = [&'a mut [f64]; N];
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let next = self.0.each_mut().map(Iterator::next);
+        next.iter().all(Option::is_some).then(|| next.map(Option::unwrap_or_default))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let least = self.0.iter().map(ExactSizeIterator::len).min().unwrap_or(0);
+        (least, Some(least))
+    }
+}
+
+impl<const N: usize> ExactSizeIterator for RowChunks<'_, N> {}
 
 /// What bonds do to their two particles, in blocks of [`CHUNK`] slots, field after field.
 #[derive(Serialize, Deserialize)]

@@ -7,6 +7,7 @@ use super::grips::Holds;
 use super::measure::Measures;
 use super::neighbours::Neighbours;
 use super::state::State;
+use super::team::Team;
 use super::time_step::Bound;
 use super::view::{BondState, Energy, Sample, Snapshot};
 use crate::base::finding::{Body, Instant, Member};
@@ -31,6 +32,8 @@ pub struct StepView<'a> {
     pub contacts: Option<&'a dyn Contacts>,
     /// Their candidates.
     pub neighbours: Option<&'a Neighbours>,
+    /// The threads that work at it.
+    pub team: &'a Team,
     /// Grips, holds and loads.
     pub holds: &'a Holds,
     /// Running means.

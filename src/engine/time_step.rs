@@ -11,9 +11,9 @@
 
 use super::bytes::behind;
 use super::state::State;
+use super::team::Team;
 use crate::base::finding::{self, StiffnessMode};
 use crate::law::bond::BondStiffness;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// One bond or contact as the bound sees it.
@@ -91,6 +91,9 @@ impl Element {
         (self.across * arm * arm).max(self.bend).max(self.twist)
     }
 }
+
+/// Parts whose elements are there at once while they are added up.
+const WAVE: usize = 64;
 
 /// What limits the time step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -170,6 +173,7 @@ impl Stiffness {
         state: &State,
         resolution: f64,
         held: impl Fn(usize) -> bool + Sync,
+        team: &Team,
     ) -> Bound {
         self.particles.clear();
         self.particles.resize(state.len(), Sums::default());
@@ -183,13 +187,22 @@ impl Stiffness {
                 sums.viscous[1] += e.viscous[1] * weight;
             }
         };
-        (0..parts).for_each(|part| elements(part, &mut add));
-        let found = (0..parts).into_par_iter().map(|part| {
+        // Added up by one thread, in their order; what is to be added up, by all: a wave of parts at a time, so that there is
+        // never much of it.
+        for wave in (0..parts).step_by(WAVE) {
+            let listed = team.map(wave..parts.min(wave + WAVE), |_, part| {
+                let mut list = Vec::new();
+                elements(part, &mut |e| list.push(e));
+                list
+            });
+            listed.into_iter().flatten().for_each(&mut add);
+        }
+        let found = team.map(0..parts, |part, _| {
             let mut worst = Worst::default();
             elements(part, &mut |e| self.look_at(&e, state, resolution, &held, &mut worst));
             worst
         });
-        let found = found.reduce(Worst::default, Worst::with);
+        let found = found.into_iter().fold(Worst::default(), Worst::with);
         let mut bound = Bound { step: f64::INFINITY, ..Default::default() };
         if let Some((eigenvalue, mode, e)) = found.stiffest {
             let omega = eigenvalue.sqrt();

@@ -113,6 +113,11 @@ fn cost(summary: &RunSummary) -> String {
     if let Some(ms) = cost.ms_per_step {
         let _ = write!(text, ", {ms:.3} ms per step");
     }
-    let _ = write!(text, " on {}", counted(cost.threads, "thread"));
+    let _ = match cost.threads_available {
+        available if available > cost.threads => {
+            write!(text, " on {} of {} (more were no faster)", cost.threads, counted(available, "thread"))
+        }
+        _ => write!(text, " on {}", counted(cost.threads, "thread")),
+    };
     text
 }

@@ -219,8 +219,11 @@ pub struct Cost {
     pub cpu_s: Option<f64>,
     /// Wall time in the engine over steps, output not included (ms).
     pub ms_per_step: Option<f64>,
-    /// Threads that the engine had.
+    /// Threads that the engine worked with, at the end where it chose them itself.
     pub threads: usize,
+    /// Threads that it could choose from.
+    #[serde(default)]
+    pub threads_available: usize,
     /// Where the time of the frames went; `None` when none were drawn.
     pub frames: Option<Timings>,
     /// Versions of this program and of what its output depends on.

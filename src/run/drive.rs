@@ -43,6 +43,8 @@ pub struct Outcome {
     pub stepping: Duration,
     /// Wall time spent in observers.
     pub observing: Duration,
+    /// Threads that worked at the end, and how many there were to choose from.
+    pub threads: [usize; 2],
 }
 
 /// Simulates the assembly of a scene and its plan, and shows it to observers; writes nothing itself.
@@ -188,6 +190,7 @@ pub(super) fn drive(
         limits: Limits::new(driver.engine.findings(), driver.state.guard.greatest_residual()),
         stepping,
         observing,
+        threads: driver.engine.threads(),
     };
     Ok((outcome, error))
 }

@@ -13,7 +13,7 @@ pub struct RunOptions {
     pub overwrite: bool,
     /// Wait until no other process writes into that folder, instead of refusing.
     pub wait: bool,
-    /// Threads of the engine; `None`: as many as the machine has.
+    /// Threads of the engine; `None`: as many as make it faster, up to one per core.
     pub threads: Option<usize>,
     /// Draw numbered pictures into `frames/`.
     pub frames: bool,

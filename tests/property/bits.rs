@@ -21,6 +21,25 @@ fn threads_do_not_change_a_bit() {
     for threads in [2, 3] {
         run(threads).assert_same(&one, &format!("{threads} threads"));
     }
+    // As many as it finds best, and others halfway.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
+    let mut tuned = pool.install(|| engine(STRAND, &set));
+    assert_eq!(tuned.threads(), [4, 4]);
+    tuned.tune_threads();
+    run_steps(&mut tuned, 500);
+    assert!((1..=4).contains(&tuned.threads()[0]), "{:?}", tuned.threads());
+    tuned.set_threads(2).unwrap();
+    assert_eq!(tuned.threads(), [2, 2]);
+    run_steps(&mut tuned, 300);
+    Outcome::of(&mut tuned).assert_same(&one, "threads that change");
+}
+
+#[test]
+fn no_more_threads_than_there_is_work_for() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(8).build().unwrap();
+    // 301 particles: two chunks.
+    let wire = pool.install(|| engine(WIRE, &["wire.0.to=[\"0 mm\", \"0 mm\", \"120 mm\"]"]));
+    assert_eq!((wire.assembly().len().div_ceil(256), wire.threads()), (2, [2, 2]));
 }
 
 const WIRE: &str = r#"

@@ -20,6 +20,7 @@ use crate::engine::rupture::{Criterion, RuptureCheck};
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::shared_rows::SharedRows;
 use crate::engine::state::{BondActions, CHUNK, ChunkSums, State};
+use crate::engine::team::Team;
 use crate::engine::time_step::Element;
 use crate::law::bond::{BondForce, BondLaw, BondShape, Section};
 use crate::law::damping::viscous_coefficient;
@@ -27,12 +28,11 @@ use crate::strand::assembly::Assembly;
 use kernel::Chunk;
 use layout::{CONSTANTS, Layout, MODES, SHAPE, force, place, shape};
 use pulp::Arch;
-use rayon::prelude::*;
 
 /// What the engine asks of bonds, whatever their law.
 pub trait Bonds: Send + Sync {
     /// Computes every bond's action on its particles from `state`; returns the energies of the step.
-    fn compute(&mut self, state: &mut State) -> ChunkSums;
+    fn compute(&mut self, state: &mut State, team: &Team) -> ChunkSums;
     /// Breaks the bonds that reached their limit; calls `broke(slot, cause, true axial stress [Pa])` for each, in order,
     /// and returns the elastic energy that they held (J).
     fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64;
@@ -183,30 +183,23 @@ fn power(state: &State, slot: usize) -> f64 {
 }
 
 impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
-    fn compute(&mut self, state: &mut State) -> ChunkSums {
+    fn compute(&mut self, state: &mut State, team: &Team) -> ChunkSums {
         let blocks = CHUNK / BLOCK;
         let fields = state.bond.fields();
         let (law, kind, constants, arch) = (&self.law, &self.kind, self.constants.rows(), self.arch);
         let limit = self.rupture.as_ref().and_then(RuptureCheck::plastic_limit);
         let (x, v, w, dt, damped) = (&state.x, &state.v, &state.w, state.dt, self.damped);
-        (
-            self.records.par_chunks_mut(blocks * BLOCK * Layout::<L, TURN>::FIELDS),
-            state.bond.data.par_chunks_mut(CHUNK * fields),
-            self.partial.par_iter_mut(),
-            self.due.par_iter_mut(),
-        )
-            .into_par_iter()
-            .with_max_len(1)
-            .enumerate()
-            .for_each(|(chunk, (records, actions, partial, due))| {
-                let first = chunk * CHUNK;
-                let kind = &kind[first / BLOCK..];
-                // The first evaluation, before any step, has no dashpots: their work would go unbooked.
-                let damped = damped && dt > 0.0;
-                let job =
-                    Chunk::<L, TURN> { law, first, x, v, w, dt, records, kind, constants, damped, limit, actions };
-                (*partial, *due) = arch.dispatch(job);
-            });
+        let records = self.records.chunks_mut(blocks * BLOCK * Layout::<L, TURN>::FIELDS);
+        let results = self.partial.iter_mut().zip(&mut self.due);
+        let chunks = records.zip(state.bond.data.chunks_mut(CHUNK * fields)).zip(results);
+        team.for_each(chunks, |chunk, ((records, actions), (partial, due))| {
+            let first = chunk * CHUNK;
+            let kind = &kind[first / BLOCK..];
+            // The first evaluation, before any step, has no dashpots: their work would go unbooked.
+            let damped = damped && dt > 0.0;
+            let job = Chunk::<L, TURN> { law, first, x, v, w, dt, records, kind, constants, damped, limit, actions };
+            (*partial, *due) = arch.dispatch(job);
+        });
         let mut sum = ChunkSums::default();
         self.partial.iter().for_each(|p| sum.add(p));
         sum

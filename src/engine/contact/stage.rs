@@ -5,16 +5,17 @@ use crate::engine::bytes::Bytes;
 use crate::engine::neighbours::PairList;
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{ChunkSums, State};
+use crate::engine::team::Team;
 use crate::engine::time_step::Element;
 use crate::strand::assembly::Assembly;
 
 /// Contacts of a run.
 pub trait Contacts: Send + Sync {
     /// Takes a new list of candidates; history of pairs that stay is kept. Returns what was lost with pairs that left.
-    fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums;
+    fn rebuild(&mut self, list: &PairList, state: &State, team: &Team) -> ChunkSums;
     /// Computes all contacts and adds them up per particle in `state`, but for [`Self::second_sides`]; returns the
     /// energies of the step.
-    fn compute(&mut self, state: &mut State) -> ChunkSums;
+    fn compute(&mut self, state: &mut State, team: &Team) -> ChunkSums;
     /// What contacts do besides what they have added up.
     fn second_sides(&self) -> Option<SecondSides<'_>>;
     /// Stored elastic energy at the positions of the last call of `compute` (J).

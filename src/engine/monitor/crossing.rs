@@ -10,11 +10,11 @@
 use crate::base::vectors::Vectors;
 use crate::engine::neighbours::Neighbours;
 use crate::engine::state::State;
+use crate::engine::team::Team;
 use crate::scene::spec::Shape;
 use glam::DVec3;
-use rayon::prelude::*;
 
-/// Candidates that one task looks at.
+/// Candidates that a thread looks at, one after the other.
 const GRAIN: usize = 2048;
 /// Halvings in the search for the instant at which two segments lie in one plane.
 const HALVINGS: usize = 40;
@@ -31,13 +31,13 @@ pub struct Crossing {
 }
 
 /// The first pair, in the order of the list, that crossed since the last neighbour search, or of which one is in the other.
-pub fn crossing(neighbours: &Neighbours, state: &State, wire_of: &[u32]) -> Option<Crossing> {
+pub fn crossing(neighbours: &Neighbours, state: &State, wire_of: &[u32], team: &Team) -> Option<Crossing> {
     let (list, before) = neighbours.last();
     // Segments that cross have two ends within √½ of a length; before and after they may be a skin further apart.
     let near = std::f64::consts::FRAC_1_SQRT_2 * neighbours.longest() + neighbours.skin();
     let near2 = near * near;
     let look = Look { before, state, wire_of, shape: neighbours.shape() };
-    list.pairs.par_iter().with_min_len(GRAIN).find_map_first(|(i, j)| {
+    let crossed = |(i, j): &(u32, u32)| {
         let (i, j) = (*i as usize, *j as usize);
         if look.is_sphere(i) || look.is_sphere(j) {
             return look.inside(i, j);
@@ -48,7 +48,8 @@ pub fn crossing(neighbours: &Neighbours, state: &State, wire_of: &[u32]) -> Opti
         let [first, second] = [i, j].map(|p| [p.checked_sub(1), Some(p)]);
         let pairs = first.into_iter().flatten().flat_map(|a| second.into_iter().flatten().map(move |b| [a, b]));
         pairs.filter_map(|bonds| look.at(bonds)).next()
-    })
+    };
+    team.map(list.pairs.chunks(GRAIN), |_, pairs| pairs.iter().find_map(crossed)).into_iter().flatten().next()
 }
 
 struct Look<'a> {

@@ -228,7 +228,7 @@ impl Monitor {
 /// Bodies that passed through each other since the last neighbour search: what a run finds after that has nothing to do
 /// with them.
 pub fn crossed(view: &StepView) -> Option<Failure> {
-    let found = crossing(view.neighbours?, view.state, &view.assembly.wire_of)?;
+    let found = crossing(view.neighbours?, view.state, &view.assembly.wire_of, view.team)?;
     Some(Failure::PassedThrough {
         between: found.between.map(|slot| view.member(slot)),
         z_m: found.position.z,

@@ -3,6 +3,7 @@ use crate::base::finding::Body;
 use crate::engine::grips::Holds;
 use crate::engine::measure::Measures;
 use crate::engine::state::State;
+use crate::engine::team::Team;
 use crate::engine::time_step::Bound;
 use crate::engine::view::Energy;
 use crate::scene::plan::Plan;
@@ -20,6 +21,7 @@ struct Bench {
     bound: Bound,
     ledger: Energy,
     time_step: f64,
+    team: Team,
 }
 
 impl Bench {
@@ -41,7 +43,7 @@ impl Bench {
         let holds = Holds::new(&spec, &assembly, &mut state).unwrap();
         let measures = Measures::new(&spec, &assembly, &holds);
         let (bound, ledger) = (Bound::default(), Energy::default());
-        Self { spec, plan, assembly, state, holds, measures, bound, ledger, time_step: 1e-8 }
+        Self { spec, plan, assembly, state, holds, measures, bound, ledger, time_step: 1e-8, team: Team::alone() }
     }
 
     fn view(&self) -> StepView<'_> {
@@ -50,6 +52,7 @@ impl Bench {
             plan: &self.plan,
             assembly: &self.assembly,
             state: &self.state,
+            team: &self.team,
             bonds: None,
             contacts: None,
             neighbours: None,

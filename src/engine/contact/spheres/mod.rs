@@ -21,7 +21,8 @@ use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::PairList;
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::shared_rows::SharedRows;
-use crate::engine::state::{BondActions, CHUNK, ChunkSums, ContactSides, Deepest, State};
+use crate::engine::state::{BondActions, CHUNK, ChunkSums, ContactSides, Deepest, RowChunks, State};
+use crate::engine::team::Team;
 use crate::engine::time_step::Element;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{reduced_mass, reduced_radius};
@@ -30,7 +31,6 @@ use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
 use block::{Block, key, pair};
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 use second::{Places, SecondSides};
 use store::Store;
 
@@ -191,43 +191,30 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
-    fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums {
+    fn rebuild(&mut self, list: &PairList, state: &State, team: &Team) -> ChunkSums {
         let mut stores = std::mem::take(&mut self.stores);
         stores.resize_with(state.len().div_ceil(CHUNK), Store::default);
         let from = |chunk: usize| list.pairs.partition_point(|(i, _)| (*i as usize) < chunk * CHUNK);
-        let renewed = stores.par_iter_mut().enumerate().map(|(chunk, store)| {
+        let lost = team.map(stores.iter_mut(), |chunk, store| {
             let (new, lost) = self.renewed(&list.pairs[from(chunk)..from(chunk + 1)], store, state);
             *store = new;
             lost
         });
-        let lost: Vec<Vec<f64>> = renewed.collect();
         self.stores = stores;
         self.index(state);
         let friction = lost.iter().flatten().fold(0.0, |sum, lost| sum + lost);
         ChunkSums { friction, ..ChunkSums::default() }
     }
 
-    fn compute(&mut self, state: &mut State) -> ChunkSums {
+    fn compute(&mut self, state: &mut State, team: &Team) -> ChunkSums {
         let (laws, arch, deepest, closing) = (&self.laws, self.arch, self.deepest, self.closing);
         let constants = self.constants.rows();
-        let (seen, ContactSides { force: [fx, fy, fz], torque: [tx, ty, tz] }) = state.split_contacts();
-        (
-            self.stores.par_iter_mut(),
-            fx.par_chunks_mut(CHUNK),
-            fy.par_chunks_mut(CHUNK),
-            fz.par_chunks_mut(CHUNK),
-            tx.par_chunks_mut(CHUNK),
-            ty.par_chunks_mut(CHUNK),
-            tz.par_chunks_mut(CHUNK),
-        )
-            .into_par_iter()
-            .with_max_len(1)
-            .enumerate()
-            .for_each(|(chunk, (store, fx, fy, fz, tx, ty, tz))| {
-                let sides = ContactSides { force: [fx, fy, fz], torque: [tx, ty, tz] };
-                let first = chunk * CHUNK;
-                arch.dispatch(kernel::Chunk { laws, seen: &seen, deepest, closing, constants, first, store, sides });
-            });
+        let (seen, ContactSides { force, torque }) = state.split_contacts();
+        let chunks = self.stores.iter_mut().zip(RowChunks::of(force).zip(RowChunks::of(torque)));
+        team.for_each(chunks, |chunk, (store, (force, torque))| {
+            let (first, sides) = (chunk * CHUNK, ContactSides { force, torque });
+            arch.dispatch(kernel::Chunk { laws, seen: &seen, deepest, closing, constants, first, store, sides });
+        });
         let mut sum = ChunkSums::beyond(deepest);
         self.stores.iter().for_each(|store| sum.add(&store.partial));
         self.deepest = sum.deepest;

@@ -36,6 +36,7 @@ use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::{PairList, apart};
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{CHUNK, ChunkSums, Deepest, State};
+use crate::engine::team::Team;
 use crate::engine::time_step::Element;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{reduced_mass, reduced_radius};
@@ -48,7 +49,6 @@ use chunk::Chunk;
 use curve::{Around, Place, Weights};
 use meeting::Meets;
 use pulp::Arch;
-use rayon::prelude::*;
 use record::{Contact, Kind, Mode};
 use spread::{FarSum, NearSum, Spread};
 use store::{Candidate, Store};
@@ -238,17 +238,16 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
-    fn rebuild(&mut self, list: &PairList, state: &State) -> ChunkSums {
+    fn rebuild(&mut self, list: &PairList, state: &State, team: &Team) -> ChunkSums {
         let directed = self.directed(list, state);
         let mut stores = std::mem::take(&mut self.stores);
         stores.resize_with(state.len().div_ceil(CHUNK), Store::default);
         let from = |chunk: usize| directed.partition_point(|(i, _)| (*i as usize) < chunk * CHUNK);
-        let renewed = stores.par_iter_mut().enumerate().map(|(chunk, store)| {
+        let lost = team.map(stores.iter_mut(), |chunk, store| {
             let (new, lost) = self.renewed(&directed[from(chunk)..from(chunk + 1)], chunk, store, state);
             *store = new;
             lost
         });
-        let lost: Vec<Vec<ChunkSums>> = renewed.collect();
         self.stores = stores;
         self.spread.resize(state.len());
         let mut sum = ChunkSums::default();
@@ -256,16 +255,15 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         sum
     }
 
-    fn compute(&mut self, state: &mut State) -> ChunkSums {
+    fn compute(&mut self, state: &mut State, team: &Team) -> ChunkSums {
         let Self { laws, line, chains, closing, arch, deepest, stores, spread, .. } = self;
         let (arch, before) = (*arch, *deepest);
         let meets = Meets { laws, line, state: &*state, chains, closing: *closing };
-        let chunks = (stores.par_iter_mut(), spread.near.par_chunks_mut(CHUNK)).into_par_iter().with_max_len(1);
-        chunks.enumerate().for_each(|(chunk, (store, near))| {
+        team.for_each(stores.iter_mut().zip(spread.near.chunks_mut(CHUNK)), |chunk, (store, near)| {
             Chunk { meets, arch, first: chunk * CHUNK, store, near }.compute(before);
         });
         let acting: Vec<&[FarSum]> = stores.iter().map(|store| &store.acting[..]).collect();
-        spread.finish(&acting, chains, state, T::ACTIVE);
+        spread.finish(&acting, chains, state, T::ACTIVE, team);
         let mut sum = ChunkSums::beyond(before);
         stores.iter().for_each(|store| sum.add(&store.sum));
         *deepest = sum.deepest;

@@ -7,9 +7,9 @@
 use super::chains::Chains;
 use super::curve::{Around, spread_arc};
 use crate::engine::bytes::behind;
-use crate::engine::state::{CHUNK, State};
+use crate::engine::state::{CHUNK, RowChunks, State};
+use crate::engine::team::Team;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// Bonds along which a stretch, and particles along which a bond hands its forces on.
 const NEAR: usize = 4;
@@ -116,21 +116,14 @@ impl Spread {
     /// Adds up what contacts do to bonds (`acting`, a list per chunk), and writes the forces and, with `turn`, the moments of
     /// all particles. Bonds at the edge of a chunk are added up for both of the chunks that they concern: so no thread waits
     /// for another, and there is no list of all bonds.
-    pub fn finish(&mut self, acting: &[&[FarSum]], chains: &Chains, state: &mut State, turn: bool) {
+    pub fn finish(&mut self, acting: &[&[FarSum]], chains: &Chains, state: &mut State, turn: bool, team: &Team) {
         self.sort(acting);
         let (near, spread) = (&self.near[..], &*self);
         let (mut force, mut torque) =
             (std::mem::take(&mut state.contact_force), std::mem::take(&mut state.contact_torque));
         let seen = &*state;
-        let rows = (
-            force.x.par_chunks_mut(CHUNK),
-            force.y.par_chunks_mut(CHUNK),
-            force.z.par_chunks_mut(CHUNK),
-            torque.x.par_chunks_mut(CHUNK),
-            torque.y.par_chunks_mut(CHUNK),
-            torque.z.par_chunks_mut(CHUNK),
-        );
-        rows.into_par_iter().enumerate().for_each(|(chunk, (x, y, z, tx, ty, tz))| {
+        let rows = RowChunks::of(force.rows_mut()).zip(RowChunks::of(torque.rows_mut()));
+        team.for_each(rows, |chunk, ([x, y, z], [tx, ty, tz])| {
             let first = chunk * CHUNK;
             let end = first + x.len();
             [&mut *x, &mut *y, &mut *z].into_iter().for_each(|row| row.fill(0.0));
