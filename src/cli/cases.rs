@@ -3,8 +3,9 @@
 use super::interrupt;
 use super::say::say;
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::run::lock::Lock;
-use crate::study::runner::{CaseRunner, Progress, Status, cores};
+use crate::study::runner::{CaseRunner, CaseStore, Progress, Status, cores};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 
@@ -71,14 +72,12 @@ impl CaseArgs {
     /// # Errors
     /// A folder that cannot be made, or a file that is one.
     pub fn prepare(&self, command: &str) -> Result<()> {
-        let make =
-            |folder: &Path| std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e));
-        self.plots(command).map_or(Ok(()), |folder| make(&folder))?;
+        self.plots(command).map_or(Ok(()), |folder| regular::make_folder(&folder))?;
         match &self.json {
-            Some(file) if file.is_dir() => {
-                Err(Error::input(format!("--json {} is a folder", file.display()), "give the name of a file"))
+            Some(file) => {
+                regular::replaceable(file)?;
+                file.parent().map_or(Ok(()), regular::make_folder)
             }
-            Some(file) => file.parent().map_or(Ok(()), make),
             None => Ok(()),
         }
     }
@@ -89,9 +88,19 @@ impl CaseArgs {
 /// # Errors
 /// [`Error::Input`] with the number of the process that has it; [`Error::Io`].
 pub fn lock(folder: &Path, part: bool) -> Result<Lock> {
-    std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
+    regular::make_folder(folder)?;
     if part { Lock::share(folder) } else { Lock::take(folder) }
 }
+
+/// Says which records of finished cases cannot be used, and what becomes of their cases.
+pub fn tell_damaged(store: &CaseStore, fate: &str) {
+    for (file, why) in store.damaged() {
+        eprintln!("note: {} is damaged ({why}); {fate}", file.display());
+    }
+}
+
+/// What becomes of a case whose record is damaged, where cases are run.
+pub const RUN_AGAIN: &str = "its case is computed again";
 
 /// Parts of a progress line that shows a share of the work.
 const PARTS: u64 = 1000;

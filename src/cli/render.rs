@@ -107,7 +107,7 @@ fn one_view(args: &Args, words: &str) -> Result<Ended> {
     let mut output = crate::scene::spec::OutputSpec::default();
     args.look.apply(&mut output);
     let bytes = picture(&args.run, &View::parse(words)?, output.frame_size)?;
-    std::fs::create_dir_all(&out).map_err(|e| Error::io("cannot create the folder", &out, e))?;
+    crate::base::regular::make_folder(&out)?;
     crate::render::png::write(&file, &bytes)?;
     say!("the view is in {}", file.display());
     Ok(Ended::Well)

@@ -4,6 +4,7 @@ use super::animation::{self, Still};
 use super::frame::Renderer;
 use super::{adapter, png};
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use crate::observe::animation::Animation;
@@ -59,7 +60,7 @@ impl FrameWriter {
     /// When there is no adapter or when the folder cannot be made.
     pub fn new(folder: &Path, look: &OutputSpec) -> Result<Self> {
         adapter::check()?;
-        std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
+        regular::make_folder(folder)?;
         Ok(Self {
             folder: folder.to_owned(),
             look: look.clone(),

@@ -85,9 +85,7 @@ impl OutFolder {
     /// [`Error::Input`] when it holds something and `overwrite` is not set, is no folder, another process writes into it, or
     /// what has the name of a result is no regular file; [`Error::Io`] when it cannot be written.
     pub fn check(path: &Path, overwrite: bool) -> Result<Self> {
-        if path.exists() && !path.is_dir() {
-            return Err(Error::input(format!("{} is not a folder", path.display()), "give another one with --out"));
-        }
+        regular::check_folder(path)?;
         let folder = Self { path: path.into(), overwrite };
         if let Some(by) = lock::holder(path) {
             return Err(lock::held(path, &by));
@@ -172,7 +170,7 @@ impl OutFolder {
 
     /// Makes and locks it; what came meanwhile is looked at again.
     fn take(&self) -> Result<Lock> {
-        fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
+        regular::make_folder(&self.path)?;
         let lock = Lock::take(&self.path)?;
         self.check_content()?;
         Ok(lock)
@@ -235,11 +233,7 @@ fn probe(path: &Path) -> Result<()> {
     let refuse = |e| Error::io("cannot write into the folder", path, e);
     let absolute = std::path::absolute(path).map_err(refuse)?;
     let existing = absolute.ancestors().find(|a| a.exists()).unwrap_or(&absolute);
-    tempfile::tempfile_in(existing).map_err(refuse)?;
-    if existing != absolute && !existing.is_dir() {
-        return Err(refuse(std::io::ErrorKind::NotADirectory.into()));
-    }
-    Ok(())
+    tempfile::tempfile_in(existing).map(drop).map_err(refuse)
 }
 
 /// Removes the checkpoints of a run, and the trajectory that it was resumed from.
