@@ -375,7 +375,12 @@ fn malformed_messages_end_their_session_and_nothing_else() {
         say(&mut socket, ask);
         let words = next_words(&mut socket, "error");
         let words = words.as_str().unwrap();
-        assert!(words.contains(key) && (words.contains("; it takes ") || words.contains("; they take ")) && words.len() < 200, "{words}");
+        assert!(
+            words.contains(key)
+                && (words.contains("; it takes ") || words.contains("; they take "))
+                && words.len() < 200,
+            "{words}"
+        );
     }
     for size in [[0, 0], [100_000, 100_000], [8192, 8192]] {
         say(&mut socket, json!({ "picture": { "size": size, "view": close_up(3.0) } }));
@@ -408,7 +413,8 @@ fn who_never_reads_or_comes_too_often_harms_nobody() {
     assert!(!matches!(idle[0].read(&mut nothing), Ok(1..)), "the first is not answered");
     drop(idle);
     // Pages that are open keep their places: they are not turned out for others.
-    let mut pages: Vec<_> = (0..20).filter_map(|_| shown.socket_from(&format!("http://{}", shown.host()), &shown.cookie()).ok()).collect();
+    let mut pages: Vec<_> =
+        (0..20).filter_map(|_| shown.socket_from(&format!("http://{}", shown.host()), &shown.cookie()).ok()).collect();
     assert!(pages.len() < 17, "{} browsers at once", pages.len());
     let mut idle: Vec<TcpStream> = (0..100).map(|_| shown.connect()).collect();
     say(&mut pages[0], json!({ "look": { "number": 9, "size": SIZE, "view": close_up(3.0) } }));
@@ -416,7 +422,9 @@ fn who_never_reads_or_comes_too_often_harms_nobody() {
     idle.clear();
     drop(pages);
     let begin = Instant::now();
-    while status(&shown.fetch("/run.json")) != "200" || shown.socket_from(&format!("http://{}", shown.host()), &shown.cookie()).is_err() {
+    while status(&shown.fetch("/run.json")) != "200"
+        || shown.socket_from(&format!("http://{}", shown.host()), &shown.cookie()).is_err()
+    {
         assert!(begin.elapsed() < PATIENCE, "nobody gets in any more");
         std::thread::sleep(Duration::from_millis(50));
     }

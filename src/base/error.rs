@@ -120,6 +120,8 @@ mod tests {
         let Error::Io { cause, .. } = error else { panic!("{told}") };
         assert_eq!(cause.kind(), std::io::ErrorKind::NotFound);
         let plain = std::io::Error::from_raw_os_error(2);
-        assert!(matches!(Error::io("cannot read", "a", plain), Error::Io { cause, .. } if cause.raw_os_error() == Some(2)));
+        assert!(
+            matches!(Error::io("cannot read", "a", plain), Error::Io { cause, .. } if cause.raw_os_error() == Some(2))
+        );
     }
 }

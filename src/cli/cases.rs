@@ -5,7 +5,7 @@ use super::say::say;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::run::lock::Lock;
-use crate::study::runner::{CaseRunner, CaseStore, Progress, Status, cores};
+use crate::study::runner::{CaseRunner, CaseStore, Progress, Status, Unfinished, cores};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 
@@ -21,12 +21,16 @@ pub struct CaseArgs {
     /// Write what was found as a list of objects
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Folder of the plots [default: out/ and the command's name]
+    /// Folder of the plots [default: out/ and the command's name]. Until all cases are over it also holds those that are: a
+    /// command that was killed or interrupted goes on with the others when it is started again
     #[arg(long, value_name = "DIR", conflicts_with = "no_plots")]
     out: Option<PathBuf>,
-    /// Draw no plots
+    /// Draw no plots, and keep no cases
     #[arg(long)]
     no_plots: bool,
+    /// Run all cases again, those too that a command which was ended has finished
+    #[arg(long)]
+    fresh: bool,
     /// Cases that run side by side, each on one thread [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -42,29 +46,38 @@ impl CaseArgs {
         (!self.no_plots).then(folder)
     }
 
-    /// Calls `work` with the runner of the cases, which shows how far it is, and splits what it gives into the results,
-    /// and the error that some are missing because the user ended it.
+    /// Calls `work` with the runner of the cases, which shows how far it is, and with the place of finished cases.
     ///
     /// # Errors
-    /// What `work` answers.
+    /// What `work` answers; [`Error::Io`].
     pub fn run<T>(
         &self,
         command: &str,
-        work: impl FnOnce(&CaseRunner) -> Result<Vec<Status<T>>>,
-    ) -> Result<(Vec<T>, Result<()>)> {
-        let stop = interrupt::install()?;
+        work: impl FnOnce(&CaseRunner, Option<&Unfinished>) -> Result<Vec<Status<T>>>,
+    ) -> Result<Ran<T>> {
+        let open = |folder: PathBuf| Unfinished::open(&folder, command, self.fresh);
+        let unfinished = self.plots(command).map(open).transpose()?;
+        let stop = match &unfinished {
+            Some(_) => interrupt::install_for_cases()?,
+            None => interrupt::install()?,
+        };
         let line = ProgressLine::new(command);
         let jobs = self.threads.map_or_else(cores, usize::from);
         let runner = CaseRunner { jobs, threads: Some(1), budget: None, stop, tell: &|progress| line.show(progress) };
-        let statuses = work(&runner)?;
+        let statuses = work(&runner, unfinished.as_ref())?;
         drop(line);
         let of = statuses.len();
+        let kept = statuses.iter().filter(|status| matches!(status, Status::Kept(_))).count();
+        if kept > 0 {
+            eprintln!("note: {kept} of {of} cases were finished before, by a command that was ended; --fresh runs all");
+        }
+        unfinished.iter().for_each(|unfinished| tell_damaged(unfinished.store(), RUN_AGAIN));
         let outputs: Vec<T> = statuses.into_iter().filter_map(Status::into_output).collect();
-        let ended = if outputs.len() < of { Err(Error::Interrupted) } else { Ok(()) };
-        if ended.is_err() {
+        let interrupted = outputs.len() < of;
+        if interrupted {
             say!("interrupted: {} of {of} cases were run", outputs.len());
         }
-        Ok((outputs, ended))
+        Ok(Ran { outputs, interrupted, unfinished })
     }
 
     /// Whether results can be written is found out before minutes are spent on them.
@@ -79,6 +92,27 @@ impl CaseArgs {
                 file.parent().map_or(Ok(()), regular::make_folder)
             }
             None => Ok(()),
+        }
+    }
+}
+
+/// What became of the cases of a command.
+pub struct Ran<T> {
+    /// Results of those that are over.
+    pub outputs: Vec<T>,
+    interrupted: bool,
+    unfinished: Option<Unfinished>,
+}
+
+impl<T> Ran<T> {
+    /// Everything is told and written: cases are kept no longer, unless some are missing.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] when the user ended it early; [`Error::Io`].
+    pub fn complete(self) -> Result<()> {
+        match self.interrupted {
+            true => Err(Error::Interrupted),
+            false => self.unfinished.map_or(Ok(()), Unfinished::complete),
         }
     }
 }

@@ -211,7 +211,8 @@ impl Service {
         }
         let enter = |most| Counted::enter(&self, |service| &service.connections, most);
         // One that is shut down is counted until its thread has seen that.
-        let counted = enter(MOST_CONNECTIONS).or_else(|| self.drop_oldest_idle().then(|| enter(2 * MOST_CONNECTIONS))?);
+        let counted =
+            enter(MOST_CONNECTIONS).or_else(|| self.drop_oldest_idle().then(|| enter(2 * MOST_CONNECTIONS))?);
         let Some(counted) = counted else {
             // Said without a thread of its own; the words fit into the socket's buffer.
             let _ = refuse(&mut stream, Refusal::Busy);

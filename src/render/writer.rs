@@ -11,6 +11,7 @@ use crate::observe::animation::Animation;
 use crate::observe::timings::Timings;
 use crate::scene::spec::OutputSpec;
 use image::RgbImage;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -31,6 +32,8 @@ pub struct FrameWriter {
     folder: PathBuf,
     look: OutputSpec,
     animation: Option<Animation>,
+    /// Pictures that are there and are not drawn again.
+    whole: HashSet<PathBuf>,
     /// Memory for snapshots that wait to be drawn (bytes).
     memory: usize,
     curve: Vec<(f64, f64)>,
@@ -49,6 +52,8 @@ struct Workers {
 /// A snapshot and what happened since the one before.
 struct Job {
     snapshot: Arc<Snapshot>,
+    /// Whether a picture of it is missing.
+    missing: bool,
     curve: Vec<(f64, f64)>,
     ruptures: Vec<Rupture>,
 }
@@ -65,6 +70,7 @@ impl FrameWriter {
             folder: folder.to_owned(),
             look: look.clone(),
             animation: None,
+            whole: HashSet::new(),
             memory: 0,
             curve: Vec::new(),
             ruptures: Vec::new(),
@@ -77,6 +83,12 @@ impl FrameWriter {
     /// Makes an animation of the pictures when the last one is written, also of those of a run that was stopped.
     pub fn with_animation(mut self, animation: Option<Animation>) -> Self {
         self.animation = animation;
+        self
+    }
+
+    /// Leaves out pictures that are there already, from an earlier process that drew the same.
+    pub fn without(mut self, whole: HashSet<PathBuf>) -> Self {
+        self.whole = whole;
         self
     }
 
@@ -152,8 +164,10 @@ impl Observer for FrameWriter {
     }
 
     fn snapshot(&mut self, snapshot: &Arc<Snapshot>) -> Result<()> {
+        let file = picture(&self.folder, self.stills.len());
         let job = Job {
             snapshot: snapshot.clone(),
+            missing: !self.whole.contains(&file),
             curve: std::mem::take(&mut self.curve),
             ruptures: std::mem::take(&mut self.ruptures),
         };
@@ -167,7 +181,7 @@ impl Observer for FrameWriter {
             return self.join();
         }
         self.add(&Timings { waited: begin.elapsed(), ..Timings::default() });
-        self.stills.push(Still { picture: picture(&self.folder, self.stills.len()), pause });
+        self.stills.push(Still { picture: file, pause });
         Ok(())
     }
 
@@ -196,6 +210,9 @@ fn draw_all(mut renderer: Renderer, jobs: &Receiver<Job>, pictures: &SyncSender<
     for (number, job) in jobs.iter().enumerate() {
         curve.extend(job.curve);
         ruptures.extend(job.ruptures);
+        if !job.missing {
+            continue;
+        }
         let picture = renderer.draw(&job.snapshot, &curve, &ruptures)?;
         if pictures.send((number, picture)).is_err() {
             // The encoder has ended with an error of its own, which `join` reports.

@@ -150,7 +150,7 @@ impl<'a> At<'a> {
             }),
             Scalar::Number(number) if dimension == Dimension::Ratio => Ok(*number),
             Scalar::Number(number) if number.is_infinite() && range == Range::PositiveOrInfinite => Ok(*number),
-            Scalar::Number(number) => {
+            Scalar::Number(_) => {
                 let what =
                     format!("`{}` is the bare number {raw}, but a {} needs its unit", self.name(), dimension.name());
                 Err(self.error(what, format!("write {} = {}", self.name(), dimension.example())))

@@ -69,7 +69,12 @@ pub struct CaseStore {
 impl CaseStore {
     /// Those in the folder of a study, which need not exist.
     pub fn of(study: &Path) -> Self {
-        Self { folder: study.join(CASES), damaged: Arc::default() }
+        Self::within(&study.join(CASES))
+    }
+
+    /// Those in a folder of their own, which need not exist.
+    pub(super) fn within(folder: &Path) -> Self {
+        Self { folder: folder.into(), damaged: Arc::default() }
     }
 
     /// The same, ready to take more; `fresh` removes the records and unfinished runs that are there.
@@ -164,11 +169,16 @@ impl CaseStore {
 /// Which build of the program this is, by length and time of its file: one revision may be built many times while it is
 /// worked on.
 pub fn build() -> String {
+    build_id().unwrap_or_else(|| "unknown".into())
+}
+
+/// The same; `None` where the system does not tell.
+pub(super) fn build_id() -> Option<String> {
     let told = std::env::current_exe().and_then(|path| path.metadata()).and_then(|file| {
         let since = file.modified()?.duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
         Ok(format!("{} bytes of {} s", file.len(), since.as_secs()))
     });
-    told.unwrap_or_else(|_| "unknown".into())
+    told.ok()
 }
 
 #[cfg(test)]
