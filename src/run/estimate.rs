@@ -103,6 +103,11 @@ const SETTLING: (u64, Duration) = (200, Duration::from_millis(600));
 /// tried with layers that are closed, bonds that are stretched, and wires that are drawn together until they lie on each
 /// other. `None` where neither can happen, and where such a state cannot be stepped.
 pub fn under_load(spec: &Spec, assembly: Assembly) -> Option<f64> {
+    trial(&mut loaded(spec, assembly)?, TRIAL).ok().map(|(wall, _)| wall)
+}
+
+/// The same run in that state.
+fn loaded(spec: &Spec, assembly: Assembly) -> Option<Engine> {
     let flows = matches!(spec.bond.law, BondLawSpec::ElastoPlastic(_)) && spec.grip.is_some();
     let touches = spec.contact.is_some() && assembly.wires.len() > 1;
     if !flows && !touches {
@@ -133,7 +138,7 @@ pub fn under_load(spec: &Spec, assembly: Assembly) -> Option<f64> {
     if touches {
         trial(&mut engine, SETTLING).ok()?;
     }
-    trial(&mut engine, TRIAL).ok().map(|(wall, _)| wall)
+    Some(engine)
 }
 
 /// The bodies of a strand whose layers lie on each other; `None` for other bodies.
@@ -223,5 +228,28 @@ fn span(seconds: f64) -> String {
         s if s < 120.0 => format!("{s:.1} s"),
         s if s < 7200.0 => format!("{:.1} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene;
+
+    /// Under load wires lie on each other, as they do later in a run, and not at its start.
+    #[test]
+    fn wires_touch_in_the_trial_under_load() {
+        let spec = scene::load("strand-1x7", &["contact.shape=sphere".into(), "spacing=1".into()]).unwrap().spec;
+        let assembly = discretise::build(&spec).unwrap();
+        let mut first = Engine::new(&spec, &Plan::new(&spec), assembly.clone()).unwrap();
+        trial(&mut first, TRIAL).unwrap();
+        let particles = assembly.len();
+        let touching = |engine: &Engine| engine.contact_counts().2;
+        let under_load = touching(&loaded(&spec, assembly).unwrap());
+        assert!(under_load > particles / 2 && under_load > 2 * touching(&first), "{under_load} of {particles}");
+        let single = scene::load("single-wire", &[]).unwrap().spec;
+        assert!(loaded(&single, discretise::build(&single).unwrap()).is_some());
+        let spheres = scene::load("two-spheres", &[]).unwrap().spec;
+        assert!(loaded(&spheres, discretise::build(&spheres).unwrap()).is_none());
     }
 }
