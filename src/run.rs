@@ -117,7 +117,7 @@ impl Resumable {
         let out = OutFolder::of_run(folder)?;
         let (checkpoint, damaged) = checkpoint::latest(folder)?;
         let mut notes: Vec<String> =
-            damaged.iter().map(|what| format!("{what}; the run goes on from the other one")).collect();
+            damaged.iter().map(|what| format!("{what}; going on from the other one")).collect();
         let scene = crate::scene::load(&out.file(folder::SCENE).to_string_lossy(), &[])?;
         let identity = Identity::new(write::to_toml(&scene.spec));
         checkpoint.check(&identity)?;
