@@ -32,8 +32,9 @@ fn a_render_that_is_killed_draws_what_is_missing() {
     let folder = tempfile::tempdir().unwrap();
     let call = |args: &[&str]| strandsnap(folder.path(), args);
     let wire = "wire.0.to=[\"0 mm\", \"0 mm\", \"30 mm\"]";
-    let run = ["run", "single-wire", "--set", wire, "--set", "grip.length=5 mm", "--no-frames", "--no-recording"];
-    let run = call(&[&run[..], &["--quiet", "--out", "run"]].concat());
+    let run = ["run", "single-wire", "--set", wire, "--set", "grip.length=5 mm", "--set", "output.snapshots=30"];
+    let run =
+        call(&[&run[..], &["--size", "640x360", "--no-frames", "--no-recording", "--quiet", "--out", "run"]].concat());
     assert!(run.status.success(), "{}", text(&run.stderr));
     assert!(call(&["render", "run", "--quiet", "--out", "whole"]).status.success());
     let whole = pictures(&folder.path().join("whole"));
