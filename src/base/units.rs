@@ -184,7 +184,7 @@ fn in_range(text: &str, number: &str, si: f64, dimension: Dimension) -> Result<f
         _ => return Ok(si),
     };
     Err(UnitError {
-        what: format!("`{text}` is too {beyond}: in SI units, numbers reach from 1e-323 to 1.8e308"),
+        what: format!("`{text}` is too {beyond}: in SI units, numbers reach from 5e-324 to 1.8e308"),
         help: format!("check its exponent and its unit; for example {}", dimension.example()),
     })
 }
