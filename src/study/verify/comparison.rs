@@ -272,7 +272,9 @@ mod tests {
 
     #[test]
     fn a_comparison_that_passes_comes_back_from_json_as_it_is() {
-        let points = vec![Point { resolution: 0.1 + 0.2, error: -1e-300, spent: Spent { steps: 1, wall_s: 0.1 } }];
+        let point =
+            |resolution: f64| Point { resolution, error: -resolution.powi(2), spent: Spent { steps: 1, wall_s: 0.1 } };
+        let points = vec![point(0.1 + 0.2), point(0.05)];
         let with_order = finding(1.001, 1.0).within(0.1).converging("a/L", points, 2.0, 0.1).note("why");
         let least = Comparison::at_least("a share", "-", 0.9, 0.8, Spent::default());
         for found in [with_order, least] {
