@@ -243,15 +243,15 @@ mod tests {
     /// Under load wires lie on each other, as they do later in a run, and not at its start.
     #[test]
     fn wires_touch_in_the_trial_under_load() {
-        let spec = scene::load("strand-1x7", &["contact.shape=sphere".into(), "spacing=1".into()]).unwrap().spec;
+        let spec = scene::load("ka4", &[]).unwrap().spec;
         let assembly = discretise::build(&spec).unwrap();
         let settling = (SETTLING.0, Duration::MAX);
         let mut first = Engine::new(&spec, &Plan::new(&spec), assembly.clone()).unwrap();
         trial(&mut first, settling).unwrap();
         let particles = assembly.len();
-        let touching = |engine: &Engine| engine.contact_counts().2;
-        let under_load = touching(&loaded(&spec, assembly, settling).unwrap());
-        assert!(under_load > particles / 2 && under_load > 2 * touching(&first), "{under_load} of {particles}");
+        let [first, later] =
+            [first, loaded(&spec, assembly, settling).unwrap()].map(|engine| engine.contact_counts().2);
+        assert!(first < particles / 4 && later > 2 * particles / 3, "{first} and {later} of {particles}");
         let single = scene::load("single-wire", &[]).unwrap().spec;
         assert!(loaded(&single, discretise::build(&single).unwrap(), settling).is_some());
         let spheres = scene::load("two-spheres", &[]).unwrap().spec;
