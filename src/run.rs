@@ -76,7 +76,7 @@ pub fn run_watched(
 ) -> Result<RunSummary> {
     let clock = Clock::start();
     if options.wait {
-        lock::wait(&options.out, stop);
+        lock::wait_to_write(&options.out, options.overwrite, stop)?;
     }
     let folder = OutFolder::check(&options.out, options.overwrite)?;
     spare_inputs(scene, &folder)?;
@@ -103,26 +103,28 @@ pub struct Resumable {
     folder: OutFolder,
     identity: Identity,
     checkpoint: Checkpoint,
+    /// What is remarkable, such as a damaged checkpoint beside a whole one.
+    notes: Vec<String>,
 }
 
 impl Resumable {
-    /// Looks at the folder of a run, and changes nothing there. `note` is told what is remarkable, such as a damaged
-    /// checkpoint beside a whole one.
+    /// Looks at the folder of a run, and changes nothing there.
     ///
     /// # Errors
     /// [`Error::Input`] when there is no checkpoint, when none is whole, or when it is not one of the scene that lies beside
     /// it; something missing on the machine (adapter).
-    pub fn open(folder: &Path, threads: Option<usize>, note: &mut dyn FnMut(&str)) -> Result<Self> {
+    pub fn open(folder: &Path, threads: Option<usize>) -> Result<Self> {
         let out = OutFolder::of_run(folder)?;
         let (checkpoint, damaged) = checkpoint::latest(folder)?;
-        damaged.iter().for_each(|what| note(&format!("{what}; going on from the other one")));
+        let mut notes: Vec<String> =
+            damaged.iter().map(|what| format!("{what}; going on from the other one")).collect();
         let scene = crate::scene::load(&out.file(folder::SCENE).to_string_lossy(), &[])?;
         let identity = Identity::new(write::to_toml(&scene.spec));
         checkpoint.check(&identity)?;
         let options = RunOptions::of_resumed(folder, &checkpoint.outputs, threads);
         outputs::check(&options)?;
-        note(&format!("going on from step {}", checkpoint.step));
-        Ok(Self { scene, options, folder: out, identity, checkpoint })
+        notes.push(format!("going on from step {}", checkpoint.step));
+        Ok(Self { scene, options, folder: out, identity, checkpoint, notes })
     }
 
     /// Refuses to go on as another run than that of `scene`.
@@ -134,12 +136,18 @@ impl Resumable {
     }
 
     /// Goes on, in the present thread pool and shown to `watchers` too: when the run has ended, its files are those that an
-    /// uninterrupted run writes.
+    /// uninterrupted run writes. `note` is told from where it goes on, and what is remarkable, when nothing is left that
+    /// could be refused.
     ///
     /// # Errors
     /// As for [`run`]; [`Error::Input`] when the trajectory is not that of the checkpoint.
-    pub fn go_on(self, watchers: Vec<&mut dyn Observer>, stop: &AtomicBool) -> Result<RunSummary> {
-        let Self { scene, options, folder, identity, checkpoint } = self;
+    pub fn go_on(
+        self,
+        note: &(dyn Fn(&str) + Sync),
+        watchers: Vec<&mut dyn Observer>,
+        stop: &AtomicBool,
+    ) -> Result<RunSummary> {
+        let Self { scene, options, folder, identity, checkpoint, notes } = self;
         let clock = Clock::after(&checkpoint.spent);
         let assembly = assemble(&scene)?;
         let bonds = assembly.bond_count();
@@ -157,6 +165,7 @@ impl Resumable {
             std::fs::rename(&before, &kept).map_err(|e| Error::io("cannot rename", &before, e))?;
         }
         let trajectory = Trajectory::open(&kept)?;
+        notes.iter().for_each(|what| note(what));
         folder.clear_results()?;
         let written = outputs::open(&options, &scene.spec, &folder)?;
         let every = scene.spec.output.checkpoint;

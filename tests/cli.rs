@@ -161,8 +161,8 @@ fn a_folder_that_cannot_be_written_is_named() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("plain"), "").unwrap();
     let output = short_run(folder.path(), &[&LEAN[..], &["--out", "plain/below"]].concat());
-    assert_code(&output, 1);
-    assert!(stderr(&output).contains("below"), "{}", stderr(&output));
+    assert_code(&output, 2);
+    assert!(stderr(&output).contains("plain is not a folder"), "{}", stderr(&output));
 }
 
 #[test]

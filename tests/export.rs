@@ -387,3 +387,26 @@ fn ovito_opens_and_draws_the_files() {
     let [lammps, xyz] = [export("lammps", &[]), export("xyz", &[])];
     script(&python, test, "ovito_files.py", &[run(), lammps.path(), xyz.path(), &picture("ovito.png")]);
 }
+
+/// No file may become longer than a limit: every write past it fails, as on a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_cannot_grow_has_the_name_that_was_asked_for() {
+    for format in ["parquet", "vtk", "lammps", "xyz"] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        // One block of 1024 bytes; the signal would end the program before it can say anything.
+        let script = "trap '' XFSZ; ulimit -f 1; exec \"$0\" \"$@\"";
+        let mut command = Command::new("bash");
+        command.args(["-c", script, env!("CARGO_BIN_EXE_strandsnap"), "export"]).arg(run());
+        let output = command.args(["--format", format, "--out"]).arg(&out).output().unwrap();
+        let told = text(&output);
+        assert_eq!(output.status.code(), Some(1), "{format}: {told}");
+        // Long paths are broken into lines.
+        let joined = told.replace(' ', "");
+        let named = format!("{}/", out.display());
+        assert!(joined.contains(&named) && joined.contains("Filetoolarge"), "{format}: {told}");
+        assert!(!joined.contains(".strandsnap-"), "{format}: {told}");
+        assert!(fs::read_dir(&out).map_or(0, |entries| entries.count()) == 0, "{format}: something is left");
+    }
+}

@@ -64,6 +64,9 @@ fn two_runs_into_one_folder() {
     let second = strandsnap(folder.path(), &[&SHORT[..], &["out", "--overwrite"]].concat());
     assert_refused(&second, &[&number, "--wait"]);
     assert!(folder.path().join("out/curve.csv.partial").exists(), "the first goes on");
+    // What the first leaves would be refused after the wait, so it is before.
+    let in_vain = strandsnap(folder.path(), &[&SHORT[..], &["out", "--wait"]].concat());
+    assert_refused(&in_vain, &[&number, "its results will be there", "--overwrite with --wait"]);
     let waiting = Command::new(PROGRAM)
         .args([&SHORT[..], &["out", "--overwrite", "--wait"]].concat())
         .current_dir(folder.path())
@@ -180,6 +183,9 @@ fn assert_nothing_looks_whole(output: &Output, out: &Path, size: usize) {
     let told = text(output);
     assert_eq!(output.status.code(), Some(1), "{size}: {told}");
     assert!(told.contains("cannot") && told.contains("out") && !told.contains("panicked"), "{size}: {told}");
+    // As the system tells it, of the file that is missing.
+    assert!(told.contains("No space left") || told.contains("File too large"), "{size}: {told}");
+    assert!(!told.contains("buffer") && !told.contains("at path") && !told.contains(".strandsnap-"), "{size}: {told}");
     let whole = |name: &str| out.join(name).exists();
     assert!(!whole("summary.json") || !whole("trajectory.bin"), "{size}: a whole run: {told}");
     for (name, end) in [("curve.csv", "\n"), ("wires.csv", "\n"), ("ruptures.csv", "\n"), ("scene.toml", "\n")] {
@@ -206,7 +212,7 @@ fn files_that_cannot_grow() {
     let longest = bytes_in(&folder.path().join("a")).into_iter().max().unwrap();
     for (k, size) in sizes(longest).into_iter().enumerate() {
         let out = format!("out{k}");
-        let run = [&SHORT[..], &[out.as_str()]].concat();
+        let run = [&SHORT[..], &[out.as_str(), "--set", "output.checkpoint=50"]].concat();
         // Blocks of 1024 bytes; the signal would end the program before it can say anything.
         let script = format!("trap '' XFSZ; ulimit -f {}; exec \"$0\" \"$@\"", size / 1024);
         let mut command = Command::new("bash");
@@ -225,7 +231,7 @@ fn a_disk_that_is_full() {
         let place = folder.path().join(format!("disk{k}"));
         fs::create_dir(&place).unwrap();
         let Some(disk) = Disk::mount(&place, size, "a_disk_that_is_full") else { return };
-        let output = strandsnap(&place, &[&SHORT[..], &["out"]].concat());
+        let output = strandsnap(&place, &[&SHORT[..], &["out", "--set", "output.checkpoint=50"]].concat());
         assert_nothing_looks_whole(&output, &place.join("out"), size);
         drop(disk);
     }
@@ -250,6 +256,33 @@ fn a_lost_standard_error_is_an_exit_code() {
     let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     let output = Command::new(PROGRAM).args(["scene", "check", "no"]).stderr(full).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "the error's own code");
+}
+
+#[test]
+fn a_file_where_a_folder_should_be_is_bad_input() {
+    let folder = two_runs();
+    fs::write(folder.path().join("file"), "mine").unwrap();
+    let commands: [&[&str]; 8] = [
+        &["run", "single-wire"],
+        &["study", "seeds"],
+        &["calibrate", "single-wire"],
+        &["accuracy", "single-wire"],
+        &["accuracy", "verify/hertz"],
+        &["verify", "hertz"],
+        &["stability", "friction-0-sphere"],
+        &["export", "a", "--format", "xyz"],
+    ];
+    for command in commands {
+        for out in ["file", "file/below"] {
+            let output = strandsnap(folder.path(), &[command, &["--out", out][..]].concat());
+            assert_refused(&output, &["file is not a folder"]);
+        }
+    }
+    assert_refused(&strandsnap(folder.path(), &["man", "file/below"]), &["file is not a folder"]);
+    assert_refused(&strandsnap(folder.path(), &["report", "a", "--out", "file/a.html"]), &["file is not a folder"]);
+    let json = ["verify", "hertz", "--no-plots", "--json", "file/found.json"];
+    assert_refused(&strandsnap(folder.path(), &json), &["file is not a folder"]);
+    assert_eq!(fs::read_to_string(folder.path().join("file")).unwrap(), "mine");
 }
 
 #[test]
@@ -278,6 +311,8 @@ fn numbers_of_the_command_line_have_ranges() {
         ("--size", "16384x16384"),
         ("--size", "16x16"),
         ("--memory", "nanGB"),
+        ("--memory", "1B"),
+        ("--memory", "1e300GB"),
     ] {
         let output = strandsnap(folder.path(), &["run", "single-wire", option, value]);
         assert_refused(&output, &[option]);

@@ -205,7 +205,9 @@ fn a_resume_that_is_refused_touches_nothing() {
     fs::write(&growing, &whole[..whole.len() / 20]).unwrap();
     let before = files(&out);
     let output = program(&["resume", text(&out), "--quiet"]).output().unwrap();
-    assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("no trajectory of the run") && !said.contains("going on from"), "{said}");
     let mut after = files(&out);
     after.retain(|name, _| before.contains_key(name));
     assert!(before == after, "a file was changed or removed");

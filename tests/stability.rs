@@ -9,7 +9,7 @@ use strandsnap::study::stability::{self, select};
 fn run_all(cases: &[StabilityCase]) -> Vec<Report> {
     let stop = AtomicBool::new(false);
     let runner = CaseRunner { jobs: cores(), threads: Some(1), budget: None, stop: &stop, tell: &|_| {} };
-    all_outputs(stability::run_all(cases, true, &runner).unwrap()).unwrap()
+    all_outputs(stability::run_all(cases, true, &runner, None).unwrap()).unwrap()
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn miss(f: &Comparison) -> String {
         .order
         .map_or(String::new(), |o| format!(", order {:.3} instead of {} ± {}", o.observed, o.theory, o.tolerance));
     let [low, high] = f.allowed;
-    let (what, unit, error) = (&f.what, f.unit, f.error());
+    let (what, unit, error) = (&f.what, &f.unit, f.error());
     format!(
         "{what}: {:e} {unit}, exact {:e}, error {error:+.2e} (allowed {low:.0e} to {high:.0e}){order}",
         f.computed, f.exact

@@ -53,3 +53,34 @@ fn verification_scenes_are_found_from_anywhere() {
     let output = strandsnap(folder.path(), &["scene", "check", "verify/hertz"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
 }
+
+/// One that is killed goes on with the cases that are left, and one that came to its end leaves nothing to go on with.
+#[test]
+fn verify_goes_on_where_it_was_killed() {
+    let folder = tempfile::tempdir().unwrap();
+    let known = ["hertz", "thornton", "capstan", "bond-bent", "bond-twisted"];
+    let args = [&known[..], &["--quick", "--threads", "1"]].concat();
+    let kept = folder.path().join("out/verify/unfinished-verify");
+    let count = || std::fs::read_dir(&kept).map_or(0, |entries| entries.count());
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_strandsnap"))
+        .args([&["verify"], &args[..]].concat())
+        .current_dir(folder.path())
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    while count() == 0 && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!((1..known.len()).contains(&count()), "it was not killed in the middle of its cases");
+    let again = verify(folder.path(), &args);
+    let told = text(&again.stderr);
+    assert!(again.status.success(), "{told}{}", text(&again.stdout));
+    assert!(told.contains(&format!(" of {} cases were finished before", known.len())), "{told}");
+    assert!(text(&again.stdout).contains(&format!("{0} of {0} cases agree", known.len())), "{}", text(&again.stdout));
+    assert!(!kept.exists(), "what is over is not gone on with");
+    let third = verify(folder.path(), &args);
+    assert!(!text(&third.stderr).contains("finished before"), "{}", text(&third.stderr));
+}

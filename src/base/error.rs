@@ -76,7 +76,7 @@ impl Error {
 
     /// A file-system error with what was being done.
     pub fn io(action: &'static str, path: impl Into<PathBuf>, cause: std::io::Error) -> Self {
-        Error::Io { action, path: path.into(), cause }
+        Error::Io { action, path: path.into(), cause: without_temporary_name(cause) }
     }
 
     /// Exit code of the program for this error: 2 for bad input, 3 for something missing on the machine,
@@ -89,5 +89,39 @@ impl Error {
             Error::Interrupted => 130,
             Error::Io { .. } => 1,
         }
+    }
+}
+
+/// The system's answer alone: `tempfile` adds the name of a file that nobody asked for (`… at path "/a/.tmpXYZ"`), and
+/// offers no other way to the answer than its text.
+fn without_temporary_name(cause: std::io::Error) -> std::io::Error {
+    if cause.raw_os_error().is_some() {
+        return cause;
+    }
+    match cause.to_string().split_once(" at path \"") {
+        Some((answer, _)) => std::io::Error::new(cause.kind(), answer.to_owned()),
+        None => cause,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_temporary_name_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("missing");
+        let cause = tempfile::Builder::new().prefix(".temporary-").tempfile_in(&missing).unwrap_err();
+        assert!(cause.to_string().contains(".temporary-"), "nothing is to be taken away: {cause}");
+        let error = Error::io("cannot write", missing.join("curve.csv"), cause);
+        let told = error.to_string();
+        assert!(!told.contains(".temporary-") && told.contains("curve.csv: No such file"), "{told}");
+        let Error::Io { cause, .. } = error else { panic!("{told}") };
+        assert_eq!(cause.kind(), std::io::ErrorKind::NotFound);
+        let plain = std::io::Error::from_raw_os_error(2);
+        assert!(
+            matches!(Error::io("cannot read", "a", plain), Error::Io { cause, .. } if cause.raw_os_error() == Some(2))
+        );
     }
 }

@@ -90,6 +90,9 @@ pub fn text_if_there(path: &Path, most: u64) -> Result<Option<String>> {
 pub fn replaceable(path: &Path) -> Result<()> {
     let kind = match std::fs::symlink_metadata(path) {
         Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(()),
+        Err(cause) if cause.kind() == ErrorKind::NotADirectory => {
+            return check_folder(path).and(Err(Error::io("cannot write", path, cause)));
+        }
         Err(cause) => return Err(Error::io("cannot write", path, cause)),
         Ok(there) => other_kind(there.file_type()),
     };
@@ -112,6 +115,27 @@ pub fn check_target(path: &Path, overwrite: bool, option: &str) -> Result<()> {
     }
     let other = if option.is_empty() { String::new() } else { format!(", or another file with {option}") };
     Err(Error::input(format!("{} exists", path.display()), format!("give --overwrite to replace it{other}")))
+}
+
+/// Checks that a folder may be made at `path`: nothing but folders is there, or above it.
+///
+/// # Errors
+/// [`Error::Input`] that names what is no folder.
+pub fn check_folder(path: &Path) -> Result<()> {
+    let there = path.ancestors().find(|above| std::fs::symlink_metadata(above).is_ok());
+    match there.filter(|there| !there.is_dir()) {
+        Some(file) => Err(Error::input(format!("{} is not a folder", file.display()), "give the name of a folder")),
+        None => Ok(()),
+    }
+}
+
+/// Makes a folder, and those above it, where they are not there.
+///
+/// # Errors
+/// As for [`check_folder`]; [`Error::Io`] when the file system refuses.
+pub fn make_folder(path: &Path) -> Result<()> {
+    check_folder(path)?;
+    std::fs::create_dir_all(path).map_err(|cause| Error::io("cannot make the folder", path, cause))
 }
 
 #[cfg(test)]
@@ -154,5 +178,19 @@ mod tests {
         std::fs::write(at("file"), "").unwrap();
         assert!(check_target(&at("file"), true, "").is_ok() && replaceable(&at("new")).is_ok());
         assert!(message(check_target(&at("file"), false, "--out")).contains("exists"));
+    }
+
+    #[test]
+    fn a_folder_is_made_where_no_file_is_in_its_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        make_folder(&at("a/b")).unwrap();
+        make_folder(&at("a/b")).unwrap();
+        assert!(at("a/b").is_dir() && check_folder(Path::new("nowhere/below")).is_ok());
+        std::fs::write(at("file"), "").unwrap();
+        for inside in ["file", "file/below", "file/far/below"] {
+            assert!(message(make_folder(&at(inside))).ends_with("file is not a folder"), "{inside}");
+        }
+        assert!(message(replaceable(&at("file/page.html"))).ends_with("file is not a folder"));
     }
 }

@@ -162,7 +162,7 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     };
     if unit.is_empty() {
         return match dimension {
-            Dimension::Ratio => Ok(value),
+            Dimension::Ratio => in_range(text, number, value, dimension),
             _ => Err(UnitError {
                 what: format!("`{text}` has no unit, a {} is expected", dimension.name()),
                 help: format!("write the unit too, for example {}", dimension.example()),
@@ -170,7 +170,23 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
         };
     }
     let canonical = format!("{number} {}", normalise(unit));
-    convert(&canonical, dimension).ok_or_else(|| wrong_unit(text, unit, &canonical, dimension))
+    let si = convert(&canonical, dimension).ok_or_else(|| wrong_unit(text, unit, &canonical, dimension))?;
+    in_range(text, number, si, dimension)
+}
+
+/// The value in SI units, unless it lies beyond what a number can hold: it would be infinite, or zero where the text has a
+/// digit that is not.
+fn in_range(text: &str, number: &str, si: f64, dimension: Dimension) -> Result<f64, UnitError> {
+    let digits = number.split(['e', 'E']).next().unwrap_or_default();
+    let beyond = match si {
+        si if !si.is_finite() => "large",
+        0.0 if digits.contains(|c| ('1'..='9').contains(&c)) => "small",
+        _ => return Ok(si),
+    };
+    Err(UnitError {
+        what: format!("`{text}` is too {beyond}: in SI units, numbers reach from 5e-324 to 1.8e308"),
+        help: format!("check its exponent and its unit; for example {}", dimension.example()),
+    })
 }
 
 /// Writes an SI value with its unit so that [`parse`] gives back exactly the same number; among the usual units the
@@ -185,8 +201,8 @@ pub fn format(value: f64, dimension: Dimension) -> String {
         .unwrap_or_else(|| shortest(value))
 }
 
-/// The shortest decimal text that reads back as `value`.
-fn shortest(value: f64) -> String {
+/// The shortest decimal text that reads back as `value`: `1e300`, not a one with 300 zeros.
+pub fn shortest(value: f64) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
 }
@@ -313,6 +329,23 @@ mod tests {
         assert!(unknown.what.contains("not a known unit of force"), "{unknown}");
         assert!(parse("mm", Dimension::Length).is_err());
         assert!(parse("", Dimension::Ratio).is_err());
+    }
+
+    #[test]
+    fn what_no_number_can_hold_is_told_so_in_every_dimension() {
+        for dimension in Dimension::ALL {
+            let unit = dimension.spellings().first().map_or("%", |(unit, _)| *unit);
+            // A number as large as there is, in a unit that is larger than that of the SI; and one beyond all units.
+            let mut large = vec![format!("1e999 {unit}"), format!("-1e999 {unit}")];
+            large.extend((dimension == Dimension::Pressure).then(|| "1e308 GPa".to_owned()));
+            for text in large {
+                let error = parse(&text, dimension).unwrap_err();
+                assert!(error.what.contains("is too large") && error.what.contains(text.trim()), "{text}: {error}");
+            }
+            let small = parse(&format!("1e-999 {unit}"), dimension).unwrap_err();
+            assert!(small.what.contains("is too small"), "{small}");
+            assert_eq!(parse(&format!("0.0e-999 {unit}"), dimension), Ok(0.0), "{unit}");
+        }
     }
 
     proptest! {

@@ -86,6 +86,7 @@ fn of_cases(args: &Args, cases: &[&'static VerificationCase]) -> Result<Ended> {
     let runner = CaseRunner { jobs: 1, threads: Some(1), budget: None, stop, tell: &|progress| line.show(progress) };
     let found = verified::study(&name, cases, effort, &store, &runner)?;
     drop(line);
+    shared::tell_damaged(&store, shared::RUN_AGAIN);
     let files = found.write(&shared::command(), &out)?;
     say::print(format_args!("{}", found.table().to_text()));
     say::print(format_args!("\n{}", found.summary()));
@@ -124,6 +125,7 @@ fn of_pulled_scene(args: &Args) -> Result<Ended> {
     };
     let study = accuracy::study(&subject, &store, &runner)?;
     drop(line);
+    shared::tell_damaged(&store, shared::RUN_AGAIN);
     let files = accuracy::write(&study, &shared::command(), &out)?;
     print(&study, &files);
     interrupt::ended(stop)

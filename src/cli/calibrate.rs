@@ -85,6 +85,7 @@ pub fn run(args: &Args) -> Result<Ended> {
         iterations.push(iteration.clone());
     })?;
     drop(line);
+    cases::tell_damaged(&store, cases::RUN_AGAIN);
     let file = write(&scene.spec.name, &seeds, target, &iterations, &best, &out)?;
     say!("\n{}", claim(&best, &seeds, &target));
     let [kept, other] =

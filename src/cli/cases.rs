@@ -3,8 +3,9 @@
 use super::interrupt;
 use super::say::say;
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::run::lock::Lock;
-use crate::study::runner::{CaseRunner, Progress, Status, cores};
+use crate::study::runner::{CaseRunner, CaseStore, Progress, Status, Unfinished, cores};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 
@@ -20,12 +21,16 @@ pub struct CaseArgs {
     /// Write what was found as a list of objects
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Folder of the plots [default: out/ and the command's name]
+    /// Folder of the plots [default: out/ and the command's name]. Until all cases are over it also holds those that are: a
+    /// command that was killed or interrupted goes on with the others when it is started again
     #[arg(long, value_name = "DIR", conflicts_with = "no_plots")]
     out: Option<PathBuf>,
-    /// Draw no plots
+    /// Draw no plots, and keep no cases
     #[arg(long)]
     no_plots: bool,
+    /// Run all cases again, those too that a command which was ended has finished
+    #[arg(long)]
+    fresh: bool,
     /// Cases that run side by side, each on one thread [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -41,29 +46,38 @@ impl CaseArgs {
         (!self.no_plots).then(folder)
     }
 
-    /// Calls `work` with the runner of the cases, which shows how far it is, and splits what it gives into the results,
-    /// and the error that some are missing because the user ended it.
+    /// Calls `work` with the runner of the cases, which shows how far it is, and with the place of finished cases.
     ///
     /// # Errors
-    /// What `work` answers.
+    /// What `work` answers; [`Error::Io`].
     pub fn run<T>(
         &self,
         command: &str,
-        work: impl FnOnce(&CaseRunner) -> Result<Vec<Status<T>>>,
-    ) -> Result<(Vec<T>, Result<()>)> {
-        let stop = interrupt::install()?;
+        work: impl FnOnce(&CaseRunner, Option<&Unfinished>) -> Result<Vec<Status<T>>>,
+    ) -> Result<Ran<T>> {
+        let open = |folder: PathBuf| Unfinished::open(&folder, command, self.fresh);
+        let unfinished = self.plots(command).map(open).transpose()?;
+        let stop = match &unfinished {
+            Some(_) => interrupt::install_for_cases()?,
+            None => interrupt::install()?,
+        };
         let line = ProgressLine::new(command);
         let jobs = self.threads.map_or_else(cores, usize::from);
         let runner = CaseRunner { jobs, threads: Some(1), budget: None, stop, tell: &|progress| line.show(progress) };
-        let statuses = work(&runner)?;
+        let statuses = work(&runner, unfinished.as_ref())?;
         drop(line);
         let of = statuses.len();
+        let kept = statuses.iter().filter(|status| matches!(status, Status::Kept(_))).count();
+        if kept > 0 {
+            eprintln!("note: {kept} of {of} cases were finished before, by a command that was ended; --fresh runs all");
+        }
+        unfinished.iter().for_each(|unfinished| tell_damaged(unfinished.store(), RUN_AGAIN));
         let outputs: Vec<T> = statuses.into_iter().filter_map(Status::into_output).collect();
-        let ended = if outputs.len() < of { Err(Error::Interrupted) } else { Ok(()) };
-        if ended.is_err() {
+        let interrupted = outputs.len() < of;
+        if interrupted {
             say!("interrupted: {} of {of} cases were run", outputs.len());
         }
-        Ok((outputs, ended))
+        Ok(Ran { outputs, interrupted, unfinished })
     }
 
     /// Whether results can be written is found out before minutes are spent on them.
@@ -71,15 +85,34 @@ impl CaseArgs {
     /// # Errors
     /// A folder that cannot be made, or a file that is one.
     pub fn prepare(&self, command: &str) -> Result<()> {
-        let make =
-            |folder: &Path| std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e));
-        self.plots(command).map_or(Ok(()), |folder| make(&folder))?;
+        self.plots(command).map_or(Ok(()), |folder| regular::make_folder(&folder))?;
         match &self.json {
-            Some(file) if file.is_dir() => {
-                Err(Error::input(format!("--json {} is a folder", file.display()), "give the name of a file"))
+            Some(file) => {
+                regular::replaceable(file)?;
+                file.parent().map_or(Ok(()), regular::make_folder)
             }
-            Some(file) => file.parent().map_or(Ok(()), make),
             None => Ok(()),
+        }
+    }
+}
+
+/// What became of the cases of a command.
+pub struct Ran<T> {
+    /// Results of those that are over.
+    pub outputs: Vec<T>,
+    interrupted: bool,
+    unfinished: Option<Unfinished>,
+}
+
+impl<T> Ran<T> {
+    /// Everything is told and written: cases are kept no longer, unless some are missing.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] when the user ended it early; [`Error::Io`].
+    pub fn complete(self) -> Result<()> {
+        match self.interrupted {
+            true => Err(Error::Interrupted),
+            false => self.unfinished.map_or(Ok(()), Unfinished::complete),
         }
     }
 }
@@ -89,9 +122,19 @@ impl CaseArgs {
 /// # Errors
 /// [`Error::Input`] with the number of the process that has it; [`Error::Io`].
 pub fn lock(folder: &Path, part: bool) -> Result<Lock> {
-    std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
+    regular::make_folder(folder)?;
     if part { Lock::share(folder) } else { Lock::take(folder) }
 }
+
+/// Says which records of finished cases cannot be used, and what becomes of their cases.
+pub fn tell_damaged(store: &CaseStore, fate: &str) {
+    for (file, why) in store.damaged() {
+        eprintln!("note: {} is damaged ({why}); {fate}", file.display());
+    }
+}
+
+/// What becomes of a case whose record is damaged, where cases are run.
+pub const RUN_AGAIN: &str = "its case is computed again";
 
 /// Parts of a progress line that shows a share of the work.
 const PARTS: u64 = 1000;

@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(2);
 
 static STOP: AtomicBool = AtomicBool::new(false);
+static INSTALLED: AtomicBool = AtomicBool::new(false);
 static FIRST: OnceLock<Instant> = OnceLock::new();
 
 /// Installs the handler and gives the flag that it sets.
@@ -32,11 +33,14 @@ pub fn install_for_cases() -> Result<&'static AtomicBool> {
     install_saying("\nstopping; finished cases are kept, and the same command goes on with them.")
 }
 
-/// [`install`] with words of one's own.
+/// [`install`] with words of one's own; where a handler is installed already, that one stays.
 ///
 /// # Errors
 /// As for [`install`].
 pub fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
+    if INSTALLED.swap(true, Ordering::Relaxed) {
+        return Ok(&STOP);
+    }
     let handler = move || {
         let now = Instant::now();
         let first = *FIRST.get_or_init(|| now);

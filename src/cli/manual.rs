@@ -2,6 +2,7 @@
 
 use super::say::{self, say};
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use clap::Command;
 use clap_complete::Shell;
 use std::path::Path;
@@ -18,10 +19,7 @@ pub fn completions(shell: Shell, command: &mut Command) {
 /// # Errors
 /// A file in the place of the folder; when the folder cannot be made or a page cannot be written.
 pub fn pages(command: Command, folder: &Path) -> Result<()> {
-    if folder.exists() && !folder.is_dir() {
-        return Err(Error::input(format!("{} is a file", folder.display()), "name a folder for the manual pages"));
-    }
-    std::fs::create_dir_all(folder).map_err(|error| Error::io("cannot make the folder", folder, error))?;
+    regular::make_folder(folder)?;
     clap_mangen::generate_to(command, folder).map_err(|error| Error::io("cannot write into", folder, error))?;
     say!("manual pages are in {}; read one: man -l {}", folder.display(), folder.join("strandsnap.1").display());
     Ok(())

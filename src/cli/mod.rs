@@ -107,7 +107,8 @@ Exit codes:
     2  bad input
     3  the machine lacks something (graphics adapter, Rerun viewer)
     4  the simulation had to stop, or a case or a check misses what it must give
-  130  interrupted (Ctrl-C); what was found so far is kept, unless Ctrl-C comes again two seconds later or more";
+  130  interrupted (Ctrl-C); what was found so far is kept, unless Ctrl-C comes again two seconds later or more.
+       `explore` and `view` are there until Ctrl-C, which ends them well (0)";
 
 /// Runs the program on its arguments and answers with one of the exit codes that `--help` lists.
 pub fn main() -> ExitCode {

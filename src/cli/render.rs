@@ -17,6 +17,10 @@ pub struct Args {
     /// Replace earlier pictures in that folder
     #[arg(long)]
     overwrite: bool,
+    /// Go on with pictures that an earlier process was ended over: those that are whole and show the same are not drawn
+    /// again. Where there are none, begin
+    #[arg(long, conflicts_with = "view")]
+    resume: bool,
     /// Go on where files of the run were changed or are another's; the result says so
     #[arg(long)]
     anyway: bool,
@@ -45,9 +49,13 @@ pub fn render(_args: Args) -> Result<Ended> {
 pub fn render(args: Args) -> Result<Ended> {
     use super::counted::Counted;
     use super::say::say;
+    use crate::base::digest::Digest;
+    use crate::base::error::Error;
+    use crate::base::wording::counted;
     use crate::render::FrameWriter;
     use crate::run::replay::Replay;
     use crate::run::{folder, identity, outputs};
+    use crate::study::runner::store;
 
     if let Some(words) = &args.view {
         return one_view(&args, words);
@@ -60,14 +68,32 @@ pub fn render(args: Args) -> Result<Ended> {
     output.camera.focus_z = output.camera.focus_z.or(run.first_break());
     let out = args.out.unwrap_or_else(|| args.run.join("render"));
     let animation = args.animation.resolve(&out.join(folder::ANIMATION));
-    let folder = folder::OutFolder::check(&out, args.overwrite)?;
+    let begun = args.resume && folder::drawn_before(&out).is_some();
+    if args.resume && !begun && !args.overwrite && folder::holds_something(&out) {
+        return Err(Error::input(
+            format!("{} holds no unfinished pictures", out.display()),
+            "there is nothing to go on with; --overwrite draws all again, in place of those that are there",
+        ));
+    }
+    let folder = folder::OutFolder::check(&out, args.overwrite || begun)?;
     if let Some(animation) = &animation {
         animation.check(args.overwrite)?;
     }
-    let writer = || FrameWriter::new(&out, &output);
     crate::render::check()?;
-    let pictures = folder.open_for_pictures()?;
-    let mut writer = writer()?.with_animation(animation.clone());
+    // Another build may draw otherwise.
+    let drawn = Digest::of(format!("{} {output:?} {}", run.digest(), store::build()));
+    let is_whole: &dyn Fn(&std::path::Path) -> bool = &crate::render::png::is_whole;
+    let pictures = folder.open_for_pictures(&drawn, args.resume.then_some(is_whole))?;
+    if begun {
+        match pictures.whole().len() {
+            0 if pictures.replaced_others() => {
+                eprintln!("note: the pictures there are of another run, view or build; all are drawn again");
+            }
+            whole => eprintln!("note: {whole} of {} were drawn before", counted(run.count(), "picture")),
+        }
+    }
+    let whole = pictures.whole().clone();
+    let mut writer = FrameWriter::new(&out, &output)?.with_animation(animation.clone()).without(whole);
     if let Some(why) = run.cut_off() {
         eprintln!("note: {why}; what there is will be drawn");
     }
@@ -77,7 +103,7 @@ pub fn render(args: Args) -> Result<Ended> {
         pictures.complete()?;
     }
     let timings = writer.timings();
-    say!("{} in {}", crate::base::wording::counted(shown, "picture"), out.display());
+    say!("{} in {}", counted(shown, "picture"), out.display());
     if let Some(animation) = animation.filter(|_| timings.animation_bytes > 0) {
         say!("{} of animation are in {}", outputs::megabytes(timings.animation_bytes), animation.file.display());
     }
@@ -107,7 +133,7 @@ fn one_view(args: &Args, words: &str) -> Result<Ended> {
     let mut output = crate::scene::spec::OutputSpec::default();
     args.look.apply(&mut output);
     let bytes = picture(&args.run, &View::parse(words)?, output.frame_size)?;
-    std::fs::create_dir_all(&out).map_err(|e| Error::io("cannot create the folder", &out, e))?;
+    crate::base::regular::make_folder(&out)?;
     crate::render::png::write(&file, &bytes)?;
     say!("the view is in {}", file.display());
     Ok(Ended::Well)

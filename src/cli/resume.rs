@@ -27,14 +27,8 @@ pub struct Args {
 }
 
 pub fn resume(args: &Args) -> Result<Ended> {
-    let threads = args.threads.count();
-    let resumable = Resumable::open(&args.run, threads, &mut note)?;
+    let resumable = Resumable::open(&args.run, args.threads.count())?;
     go_on(resumable, args.time_limit, args.quiet)
-}
-
-/// Tells what is remarkable about a run that goes on.
-pub(super) fn note(what: &str) {
-    eprintln!("note: {what}");
 }
 
 /// Goes on with a run to its end, and says how it ended.
@@ -45,7 +39,7 @@ pub(super) fn go_on(resumable: Resumable, time_limit: Option<Duration>, quiet: b
     let summary = run::in_pool(options.threads, || {
         let mut progress = (!quiet).then(|| Progress::new(&resumable.scene.spec.stop));
         let watchers = progress.iter_mut().map(|bar| bar as &mut dyn Observer).collect();
-        resumable.go_on(watchers, stop)
+        resumable.go_on(&|what| eprintln!("note: {what}"), watchers, stop)
     })??;
     print(&summary, &options, quiet);
     interrupt::ended_run(&summary.stopped)

@@ -6,12 +6,12 @@ use super::finished::print;
 use super::interrupt;
 use super::look::LookArgs;
 use super::progress::Progress;
-use super::resume::{go_on, note};
+use super::resume::go_on;
 use super::values::{SceneArgs, Threads, duration, threads};
 use crate::base::error::{Error, Result};
 use crate::observe::Observer;
 use crate::run::folder::{ANIMATION, SUMMARY};
-use crate::run::{self, Resumable, RunOptions, cautions, outputs};
+use crate::run::{self, Resumable, RunOptions, cautions, lock, outputs};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -28,7 +28,8 @@ pub struct Args {
     /// Replace earlier results in that folder
     #[arg(long)]
     overwrite: bool,
-    /// Wait for another process that writes into that folder, instead of refusing
+    /// Wait for another process that writes into that folder, instead of refusing; what it leaves there asks for
+    /// --overwrite or --resume
     #[arg(long)]
     wait: bool,
     /// Go on from the last checkpoint in that folder, if it holds an unfinished run of this scene, with the outputs
@@ -64,10 +65,15 @@ pub fn run(args: Args) -> Result<Ended> {
     note_what_was_not_built(&args);
     args.look.apply(&mut scene.spec.output);
     let out = args.out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name));
+    if args.wait {
+        wait(&out, args.overwrite || args.resume, args.time_limit)?;
+    }
+    // The limit of one that may have waited runs already.
+    let time_limit = args.time_limit.filter(|_| !args.wait);
     if args.resume && run::folder::has_checkpoint(&out) {
-        let resumable = Resumable::open(&out, args.threads.count(), &mut note)?;
+        let resumable = Resumable::open(&out, args.threads.count())?;
         resumable.check_scene(&scene)?;
-        return go_on(resumable, args.time_limit, args.quiet);
+        return go_on(resumable, time_limit, args.quiet);
     }
     if args.resume && !args.overwrite && out.join(SUMMARY).is_file() && !run::folder::is_unfinished(&out) {
         return Err(Error::input(
@@ -89,7 +95,7 @@ pub fn run(args: Args) -> Result<Ended> {
     let before = cautions::of_run(&scene, &run::assemble(&scene)?)?;
     before.iter().for_each(|caution| eprintln!("WARNING: {caution}"));
     let stop = interrupt::install()?;
-    args.time_limit.into_iter().for_each(interrupt::after);
+    time_limit.into_iter().for_each(interrupt::after);
     let summary = run::in_pool(options.threads, || {
         let mut progress = (!args.quiet).then(|| Progress::new(&scene.spec.stop));
         let watchers = progress.iter_mut().map(|bar| bar as &mut dyn Observer).collect();
@@ -97,6 +103,17 @@ pub fn run(args: Args) -> Result<Ended> {
     })??;
     print(&summary, &options, args.quiet);
     interrupt::ended_run(&summary.stopped)
+}
+
+/// Waits until no other process writes into a folder, and says so; `takes_over`: what that one leaves there may be replaced
+/// or gone on with.
+fn wait(out: &Path, takes_over: bool, time_limit: Option<Duration>) -> Result<()> {
+    let stop = interrupt::install()?;
+    time_limit.into_iter().for_each(interrupt::after);
+    if let Some(process) = lock::holder(out).filter(|_| takes_over) {
+        eprintln!("note: waiting for the end of process {process}, which writes into {}", out.display());
+    }
+    lock::wait_to_write(out, takes_over, stop)
 }
 
 /// Frames and recording are on unless refused; a program that cannot make them must say so.

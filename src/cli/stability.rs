@@ -19,17 +19,19 @@ pub fn stability(args: &CaseArgs) -> Result<Ended> {
     }
     args.prepare(NAME)?;
     let began = Instant::now();
-    let (reports, ended) = args.run(NAME, |runner| run_all(&cases, args.quick, runner))?;
-    say::print(format_args!("{}", report::table(&reports)));
-    say!("\n{}", report::summary(&reports, began.elapsed().as_secs_f64()));
+    let ran = args.run(NAME, |runner, kept| run_all(&cases, args.quick, runner, kept))?;
+    let reports = &ran.outputs;
+    say::print(format_args!("{}", report::table(reports)));
+    say!("\n{}", report::summary(reports, began.elapsed().as_secs_f64()));
     if let Some(path) = &args.json {
-        report::write_json(&reports, path)?;
+        report::write_json(reports, path)?;
         say!("findings: {}", path.display());
     }
     if let Some(folder) = args.plots(NAME) {
-        let files = plots::write(&reports, &folder)?;
+        let files = plots::write(reports, &folder)?;
         say!("plots: {} in {}", counted(files.len(), "file"), folder.display());
     }
-    ended?;
-    Ok(if reports.iter().any(|r| r.outcome == Outcome::Failed) { Ended::Missed } else { Ended::Well })
+    let failed = reports.iter().any(|r| r.outcome == Outcome::Failed);
+    ran.complete()?;
+    Ok(if failed { Ended::Missed } else { Ended::Well })
 }

@@ -71,7 +71,10 @@ pub fn study(args: &Args) -> Result<Ended> {
         return dry_run(&definition, &out, jobs);
     }
     if args.collect {
-        return show(&definition, &CaseStore::of(&out), &out).map(|()| Ended::Well);
+        let store = CaseStore::of(&out);
+        let shown = show(&definition, &store, &out);
+        cases::tell_damaged(&store, "its case counts as not run, until the study is run again");
+        return shown.map(|()| Ended::Well);
     }
     let _lock = cases::lock(&out, args.case.is_some())?;
     let store = CaseStore::open(&out, args.fresh)?;
@@ -83,6 +86,7 @@ pub fn study(args: &Args) -> Result<Ended> {
         return one(&definition, number, &store, &runner);
     }
     let gathered = Gathered::read(&definition, &store);
+    cases::tell_damaged(&store, cases::RUN_AGAIN);
     let costs = sweep::costs(&definition, &gathered, &|point| {
         line.0.set_message(format!("estimating {}", definition.point_name(point)));
     })?;
@@ -103,7 +107,9 @@ fn list() -> Result<Ended> {
 }
 
 fn dry_run(definition: &Definition, out: &Path, jobs: usize) -> Result<Ended> {
-    let gathered = Gathered::read(definition, &CaseStore::of(out));
+    let store = CaseStore::of(out);
+    let gathered = Gathered::read(definition, &store);
+    cases::tell_damaged(&store, cases::RUN_AGAIN);
     let costs = sweep::costs(definition, &gathered, &|_| {})?;
     say::print(format_args!("{}", report::case_list(definition, &gathered, &costs.cases).to_text()));
     say::print(format_args!("\n{}", report::built(definition, &gathered)));
@@ -127,6 +133,7 @@ fn one(definition: &Definition, number: usize, store: &CaseStore, runner: &CaseR
     let (point, seed) = sweep::numbered(definition, number)?;
     let case = definition.case((point, seed), 1.0, store);
     let record = all_outputs(runner.run(&[case])?)?.remove(0);
+    cases::tell_damaged(store, cases::RUN_AGAIN);
     let name = definition.case_name(point, seed);
     match &record.result {
         TensileOutcome::Refused(cause) => {

@@ -119,8 +119,11 @@ impl std::str::FromStr for Seeds {
         let number = |part: &str| part.trim().parse::<u64>().map_err(|_| wrong());
         let seeds: Vec<u64> = if let Some((first, last)) = text.split_once("..") {
             let (first, last) = (number(first)?, number(last)?);
-            if last < first || last - first >= MOST_SEEDS {
-                return Err(format!("{first}..{last} are no seeds or too many; {}", wrong()));
+            if last < first {
+                return Err(format!("{first}..{last} ends before it begins; write {last}..{first}"));
+            }
+            if last - first >= MOST_SEEDS {
+                return Err(format!("{first}..{last} are too many seeds; {MOST_SEEDS} at most can be run"));
             }
             (first..=last).collect()
         } else if text.contains(',') {
@@ -143,13 +146,19 @@ impl std::str::FromStr for Seeds {
     }
 }
 
+/// Least and greatest memory (bytes): the program alone needs more than the least, and no machine has the greatest.
+const MEMORY: std::ops::RangeInclusive<f64> = 1e6..=1e18;
+
 /// A size in memory, written as `512MB` or `4GiB`.
 pub fn bytes(text: &str) -> std::result::Result<u64, String> {
     let wrong = || "write a size with its unit, such as 512MB or 4GB".to_string();
     let text = text.trim();
-    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').ok_or_else(wrong)?;
-    let (number, unit) = text.split_at(digits);
+    let unit = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).ok_or_else(wrong)?;
+    let (number, unit) = text.split_at(unit);
     let factor: f64 = match unit.trim().to_ascii_lowercase().as_str() {
+        "b" => 1.0,
+        "kb" => 1e3,
+        "kib" => 1024.0,
         "mb" => 1e6,
         "gb" => 1e9,
         "tb" => 1e12,
@@ -157,8 +166,8 @@ pub fn bytes(text: &str) -> std::result::Result<u64, String> {
         "gib" => 1_073_741_824.0,
         _ => return Err(wrong()),
     };
-    let size = number.parse::<f64>().map_err(|_| wrong())? * factor;
-    if (1.0..=1e18).contains(&size) { Ok(size as u64) } else { Err(wrong()) }
+    let size = number.trim().parse::<f64>().map_err(|_| wrong())? * factor;
+    if MEMORY.contains(&size) { Ok(size as u64) } else { Err("a memory is from 1MB to 1000000TB".into()) }
 }
 
 /// A number within a range, both ends included; `words` say what it is, in its unit.
@@ -194,8 +203,14 @@ pub fn strain_range(text: &str) -> std::result::Result<[f64; 2], String> {
         },
     };
     let range = [end(from, f64::NEG_INFINITY)?, end(to, f64::INFINITY)?];
-    if range[0] <= range[1] { Ok(range) } else { Err(wrong()) }
+    if range[0] <= range[1] {
+        return Ok(range);
+    }
+    Err(format!("{text} ends before it begins; write {}..{}", to.trim(), from.trim()))
 }
+
+/// Longest span of time (s): a hundred years and more.
+const LONGEST_TIME: f64 = 3600.0 * 1e6;
 
 /// A span of time, written as `90s`, `20m` or `2h`.
 pub fn duration(text: &str) -> std::result::Result<Duration, String> {
@@ -209,7 +224,11 @@ pub fn duration(text: &str) -> std::result::Result<Duration, String> {
         _ => return Err(wrong()),
     };
     let number: f64 = text[..text.len() - 1].trim().parse().map_err(|_| wrong())?;
-    Duration::try_from_secs_f64(number * seconds).map_err(|_| wrong())
+    let seconds = number * seconds;
+    if !(0.0..=LONGEST_TIME).contains(&seconds) {
+        return Err(format!("a time is from 0s to {}h", LONGEST_TIME / 3600.0));
+    }
+    Ok(Duration::from_secs_f64(seconds))
 }
 
 #[cfg(test)]
@@ -228,8 +247,12 @@ mod tests {
     fn memory_is_a_number_with_its_unit() {
         assert_eq!(bytes("4GB"), Ok(4_000_000_000));
         assert_eq!(bytes(" 1.5 MiB"), Ok(1_572_864));
-        for wrong in ["", "4", "GB", "-4GB", "1..5GB", "nanGB", "infGB", "4 parsec", "1e300GB", "0GB", "4µB"] {
-            assert!(bytes(wrong).is_err(), "{wrong}");
+        assert_eq!(bytes("2e3kB"), Ok(2_000_000));
+        for wrong in ["", "4", "GB", "1..5GB", "nanGB", "infGB", "4 parsec", "4µB"] {
+            assert!(bytes(wrong).unwrap_err().contains("with its unit"), "{wrong}");
+        }
+        for beyond in ["1B", "0GB", "-4GB", "999kB", "1e300GB", "1e999GB", "99999999TB"] {
+            assert!(bytes(beyond).unwrap_err().contains("from 1MB to"), "{beyond}");
         }
     }
 
@@ -259,8 +282,11 @@ mod tests {
         for (text, seconds) in [("90s", 90), ("20m", 1200), ("0.5 h", 1800)] {
             assert_eq!(duration(text), Ok(Duration::from_secs(seconds)));
         }
-        for wrong in ["20", "", "m", "-3s", "1d", "3µ"] {
-            assert!(duration(wrong).is_err(), "{wrong}");
+        for wrong in ["20", "", "m", "1d", "3µ"] {
+            assert!(duration(wrong).unwrap_err().contains("with its unit"), "{wrong}");
+        }
+        for beyond in ["-3s", "1e300h", "nanh"] {
+            assert!(duration(beyond).unwrap_err().contains("from 0s to 1000000h"), "{beyond}");
         }
     }
 
@@ -269,8 +295,9 @@ mod tests {
         assert_eq!(strain_range("20..26"), Ok([0.2, 0.26]));
         assert_eq!(strain_range("20 % .. 26 %"), Ok([0.2, 0.26]));
         assert_eq!(strain_range("..5"), Ok([f64::NEG_INFINITY, 0.05]));
-        for wrong in ["20", "26..20", "a..b", "nan..5", "..inf"] {
-            assert!(strain_range(wrong).is_err(), "{wrong}");
+        for wrong in ["20", "a..b", "nan..5", "..inf"] {
+            assert!(strain_range(wrong).unwrap_err().contains("in per cent"), "{wrong}");
         }
+        assert_eq!(strain_range("5 .. 1").unwrap_err(), "5 .. 1 ends before it begins; write 1..5");
     }
 }

@@ -19,20 +19,22 @@ pub fn verify(args: &CaseArgs) -> Result<Ended> {
     args.prepare(NAME)?;
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
     let began = Instant::now();
-    let (reports, ended) = args.run(NAME, |runner| verify::run_all(&cases, effort, runner))?;
-    show(&reports, began.elapsed().as_secs_f64());
+    let ran = args.run(NAME, |runner, kept| verify::run_all(&cases, effort, runner, kept))?;
+    let reports = &ran.outputs;
+    show(reports, began.elapsed().as_secs_f64());
     if let Some(path) = &args.json {
-        report::write_json(&reports, path)?;
+        report::write_json(reports, path)?;
         say!("findings: {}", path.display());
     }
     if let Some(folder) = args.plots(NAME) {
-        let files = plots::write(&reports, &folder)?;
+        let files = plots::write(reports, &folder)?;
         if !files.is_empty() {
             say!("plots: {} in {}", counted(files.len(), "file"), folder.display());
         }
     }
-    ended?;
-    Ok(if reports.iter().all(Report::passes) { Ended::Well } else { Ended::Missed })
+    let well = reports.iter().all(Report::passes);
+    ran.complete()?;
+    Ok(if well { Ended::Well } else { Ended::Missed })
 }
 
 fn list() {

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 const LONGEST_HEAD: usize = 8 << 10;
 /// Most headers of a request.
 const MOST_HEADERS: usize = 64;
-/// Time for a whole head to come.
-const HEAD_TIME: Duration = Duration::from_secs(10);
+/// Time for a whole head to come. Browsers send it at once; connections that they open to have them ready may wait in vain.
+const HEAD_TIME: Duration = Duration::from_secs(2);
 
 /// Why a request is not answered with what it asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,11 +6,12 @@ use super::record::Record;
 use super::session;
 use super::shared::Shared;
 use crate::base::error::{Error, Result};
+use std::collections::VecDeque;
 use std::io::{ErrorKind, Write};
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tungstenite::handshake::derive_accept_key;
 
@@ -22,7 +23,8 @@ const ICON: &str = include_str!("../../assets/explore/icon.svg");
 /// All that can be asked for.
 const NAMES: [&str; 7] = ["/", "/explore.css", "/explore.js", "/charts.js", "/icon.svg", "/run.json", "/socket"];
 
-/// Connections at once, requests and sockets together.
+/// Connections at once, requests and sockets together. When there are so many, the one that has waited longest without a
+/// request makes room.
 const MOST_CONNECTIONS: usize = 48;
 /// Browsers that look at once.
 const MOST_BROWSERS: usize = 16;
@@ -69,6 +71,8 @@ struct Service {
     facts: Vec<u8>,
     connections: AtomicUsize,
     browsers: AtomicUsize,
+    /// Connections that have not sent a whole request yet, in the order in which they came.
+    idle: Mutex<VecDeque<Arc<TcpStream>>>,
     /// When the last page went away; none has been there before that.
     left: Mutex<Option<Instant>>,
 }
@@ -98,6 +102,7 @@ impl Server {
             bound,
             connections: AtomicUsize::new(0),
             browsers: AtomicUsize::new(0),
+            idle: Mutex::default(),
             left: Mutex::new(None),
         };
         Ok(Self { listener, options, service: Arc::new(service) })
@@ -170,6 +175,24 @@ impl Drop for Counted {
     }
 }
 
+/// Keeps a connection among the idle ones for as long as it lives.
+struct Idle(Arc<Service>, Arc<TcpStream>);
+
+impl Idle {
+    /// `None` when the system gives no second handle of it.
+    fn enter(service: &Arc<Service>, stream: &TcpStream) -> Option<Self> {
+        let handle = Arc::new(stream.try_clone().ok()?);
+        service.idle().push_back(handle.clone());
+        Some(Self(service.clone(), handle))
+    }
+}
+
+impl Drop for Idle {
+    fn drop(&mut self) {
+        self.0.idle().retain(|idle| !Arc::ptr_eq(idle, &self.1));
+    }
+}
+
 impl Service {
     fn deserted(&self) -> bool {
         let left = self.left.lock().unwrap_or_else(PoisonError::into_inner);
@@ -186,21 +209,38 @@ impl Service {
         if prepared.and_then(|()| stream.set_nodelay(true)).is_err() {
             return;
         }
-        let Some(counted) = Counted::enter(&self, |service| &service.connections, MOST_CONNECTIONS) else {
+        let enter = |most| Counted::enter(&self, |service| &service.connections, most);
+        // One that is shut down is counted until its thread has seen that.
+        let counted =
+            enter(MOST_CONNECTIONS).or_else(|| self.drop_oldest_idle().then(|| enter(2 * MOST_CONNECTIONS))?);
+        let Some(counted) = counted else {
             // Said without a thread of its own; the words fit into the socket's buffer.
             let _ = refuse(&mut stream, Refusal::Busy);
             return;
         };
+        let Some(idle) = Idle::enter(&self, &stream) else { return };
         let spawned = std::thread::Builder::new().name("explore".into()).spawn(move || {
             let _counted = counted;
-            self.answer(stream);
+            self.answer(stream, idle);
         });
         // Without a thread the connection is closed, which says enough.
         drop(spawned);
     }
 
-    fn answer(self: &Arc<Self>, mut stream: TcpStream) {
-        let answered = match http::read(&mut stream) {
+    fn idle(&self) -> MutexGuard<'_, VecDeque<Arc<TcpStream>>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Ends the connection that has waited longest without a request; whether there was one.
+    fn drop_oldest_idle(&self) -> bool {
+        let oldest = self.idle().pop_front();
+        oldest.is_some_and(|stream| stream.shutdown(Shutdown::Both).is_ok())
+    }
+
+    fn answer(self: &Arc<Self>, mut stream: TcpStream, idle: Idle) {
+        let request = http::read(&mut stream);
+        drop(idle);
+        let answered = match request {
             Ok(request) => match self.check(&request) {
                 Ok(()) if request.path == "/socket" => return self.look(stream, request),
                 Ok(()) => self.page(&mut stream, &request),

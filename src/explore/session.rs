@@ -102,6 +102,14 @@ struct Look {
     asked: Instant,
 }
 
+/// An error in one line, with what would be right.
+fn words_of(error: &crate::base::error::Error) -> String {
+    match miette::Diagnostic::help(error).map(|help| help.to_string()) {
+        Some(help) if !help.is_empty() => format!("{error}; {help}"),
+        _ => error.to_string(),
+    }
+}
+
 /// Serves the page behind a socket until it goes away; `rest` is what it has already sent.
 pub(super) fn run(shared: &Shared, stream: TcpStream, rest: Vec<u8>) {
     let config = WebSocketConfig::default()
@@ -307,7 +315,7 @@ impl Session<'_> {
     fn answer(&mut self, answer: Result<Value>) -> std::result::Result<(), End> {
         match answer {
             Ok(value) => self.say(&value),
-            Err(error) => self.say(&json!({ "error": error.to_string() })),
+            Err(error) => self.say(&json!({ "error": words_of(&error) })),
         }
     }
 

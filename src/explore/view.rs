@@ -1,6 +1,7 @@
 //! What a browser looks at: everything that decides a picture apart from its size.
 
 use crate::base::error::{Error, Result};
+use crate::base::units::shortest;
 use crate::engine::view::RunInfo;
 use crate::scene::spec::{ColourBy, Theme};
 use serde::{Deserialize, Serialize};
@@ -107,60 +108,62 @@ impl View {
         let lengths = self.centre.iter().chain(&self.follow).chain(&self.cut);
         let layers = info.layers.len();
         let wires = info.wires.len();
+        let wire_numbers: Vec<usize> = self.hidden_wires.iter().chain(&self.selected).copied().collect();
         let rules = [
             (
                 self.state >= 0.0 && self.state <= last as f64,
                 "state",
-                format!("{}", self.state),
+                shortest(self.state),
                 format!("a number from 0 to {last}"),
             ),
             (
                 self.azimuth.is_finite() && self.elevation.is_finite(),
                 "azimuth and elevation",
-                format!("{} and {}", self.azimuth, self.elevation),
+                list([self.azimuth, self.elevation].map(shortest)),
                 "numbers".into(),
             ),
             (
                 lengths.clone().all(|v| v.abs() < 1e6),
                 "centre, follow and cut",
-                format!("{:?}", lengths.collect::<Vec<_>>()),
+                list(lengths.map(|length| shortest(*length))),
                 "lengths in mm below a kilometre".into(),
             ),
             (
                 self.height > 1e-4 && self.height < 1e6,
                 "height",
-                format!("{}", self.height),
+                shortest(self.height),
                 "a length in mm above zero".into(),
             ),
             (
                 (0.0..=MOST_EXPLODED).contains(&self.explode),
                 "explode",
-                format!("{}", self.explode),
+                shortest(self.explode),
                 format!("a number from 0 to {MOST_EXPLODED}"),
             ),
             (
                 self.range.is_none_or(|[low, high]| low.is_finite() && high.is_finite() && low < high),
                 "range",
-                format!("{:?}", self.range),
+                list(self.range.into_iter().flatten().map(shortest)),
                 "two numbers, the lower one first".into(),
             ),
             (
                 self.hidden_layers.len() <= layers && self.hidden_layers.iter().all(|l| *l < layers),
                 "hidden_layers",
-                format!("{:?}", self.hidden_layers),
+                list(self.hidden_layers.iter().map(usize::to_string)),
                 format!("numbers below {layers}, each once"),
             ),
             (
-                self.hidden_wires.len() <= wires && self.hidden_wires.iter().chain(&self.selected).all(|w| *w < wires),
+                self.hidden_wires.len() <= wires && wire_numbers.iter().all(|wire| *wire < wires),
                 "hidden_wires and selected",
-                format!("{:?} and {:?}", self.hidden_wires, self.selected),
+                list(wire_numbers.iter().map(usize::to_string)),
                 format!("numbers below {wires}, each once"),
             ),
         ];
         match rules.into_iter().find(|(holds, ..)| !holds) {
             None => Ok(()),
             Some((_, key, value, right)) => {
-                Err(Error::input(format!("{key} of the view is {value}"), format!("it takes {right}")))
+                let (verb, pronoun) = if key.contains(" and ") { ("are", "they take") } else { ("is", "it takes") };
+                Err(Error::input(format!("{key} of the view {verb} {value}"), format!("{pronoun} {right}")))
             }
         }
     }
@@ -168,6 +171,22 @@ impl View {
     /// Whether a wire of a layer is left out.
     pub fn hides(&self, wire: usize, layer: usize) -> bool {
         self.hidden_layers.contains(&layer) || self.hidden_wires.contains(&wire)
+    }
+}
+
+/// Most numbers that a message shows.
+const MOST_SHOWN: usize = 8;
+
+/// Numbers as a message shows them: `1, 5 and 7`, and of many the first.
+fn list(numbers: impl IntoIterator<Item = String>) -> String {
+    let mut shown: Vec<String> = numbers.into_iter().collect();
+    let more = shown.len().saturating_sub(MOST_SHOWN);
+    shown.truncate(MOST_SHOWN);
+    let last = if more > 0 { Some(format!("{more} more")) } else { shown.pop() };
+    match last {
+        Some(last) if shown.is_empty() => last,
+        Some(last) => format!("{} and {last}", shown.join(", ")),
+        None => "nothing".into(),
     }
 }
 
@@ -200,5 +219,27 @@ mod tests {
         let error = View::parse("azimut = 3").unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("azimut"), "{error}");
+    }
+
+    /// What a message shows of a view that a run does not have.
+    fn refused(view: View) -> String {
+        let info = RunInfo { layers: vec!["outer".into()], ..RunInfo::default() };
+        let error = view.check(&info, 3).unwrap_err();
+        let Error::Input { what, help: Some(help) } = error else { panic!("{error}") };
+        format!("{what}; {help}")
+    }
+
+    #[test]
+    fn messages_show_numbers_as_people_write_them() {
+        let far = refused(View { centre: [0.0, -0.5, 1e308], cut: Some(7.0), ..View::default() });
+        assert!(far.starts_with("centre, follow and cut of the view are 0, -0.5, 1e308 and 7; "), "{far}");
+        let high = refused(View { height: -1e300, ..View::default() });
+        assert!(high.starts_with("height of the view is -1e300; it takes a length"), "{high}");
+        let wire = refused(View { selected: Some(7), ..View::default() });
+        assert!(wire.starts_with("hidden_wires and selected of the view are 7; they take "), "{wire}");
+        let layers = refused(View { hidden_layers: vec![4; 30], ..View::default() });
+        assert!(layers.contains("is 4, 4, 4, 4, 4, 4, 4, 4 and 22 more; "), "{layers}");
+        let range = refused(View { range: Some([2.0, 1.0]), ..View::default() });
+        assert!(range.starts_with("range of the view is 2 and 1; "), "{range}");
     }
 }

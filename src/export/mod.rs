@@ -73,7 +73,9 @@ pub fn export(run: &Path, options: &ExportOptions, stop: &AtomicBool) -> Result<
     let staged = Staged::open(&out)?;
     let target =
         Target { folder: staged.path().to_owned(), run: replay.origin().run, strain: options.selection.strain };
-    let snapshots = replay.show(&mut *writer(options.format, target)?, stop)?;
+    let mut writer = writer(options.format, target)?;
+    let snapshots = replay.show(&mut *writer, stop).map_err(|error| staged.by_own_name(error))?;
+    drop(writer);
     if stop.load(Ordering::Relaxed) {
         return Err(Error::Interrupted);
     }

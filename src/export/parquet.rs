@@ -17,6 +17,7 @@ use arrow_array::{ArrayRef, BooleanArray, Float32Array, Float64Array, Int64Array
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::Compression;
+use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use std::collections::{BTreeMap, HashMap};
@@ -259,8 +260,15 @@ impl Table {
     }
 }
 
-fn refused(path: &Path, error: parquet::errors::ParquetError) -> Error {
-    Error::io("cannot write", path, std::io::Error::other(error))
+fn refused(path: &Path, error: ParquetError) -> Error {
+    let cause = match error {
+        // What the system answered is wrapped twice.
+        ParquetError::External(cause) => {
+            cause.downcast::<std::io::Error>().map_or_else(std::io::Error::other, |cause| *cause)
+        }
+        other => std::io::Error::other(other),
+    };
+    Error::io("cannot write", path, cause)
 }
 
 /// The kind of a column that is written; text where only its values tell.

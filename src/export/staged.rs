@@ -33,7 +33,7 @@ impl Staged {
     /// # Errors
     /// [`Error::Input`] when another process writes into it; [`Error::Io`].
     pub fn open(out: &Path) -> Result<Self> {
-        fs::create_dir_all(out).map_err(|e| Error::io("cannot create the folder", out, e))?;
+        regular::make_folder(out)?;
         let empty = RemoveIfEmpty(out.to_owned());
         let lock = Lock::take(out)?;
         let growing = tempfile::Builder::new().prefix(".strandsnap-").tempdir_in(out);
@@ -44,6 +44,17 @@ impl Staged {
     /// Where files grow.
     pub fn path(&self) -> &Path {
         self.growing.path()
+    }
+
+    /// An error in writing a file, told by the name that the file was to get: nobody has asked for the other.
+    pub fn by_own_name(&self, error: Error) -> Error {
+        match error {
+            Error::Io { action, path, cause } => {
+                let own = path.strip_prefix(self.path()).map(|name| self.out.join(name));
+                Error::Io { action, path: own.unwrap_or(path), cause }
+            }
+            other => other,
+        }
     }
 
     /// Removes what an earlier export in the same format wrote, and gives the files their names, that to be opened first

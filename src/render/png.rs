@@ -18,6 +18,11 @@ pub fn encode(picture: &RgbImage) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Whether a file is a whole picture: everything in it can be decoded, checksums included.
+pub fn is_whole(path: &Path) -> bool {
+    image::open(path).is_ok()
+}
+
 /// Writes `bytes` to `path` through a temporary file in the same folder, so that nobody ever sees half a file.
 ///
 /// # Errors

@@ -4,12 +4,14 @@ use super::animation::{self, Still};
 use super::frame::Renderer;
 use super::{adapter, png};
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use crate::observe::animation::Animation;
 use crate::observe::timings::Timings;
 use crate::scene::spec::OutputSpec;
 use image::RgbImage;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -30,6 +32,8 @@ pub struct FrameWriter {
     folder: PathBuf,
     look: OutputSpec,
     animation: Option<Animation>,
+    /// Pictures that are there and are not drawn again.
+    whole: HashSet<PathBuf>,
     /// Memory for snapshots that wait to be drawn (bytes).
     memory: usize,
     curve: Vec<(f64, f64)>,
@@ -48,6 +52,8 @@ struct Workers {
 /// A snapshot and what happened since the one before.
 struct Job {
     snapshot: Arc<Snapshot>,
+    /// Whether a picture of it is missing.
+    missing: bool,
     curve: Vec<(f64, f64)>,
     ruptures: Vec<Rupture>,
 }
@@ -59,11 +65,12 @@ impl FrameWriter {
     /// When there is no adapter or when the folder cannot be made.
     pub fn new(folder: &Path, look: &OutputSpec) -> Result<Self> {
         adapter::check()?;
-        std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
+        regular::make_folder(folder)?;
         Ok(Self {
             folder: folder.to_owned(),
             look: look.clone(),
             animation: None,
+            whole: HashSet::new(),
             memory: 0,
             curve: Vec::new(),
             ruptures: Vec::new(),
@@ -76,6 +83,12 @@ impl FrameWriter {
     /// Makes an animation of the pictures when the last one is written, also of those of a run that was stopped.
     pub fn with_animation(mut self, animation: Option<Animation>) -> Self {
         self.animation = animation;
+        self
+    }
+
+    /// Leaves out pictures that are there already, from an earlier process that drew the same.
+    pub fn without(mut self, whole: HashSet<PathBuf>) -> Self {
+        self.whole = whole;
         self
     }
 
@@ -151,8 +164,10 @@ impl Observer for FrameWriter {
     }
 
     fn snapshot(&mut self, snapshot: &Arc<Snapshot>) -> Result<()> {
+        let file = picture(&self.folder, self.stills.len());
         let job = Job {
             snapshot: snapshot.clone(),
+            missing: !self.whole.contains(&file),
             curve: std::mem::take(&mut self.curve),
             ruptures: std::mem::take(&mut self.ruptures),
         };
@@ -166,7 +181,7 @@ impl Observer for FrameWriter {
             return self.join();
         }
         self.add(&Timings { waited: begin.elapsed(), ..Timings::default() });
-        self.stills.push(Still { picture: picture(&self.folder, self.stills.len()), pause });
+        self.stills.push(Still { picture: file, pause });
         Ok(())
     }
 
@@ -195,6 +210,9 @@ fn draw_all(mut renderer: Renderer, jobs: &Receiver<Job>, pictures: &SyncSender<
     for (number, job) in jobs.iter().enumerate() {
         curve.extend(job.curve);
         ruptures.extend(job.ruptures);
+        if !job.missing {
+            continue;
+        }
         let picture = renderer.draw(&job.snapshot, &curve, &ruptures)?;
         if pictures.send((number, picture)).is_err() {
             // The encoder has ended with an error of its own, which `join` reports.

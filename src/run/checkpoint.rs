@@ -259,8 +259,10 @@ fn write(path: &Path, checkpoint: &Checkpoint) -> std::io::Result<()> {
     writer.write_all(&MAGIC)?;
     writer.write_all(&VERSION.to_le_bytes())?;
     let info = FrameInfo::new().block_checksums(true).content_checksum(true);
-    let encoder = FrameEncoder::with_frame_info(info, writer);
-    let encoder = postcard::to_io(checkpoint, encoder).map_err(std::io::Error::other)?;
+    let mut encoder = Refusing { writer: FrameEncoder::with_frame_info(info, writer), refused: None };
+    let written = postcard::to_io(checkpoint, &mut encoder).map(|_| ()).map_err(std::io::Error::other);
+    let Refusing { writer: encoder, refused } = encoder;
+    refused.map_or(written, Err)?;
     let file =
         encoder.finish().map_err(std::io::Error::from)?.into_inner().map_err(std::io::IntoInnerError::into_error)?;
     file.sync_all()?;
@@ -271,6 +273,37 @@ fn write(path: &Path, checkpoint: &Checkpoint) -> std::io::Result<()> {
             File::open(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?.sync_all()
         }
         _ => Ok(()),
+    }
+}
+
+/// Keeps why a writer has refused, which postcard does not pass on.
+struct Refusing<W> {
+    writer: W,
+    refused: Option<std::io::Error>,
+}
+
+impl<W: Write> Refusing<W> {
+    fn keep<T>(&mut self, result: std::io::Result<T>) -> std::io::Result<T> {
+        result.map_err(|refused| {
+            let kind = refused.kind();
+            // An interrupted call is made again by whoever made it.
+            if kind != std::io::ErrorKind::Interrupted {
+                self.refused.get_or_insert(refused);
+            }
+            kind.into()
+        })
+    }
+}
+
+impl<W: Write> Write for Refusing<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.writer.write(bytes);
+        self.keep(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        let flushed = self.writer.flush();
+        self.keep(flushed)
     }
 }
 
@@ -421,5 +454,17 @@ mod tests {
         assert!(shorter.contains("longer"), "{shorter}");
         let revision = refused(Identity { revision: 0, ..kept.identity.clone() });
         assert!(revision.contains("revision"), "{revision}");
+    }
+
+    /// `/dev/full` accepts opening and refuses every byte, as a full disk does.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_told_as_the_system_tells_it() {
+        let run = tempfile::tempdir().unwrap();
+        let path = run.path().join(SLOTS[0]);
+        std::os::unix::fs::symlink("/dev/full", partial::name(&path)).unwrap();
+        let cause = write(&path, &checkpoint(1)).unwrap_err();
+        assert_eq!(cause.kind(), std::io::ErrorKind::StorageFull, "{cause}");
+        assert!(cause.to_string().contains("No space left"), "{cause}");
     }
 }

@@ -1,10 +1,12 @@
 //! The output folder: checked before the simulation, cleared only when nothing else can fail.
 
 use super::lock::{self, LOCK, Lock};
+use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::observe::files::write_whole;
 use crate::observe::{partial, tables};
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -28,6 +30,8 @@ pub const FRAMES: &str = "frames";
 pub const ANIMATION: &str = "frames.gif";
 /// What a folder of pictures holds until the last of them is drawn.
 const UNFINISHED: &str = "UNFINISHED.txt";
+/// Begins the line in it that says what is drawn.
+const DRAWN: &str = "drawn: ";
 /// A study of error against run time, in a folder of its own.
 pub const ACCURACY_STUDY: &str = "accuracy.json";
 /// Its plot.
@@ -85,9 +89,7 @@ impl OutFolder {
     /// [`Error::Input`] when it holds something and `overwrite` is not set, is no folder, another process writes into it, or
     /// what has the name of a result is no regular file; [`Error::Io`] when it cannot be written.
     pub fn check(path: &Path, overwrite: bool) -> Result<Self> {
-        if path.exists() && !path.is_dir() {
-            return Err(Error::input(format!("{} is not a folder", path.display()), "give another one with --out"));
-        }
+        regular::check_folder(path)?;
         let folder = Self { path: path.into(), overwrite };
         if let Some(by) = lock::holder(path) {
             return Err(lock::held(path, &by));
@@ -154,25 +156,30 @@ impl OutFolder {
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;
         }
-        clear_pictures(&self.path.join(FRAMES))
+        clear_pictures(&self.path.join(FRAMES), None).map(drop)
     }
 
     /// The same for a folder of pictures only: nothing but numbered pictures is removed. It is marked as unfinished until
-    /// [`Pictures::complete`].
+    /// [`Pictures::complete`]; the mark says what is `drawn`: of which run, and how. Where an earlier process has begun to
+    /// draw the same and `go_on` tells which of its pictures are whole, those stay.
     ///
     /// # Errors
     /// As for [`OutFolder::open`].
-    pub fn open_for_pictures(&self) -> Result<Pictures> {
+    pub fn open_for_pictures(&self, drawn: &Digest, go_on: Option<&dyn Fn(&Path) -> bool>) -> Result<Pictures> {
         let lock = self.take()?;
-        clear_pictures(&self.path)?;
         let mark = self.path.join(UNFINISHED);
-        write_whole(&mark, "These pictures are not all that were to be drawn: drawing goes on, or was stopped.\n")?;
-        Ok(Pictures { mark, _lock: lock })
+        let begun = drawn_before(&self.path);
+        let is_whole = go_on.filter(|_| begun == Some(*drawn));
+        let whole = clear_pictures(&self.path, is_whole)?;
+        regular::make_folder(&self.path)?;
+        let says = "These pictures are not all that were to be drawn: drawing goes on, or was stopped.";
+        write_whole(&mark, &format!("{says}\n{DRAWN}{drawn}\n"))?;
+        Ok(Pictures { mark, whole, others: begun.is_some_and(|begun| begun != *drawn), _lock: lock })
     }
 
     /// Makes and locks it; what came meanwhile is looked at again.
     fn take(&self) -> Result<Lock> {
-        fs::create_dir_all(&self.path).map_err(|e| Error::io("cannot create the folder", &self.path, e))?;
+        regular::make_folder(&self.path)?;
         let lock = Lock::take(&self.path)?;
         self.check_content()?;
         Ok(lock)
@@ -211,10 +218,22 @@ impl OutFolder {
 #[derive(Debug)]
 pub struct Pictures {
     mark: PathBuf,
+    whole: HashSet<PathBuf>,
+    others: bool,
     _lock: Lock,
 }
 
 impl Pictures {
+    /// Those that are there already, whole.
+    pub fn whole(&self) -> &HashSet<PathBuf> {
+        &self.whole
+    }
+
+    /// Whether pictures were removed that an earlier process had begun to draw, of another run or in another way.
+    pub fn replaced_others(&self) -> bool {
+        self.others
+    }
+
     /// All are drawn.
     ///
     /// # Errors
@@ -230,16 +249,17 @@ fn is_empty(folder: &Path) -> Result<bool> {
     Ok(entries.all(|entry| entry.is_ok_and(|entry| entry.file_name() == LOCK)))
 }
 
+/// Whether there is a folder with something in it besides a lock.
+pub fn holds_something(folder: &Path) -> bool {
+    folder.is_dir() && !is_empty(folder).unwrap_or(false)
+}
+
 /// Tries to write a file that vanishes again, in the folder or in the nearest one above it that exists.
 fn probe(path: &Path) -> Result<()> {
     let refuse = |e| Error::io("cannot write into the folder", path, e);
     let absolute = std::path::absolute(path).map_err(refuse)?;
     let existing = absolute.ancestors().find(|a| a.exists()).unwrap_or(&absolute);
-    tempfile::tempfile_in(existing).map_err(refuse)?;
-    if existing != absolute && !existing.is_dir() {
-        return Err(refuse(std::io::ErrorKind::NotADirectory.into()));
-    }
-    Ok(())
+    tempfile::tempfile_in(existing).map(drop).map_err(refuse)
 }
 
 /// Removes the checkpoints of a run, and the trajectory that it was resumed from.
@@ -261,19 +281,29 @@ pub(super) fn remove_if_there(file: &Path) -> Result<()> {
     }
 }
 
-/// Removes numbered pictures from a folder, and the folder when nothing is left in it.
-fn clear_pictures(folder: &Path) -> Result<()> {
+/// Removes numbered pictures from a folder but those that `is_whole` tells, which it gives; and the folder when nothing is
+/// left in it.
+fn clear_pictures(folder: &Path, is_whole: Option<&dyn Fn(&Path) -> bool>) -> Result<HashSet<PathBuf>> {
+    let mut whole = HashSet::new();
     let Ok(entries) = fs::read_dir(folder) else {
-        return Ok(());
+        return Ok(whole);
     };
-    for entry in entries.flatten() {
-        if is_picture(&entry.path()) {
-            remove_if_there(&entry.path())?;
+    for picture in entries.flatten().map(|entry| entry.path()).filter(|path| is_picture(path)) {
+        if is_whole.is_some_and(|is_whole| is_whole(&picture)) {
+            whole.insert(picture);
+        } else {
+            remove_if_there(&picture)?;
         }
     }
     // Fails when the user keeps something there, or a lock is, which is right.
     let _ = fs::remove_dir(folder);
-    Ok(())
+    Ok(whole)
+}
+
+/// What an earlier process has begun to draw into `folder` and not completed; `None` where there is no such mark.
+pub fn drawn_before(folder: &Path) -> Option<Digest> {
+    let mark = regular::text_if_there(&folder.join(UNFINISHED), regular::LONGEST_TABLE).ok()??;
+    mark.lines().find_map(|line| line.strip_prefix(DRAWN)?.parse().ok())
 }
 
 /// Whether a file is named as the frames are: a PNG (or the beginning of one) with a number in its name, or what a process
@@ -356,10 +386,44 @@ mod tests {
     #[test]
     fn pictures_are_unfinished_until_all_are_drawn() {
         let folder = tempfile::tempdir().unwrap();
-        let pictures = OutFolder::check(folder.path(), true).unwrap().open_for_pictures().unwrap();
+        let out = || OutFolder::check(folder.path(), true).unwrap();
+        let pictures = out().open_for_pictures(&Digest::of("a"), None).unwrap();
         assert!(folder.path().join(UNFINISHED).is_file());
         pictures.complete().unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn whole_pictures_of_the_same_stay_when_drawing_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let is_whole = |path: &Path| fs::read_to_string(path).is_ok_and(|text| text == "whole");
+        let (first, other) = (Digest::of("a run, a view"), Digest::of("another view"));
+        let open = |drawn: &Digest, go_on: bool| {
+            let is_whole: &dyn Fn(&Path) -> bool = &is_whole;
+            let pictures = OutFolder::check(folder.path(), true).unwrap();
+            let pictures = pictures.open_for_pictures(drawn, go_on.then_some(is_whole)).unwrap();
+            (pictures.whole().len(), pictures.replaced_others())
+        };
+        assert_eq!((drawn_before(folder.path()), open(&first, true)), (None, (0, false)));
+        let draw = || {
+            let names =
+                [("frame_0000.png", "whole"), ("frame_0001.png", "half"), (".frame-a.tmp", "h"), ("mine.txt", "")];
+            names.iter().for_each(|(name, text)| fs::write(at(name), text).unwrap());
+        };
+        draw();
+        assert_eq!(drawn_before(folder.path()), Some(first));
+        assert_eq!(open(&first, true), (1, false));
+        assert!(at("frame_0000.png").exists() && at("mine.txt").exists());
+        assert!(!at("frame_0001.png").exists() && !at(".frame-a.tmp").exists());
+        // Nobody has asked to go on, or it is something else that is drawn.
+        assert_eq!(open(&first, false), (0, false));
+        draw();
+        assert_eq!(open(&other, true), (0, true));
+        assert!(!at("frame_0000.png").exists());
+        assert_eq!(drawn_before(folder.path()), Some(other));
+        fs::write(at(UNFINISHED), "changed").unwrap();
+        assert_eq!(drawn_before(folder.path()), None);
     }
 
     #[test]

@@ -71,6 +71,22 @@ pub fn wait(folder: &Path, stop: &AtomicBool) {
     }
 }
 
+/// The same before writing into `folder`: what the process leaves there can only be replaced, and where it may not be
+/// (`overwrite`), that is found out before the wait.
+///
+/// # Errors
+/// [`Error::Input`] when a process writes into `folder` and `overwrite` is not set; [`Error::Interrupted`] when `stop` was.
+pub fn wait_to_write(folder: &Path, overwrite: bool, stop: &AtomicBool) -> Result<()> {
+    if let Some(by) = holder(folder).filter(|_| !overwrite) {
+        return Err(Error::input(
+            format!("process {by} writes into {}, and its results will be there when it has ended", folder.display()),
+            "give --overwrite with --wait to replace them then, or another folder with --out",
+        ));
+    }
+    wait(folder, stop);
+    if holder(folder).is_some() { Err(Error::Interrupted) } else { Ok(()) }
+}
+
 /// The error for a folder that a process writes into.
 pub fn held(folder: &Path, by: &str) -> Error {
     Error::input(

@@ -2,6 +2,7 @@
 
 use super::folder::TRAJECTORY;
 use super::identity::Doubt;
+use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
 use crate::engine::view::RunInfo;
 use crate::observe::origin::Origin;
@@ -136,6 +137,12 @@ impl Replay {
     /// Which run it is.
     pub fn origin(&self) -> Origin {
         self.origin
+    }
+
+    /// What is shown: of which run, which of its snapshots, and with which marks.
+    pub fn digest(&self) -> Digest {
+        let marks = [self.cut_off.is_some(), self.doubted];
+        Digest::of(format!("{} {:?} {} {marks:?}", self.origin.run, self.shown, self.records))
     }
 
     /// How many snapshots are selected.

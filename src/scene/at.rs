@@ -132,7 +132,12 @@ impl<'a> At<'a> {
         if range.holds(value) {
             return Ok(value);
         }
-        let what = format!("`{}` is {raw}, but must be {}", self.name(), range.words());
+        let finite = match range {
+            Range::Any | Range::PositiveOrInfinite => "",
+            _ if value.is_finite() => "",
+            _ => "a finite number, ",
+        };
+        let what = format!("`{}` is {raw}, but must be {finite}{}", self.name(), range.words());
         Err(self.error(what, format!("for example {} = {}", self.name(), dimension.example())))
     }
 
@@ -145,9 +150,9 @@ impl<'a> At<'a> {
             }),
             Scalar::Number(number) if dimension == Dimension::Ratio => Ok(*number),
             Scalar::Number(number) if number.is_infinite() && range == Range::PositiveOrInfinite => Ok(*number),
-            Scalar::Number(number) => {
+            Scalar::Number(_) => {
                 let what =
-                    format!("`{}` is the bare number {number}, but a {} needs its unit", self.name(), dimension.name());
+                    format!("`{}` is the bare number {raw}, but a {} needs its unit", self.name(), dimension.name());
                 Err(self.error(what, format!("write {} = {}", self.name(), dimension.example())))
             }
         }

@@ -5,6 +5,7 @@ use super::raw::{RawForm, RawHardening, Scalar};
 use super::spec::HardeningSpec;
 use crate::base::error::Result;
 use crate::base::units::Dimension::{Pressure, Ratio};
+use crate::base::units::shortest;
 
 /// A point of an engineering curve lies on the elastic line when its plastic strain is within this share of its
 /// elastic strain: people write strains with two or three digits.
@@ -91,6 +92,7 @@ fn points(at: &At, raw: &RawHardening, example: &str) -> Result<Vec<[f64; 2]>> {
         let strain = element.element(0).quantity(strain, Ratio, Range::NotNegative)?;
         let stress = element.element(1).quantity(stress, Pressure, Range::NotNegative)?;
         if let Some([before, _]) = points.last().filter(|[before, _]| strain <= *before) {
+            let [strain, before] = [strain, *before].map(shortest);
             let what = format!("the strain of point {index} is {strain}, not above {before}, that of the point before");
             return Err(element.error(what, "order the points by rising strain"));
         }

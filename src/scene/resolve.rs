@@ -7,7 +7,7 @@ use super::raw::*;
 use super::spec::*;
 use super::{hardening, resolve_bodies, resolve_drive};
 use crate::base::error::{Error, Result};
-use crate::base::units::Dimension;
+use crate::base::units::{Dimension, shortest};
 use std::path::Path;
 
 /// Young's modulus of annealed copper where a scene gives none (Pa).
@@ -304,7 +304,7 @@ fn checkpoint(at: &At, raw: &Option<Scalar>) -> Result<CheckpointSpec> {
             Ok(CheckpointSpec::Steps(*steps as u64))
         }
         Some(Scalar::Number(steps)) => Err(at.error(
-            format!("`checkpoint` is {steps}, but a number without a unit is one of steps, 1 or more"),
+            format!("`checkpoint` is {}, but a number without a unit is one of steps, 1 or more", shortest(*steps)),
             "for example 10000, \"30 s\" or \"none\"",
         )),
         Some(text) => Ok(CheckpointSpec::WallTime(at.quantity(text, Dimension::Time, Range::Positive)?)),
@@ -315,7 +315,7 @@ fn camera(at: &At, raw: &RawCamera) -> Result<CameraSpec> {
     let angle = |name, raw| Ok::<f64, Error>(at.optional(name, raw, Dimension::Angle, Range::Any)?.unwrap_or(0.0));
     let zoom = at.ratio_or("zoom", &raw.zoom, CameraSpec::default().zoom, Range::Positive)?;
     if !ZOOM.contains(&zoom) {
-        let what = format!("`zoom` is {zoom}, but must be between {} and {}", ZOOM.start(), ZOOM.end());
+        let what = format!("`zoom` is {}, but must be between {} and {}", shortest(zoom), ZOOM.start(), ZOOM.end());
         return Err(at.key("zoom").error(what, "for example zoom = 2"));
     }
     Ok(CameraSpec {

@@ -9,6 +9,7 @@ mod painter;
 pub use figure::{Axis, Figure, Highlight, Legend, Limit, Mark, Scale, Series, Slope};
 
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::observe::files::write_whole;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +31,7 @@ pub fn write(figures: &[Figure], columns: usize, path: &Path) -> Result<()> {
         }
     };
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|e| Error::io("cannot make the folder", folder, e))?;
+        regular::make_folder(folder)?;
     }
     write_whole(path, &content)
 }

@@ -328,9 +328,9 @@ fn resumably(
     let scene = scene.clone().changed(|spec| spec.output.snapshots = 1);
     let usable = |run: &Resumable| run.check_scene(&scene).is_ok();
     if has_checkpoint(out)
-        && let Some(run) = Resumable::open(out, None, &mut |_| ()).ok().filter(usable)
+        && let Some(run) = Resumable::open(out, None).ok().filter(usable)
     {
-        match run.go_on(vec![recorder], stop) {
+        match run.go_on(&|_| (), vec![recorder], stop) {
             // What it needs beside the checkpoint is damaged.
             Err(Error::Input { .. }) => {}
             done => return done.map(|summary| (summary, true)),

@@ -1,5 +1,6 @@
 //! Quantities before their units are read, and damping, which is one of them or a table.
 
+use crate::base::units::shortest;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor};
@@ -70,7 +71,7 @@ impl fmt::Display for Scalar {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Scalar::Text(text) => write!(f, "{text:?}"),
-            Scalar::Number(number) => write!(f, "{number}"),
+            Scalar::Number(number) => f.write_str(&shortest(*number)),
         }
     }
 }

@@ -2,6 +2,7 @@
 //! room for are left out, and one that fails does not stop the others.
 
 pub mod store;
+pub mod unfinished;
 
 use crate::base::error::{Error, Result};
 use crate::run::in_pool;
@@ -9,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 pub use store::{CaseStore, Identity, Record};
+pub use unfinished::Unfinished;
 
 /// Something to be run whose result a study needs.
 pub trait Case: Sync {
@@ -42,21 +44,6 @@ pub trait Case: Sync {
     /// Wall time that a result took (s); `None` where estimates are not to go by it.
     fn wall_s(&self, _output: &Self::Output) -> Option<f64> {
         None
-    }
-}
-
-/// A case that nothing is kept of: its name, and what runs it.
-pub struct Named<F>(pub String, pub F);
-
-impl<T: Send, F: Fn(&AtomicBool) -> Result<T> + Sync> Case for Named<F> {
-    type Output = T;
-
-    fn name(&self) -> String {
-        self.0.clone()
-    }
-
-    fn run(&self, stop: &AtomicBool) -> Result<T> {
-        (self.1)(stop)
     }
 }
 

@@ -2,11 +2,14 @@
 //! stopped.
 
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::engine::REVISION;
 use crate::observe::files::write_whole;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Folder of the cases within that of the study.
 const CASES: &str = "cases";
@@ -59,12 +62,19 @@ pub struct Record<T> {
 #[derive(Debug, Clone)]
 pub struct CaseStore {
     folder: PathBuf,
+    /// Records that were found and cannot be used, and why.
+    damaged: Arc<Mutex<BTreeMap<PathBuf, String>>>,
 }
 
 impl CaseStore {
     /// Those in the folder of a study, which need not exist.
     pub fn of(study: &Path) -> Self {
-        Self { folder: study.join(CASES) }
+        Self::within(&study.join(CASES))
+    }
+
+    /// Those in a folder of their own, which need not exist.
+    pub(super) fn within(folder: &Path) -> Self {
+        Self { folder: folder.into(), damaged: Arc::default() }
     }
 
     /// The same, ready to take more; `fresh` removes the records and unfinished runs that are there.
@@ -74,7 +84,7 @@ impl CaseStore {
     pub fn open(study: &Path, fresh: bool) -> Result<Self> {
         let store = Self::of(study);
         let cases = &store.folder;
-        std::fs::create_dir_all(cases).map_err(|e| Error::io("cannot make the folder", cases, e))?;
+        regular::make_folder(cases)?;
         if fresh {
             let entries = std::fs::read_dir(cases).map_err(|e| Error::io("cannot read the folder", cases, e))?;
             for case in entries.flatten().map(|entry| entry.path()) {
@@ -109,11 +119,28 @@ impl CaseStore {
         }
     }
 
-    /// The record of a case, if one is kept. One that is damaged, or of another case, is none.
+    /// The record of a case, if one is kept. One that is damaged, or of another case, is none, and among
+    /// [`CaseStore::damaged`].
     pub fn find<T: DeserializeOwned>(&self, identity: &Identity) -> Option<Record<T>> {
-        let text = std::fs::read_to_string(self.folder.join(identity.name()).join(RECORD)).ok()?;
-        let record: Record<T> = serde_json::from_str(&text).ok()?;
-        (record.identity == *identity).then_some(record)
+        let file = self.folder.join(identity.name()).join(RECORD);
+        let why = match regular::text_if_there(&file, regular::LONGEST_TABLE) {
+            Ok(None) => return None,
+            Ok(Some(text)) => match serde_json::from_str::<Record<T>>(&text) {
+                Ok(record) if record.identity == *identity => return Some(record),
+                Ok(_) => "it is of another case".into(),
+                Err(error) => error.to_string(),
+            },
+            Err(error) => error.to_string(),
+        };
+        self.damaged.lock().unwrap_or_else(PoisonError::into_inner).insert(file, why);
+        None
+    }
+
+    /// The records that were looked for, were there and could not be used, each with what is wrong with it: their cases
+    /// have to be run again.
+    pub fn damaged(&self) -> Vec<(PathBuf, String)> {
+        let damaged = self.damaged.lock().unwrap_or_else(PoisonError::into_inner);
+        damaged.iter().map(|(file, why)| (file.clone(), why.clone())).collect()
     }
 
     /// Keeps a result, with the text that defines its case beside it under the name `file`. Gives the record as it will be
@@ -129,7 +156,7 @@ impl CaseStore {
         result: T,
     ) -> Result<Record<T>> {
         let folder = self.folder.join(identity.name());
-        std::fs::create_dir_all(&folder).map_err(|e| Error::io("cannot make the folder", &folder, e))?;
+        regular::make_folder(&folder)?;
         write_whole(&folder.join(file), &identity.definition)?;
         let path = folder.join(RECORD);
         let record = Record { identity: identity.clone(), build: build(), result };
@@ -142,11 +169,16 @@ impl CaseStore {
 /// Which build of the program this is, by length and time of its file: one revision may be built many times while it is
 /// worked on.
 pub fn build() -> String {
+    build_id().unwrap_or_else(|| "unknown".into())
+}
+
+/// The same; `None` where the system does not tell.
+pub(super) fn build_id() -> Option<String> {
     let told = std::env::current_exe().and_then(|path| path.metadata()).and_then(|file| {
         let since = file.modified()?.duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
         Ok(format!("{} bytes of {} s", file.len(), since.as_secs()))
     });
-    told.unwrap_or_else(|_| "unknown".into())
+    told.ok()
 }
 
 #[cfg(test)]
@@ -187,7 +219,11 @@ mod tests {
         store.keep(&one, "scene.toml", 1.5).unwrap();
         let path = store.folder().join(one.name()).join(RECORD);
         let text = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(store.damaged(), []);
         std::fs::write(&path, &text[..text.len() / 2]).unwrap();
         assert_eq!(found(&store, &one), None);
+        assert_eq!(found(&store, &identity("never run", 1)), None);
+        let damaged = store.damaged();
+        assert!(matches!(&damaged[..], [(file, why)] if *file == path && why.contains("EOF")), "{damaged:?}");
     }
 }

@@ -54,8 +54,8 @@ pub fn search(case: &StabilityCase, critical: &Critical, quick: bool, control: &
         if holds(middle)? { low = middle } else { high = middle }
     }
     let answer = Answer {
-        what: "bound on the step, and critical step:",
-        unit: "ns",
+        what: "bound on the step, and critical step:".into(),
+        unit: "ns".into(),
         computed: bound * 1e9,
         exact: low * 1e9,
         accept: Accept::Below(critical.within),

@@ -13,6 +13,8 @@ use crate::strand::assembly::Assembly;
 use crate::strand::lay_radius::GREATEST_OVERLAP;
 use crate::strand::overlap::{self, Body};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Bodies up to this many particles have their positions kept at every row.
@@ -22,7 +24,7 @@ const TRACKED: usize = 32;
 pub type Check = fn(&CompletedRun) -> Answer;
 
 /// How near a number must come.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Accept {
     /// Within this share of the exact one (-).
     Within(f64),
@@ -33,12 +35,12 @@ pub enum Accept {
 }
 
 /// A number and what it should be.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// What it is.
-    pub what: &'static str,
+    pub what: Cow<'static, str>,
     /// Its unit.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// The computed one.
     pub computed: f64,
     /// The exact or theoretical one.
@@ -63,9 +65,10 @@ impl Answer {
 
     /// What is wrong with it, if it is not near enough.
     pub fn miss(&self) -> Option<String> {
-        let Self { what, unit, computed, exact, accept } = *self;
+        let Self { what, unit, .. } = self;
+        let (computed, exact) = (self.computed, self.exact);
         let ratio = computed / exact;
-        let good = match accept {
+        let good = match self.accept {
             Accept::Within(share) => (ratio - 1.0).abs() <= share,
             Accept::Absolute(most) => (computed - exact).abs() <= most,
             Accept::Below(share) => ratio <= 1.0 && share.is_none_or(|share| ratio >= 1.0 - share),
@@ -229,8 +232,8 @@ fn pulled_within(seen: &CompletedRun, within: f64) -> Answer {
     let rows = &seen.rows[seen.rows.len() - (seen.rows.len() / 20).max(1)..];
     let mean = |of: fn(&Sample) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
     Answer {
-        what: "stress at the end",
-        unit: "MPa",
+        what: "stress at the end".into(),
+        unit: "MPa".into(),
         computed: mean(|row| row.stress) * 1e-6,
         exact: (nominal_stress(seen, mean(|row| row.strain)) + viscous_stress(seen)) * 1e-6,
         accept: Accept::Within(within),
@@ -256,8 +259,8 @@ pub fn pulled_wire(seen: &CompletedRun) -> Answer {
 /// Peak stress against the yield stress, for wires that do not harden.
 pub fn peak_is_yield(seen: &CompletedRun) -> Answer {
     Answer {
-        what: "peak stress",
-        unit: "MPa",
+        what: "peak stress".into(),
+        unit: "MPa".into(),
         computed: seen.rows.iter().map(|row| row.stress).fold(0.0, f64::max) * 1e-6,
         exact: seen.first_yield() * 1e-6,
         accept: Accept::Within(0.02),
@@ -267,7 +270,13 @@ pub fn peak_is_yield(seen: &CompletedRun) -> Answer {
 /// Friction does no work.
 pub fn no_friction(seen: &CompletedRun) -> Answer {
     let energy = seen.last().energy;
-    Answer { what: "work of friction", unit: "J", computed: energy.friction, exact: 0.0, accept: Accept::Absolute(0.0) }
+    Answer {
+        what: "work of friction".into(),
+        unit: "J".into(),
+        computed: energy.friction,
+        exact: 0.0,
+        accept: Accept::Absolute(0.0),
+    }
 }
 
 /// Torque after the last turn, T_p at the hardening that the turning has brought: dp = dW/(σ_y A l) with W = ∫T dθ
@@ -283,8 +292,8 @@ pub fn turned(seen: &CompletedRun) -> Answer {
         BondLawSpec::ElastoPlastic(law) => law.stress(p),
     };
     Answer {
-        what: "torque after ten turns",
-        unit: "N mm",
+        what: "torque after ten turns".into(),
+        unit: "N mm".into(),
         computed: seen.last().torque * 1e3,
         exact: Section { radius, yield_stress }.plastic_torque() * 1e3,
         accept: Accept::Within(0.01),
@@ -308,8 +317,8 @@ pub fn cycled_plastic(seen: &CompletedRun) -> Answer {
     let middle = (0.5 * last).floor();
     let elastic = yield_stress * length / seen.spec.material.young;
     Answer {
-        what: "plastic work a cycle",
-        unit: "mJ",
+        what: "plastic work a cycle".into(),
+        unit: "mJ".into(),
         computed: (work_after(last) - work_after(middle)) / (last - middle) * 1e3,
         exact: 4.0 * yield_stress * wire.area() * (amplitude - elastic) * 1e3,
         accept: Accept::Within(0.02),
@@ -321,8 +330,8 @@ pub fn cycled_alike(seen: &CompletedRun) -> Answer {
     let tenth = seen.rows.len() / 10;
     let greatest = |rows: &[Sample]| rows.iter().map(|row| row.stress.abs()).fold(0.0, f64::max) * 1e-6;
     Answer {
-        what: "amplitude at the end",
-        unit: "MPa",
+        what: "amplitude at the end".into(),
+        unit: "MPa".into(),
         computed: greatest(&seen.rows[9 * tenth..]),
         exact: greatest(&seen.rows[4 * tenth..5 * tenth]),
         accept: Accept::Within(0.01),
@@ -336,8 +345,8 @@ pub fn no_drift(seen: &CompletedRun) -> Answer {
     let mean = |rows: &[Vec<DVec3>], p: usize| rows.iter().map(|x| x[p]).sum::<DVec3>() / rows.len() as f64;
     let drift = |p: usize| mean(&seen.track[9 * tenth..], p).distance(mean(&seen.track[4 * tenth..5 * tenth], p));
     Answer {
-        what: "drift at rest",
-        unit: "d",
+        what: "drift at rest".into(),
+        unit: "d".into(),
         computed: (0..seen.assembly.len()).map(drift).fold(0.0, f64::max) / seen.diameter(),
         exact: 0.0,
         accept: Accept::Absolute(1e-8),
@@ -353,8 +362,8 @@ pub fn stopped_wave(seen: &CompletedRun) -> Answer {
     let plateau = seen.rows.iter().filter(|row| (0.75 * passage..1.25 * passage).contains(&row.time));
     let stresses: Vec<f64> = plateau.map(|row| row.wire_stress[0].abs()).collect();
     Answer {
-        what: "stress of the impact",
-        unit: "MPa",
+        what: "stress of the impact".into(),
+        unit: "MPa".into(),
         computed: stresses.iter().sum::<f64>() / stresses.len() as f64 * 1e-6,
         exact: material.density * wave * seen.spec.wires[0].velocity.length() * 1e-6,
         accept: Accept::Within(0.02),
@@ -367,8 +376,8 @@ pub fn buckled(seen: &CompletedRun) -> Answer {
     let length: f64 = seen.assembly.rest_length[wire.bonds()].iter().sum();
     let tip = seen.end[0][wire.particles().end - 1];
     Answer {
-        what: "tip deflection",
-        unit: "mm",
+        what: "tip deflection".into(),
+        unit: "mm".into(),
         computed: tip.x.hypot(tip.y) * 1e3,
         exact: Column::shortened(1.0 - tip.z / length).deflection * length * 1e3,
         accept: Accept::Within(0.02),
@@ -385,8 +394,8 @@ pub fn thrown_apart(seen: &CompletedRun) -> Answer {
     let overlap = 2.0 * radius - a.distance(b);
     let exact = (overlap / pair.greatest_overlap(1.0)).powf(1.25);
     Answer {
-        what: "speed of parting",
-        unit: "m/s",
+        what: "speed of parting".into(),
+        unit: "m/s".into(),
         computed: seen.end[1][0].distance(seen.end[1][1]),
         exact,
         accept: Accept::Within(0.005),

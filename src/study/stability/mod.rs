@@ -26,10 +26,12 @@ pub mod run;
 pub mod watch;
 
 use crate::base::error::Result;
-use crate::study::runner::{CaseRunner, Named, Status};
+use crate::study::runner::{Case, CaseRunner, Status, Unfinished};
 use crate::study::select;
 use case::StabilityCase;
-use outcome::Report;
+use measure::Answer;
+use outcome::{Outcome, Report};
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 
 /// The cases of these names, all when there is none; a name that ends in `*` takes all that begin so.
@@ -42,18 +44,68 @@ pub fn select(names: &[String]) -> Result<Vec<StabilityCase>> {
     Ok(chosen.into_iter().cloned().collect())
 }
 
-/// Runs cases, the long ones first. The statuses come in the order of `cases`.
+/// A case of a command that may have been ended before.
+struct CaseOfCommand<'a> {
+    case: &'a StabilityCase,
+    quick: bool,
+    unfinished: Option<&'a Unfinished>,
+}
+
+/// What is kept of a case that ended as it should. One that did not is run again.
+#[derive(PartialEq, Serialize, Deserialize)]
+struct AsExpected {
+    outcome: Outcome,
+    answer: Option<Answer>,
+    residual: Option<f64>,
+    steps: u64,
+    wall_s: f64,
+    message: String,
+}
+
+impl CaseOfCommand<'_> {
+    /// What it is kept by.
+    fn key(&self) -> String {
+        format!("stability case {}, {}", self.case.name, if self.quick { "quick" } else { "full" })
+    }
+}
+
+impl Case for CaseOfCommand<'_> {
+    type Output = Report;
+
+    fn name(&self) -> String {
+        self.case.name.clone()
+    }
+
+    fn kept(&self) -> Option<Report> {
+        let AsExpected { outcome, answer, residual, steps, wall_s, message } = self.unfinished?.find(&self.key())?;
+        Some(Report { case: self.case.clone(), outcome, answer, residual, steps, wall_s, message })
+    }
+
+    fn run(&self, stop: &AtomicBool) -> Result<Report> {
+        let report = run::run_case(self.case, self.quick, stop)?;
+        if let Some(unfinished) = self.unfinished.filter(|_| report.outcome != Outcome::Failed) {
+            let Report { outcome, answer, residual, steps, wall_s, message, .. } = report.clone();
+            unfinished.keep(&self.key(), AsExpected { outcome, answer, residual, steps, wall_s, message })?;
+        }
+        Ok(report)
+    }
+}
+
+/// Runs cases, the long ones first. The statuses come in the order of `cases`. Those that ended as they should in a command
+/// that was ended before are taken from `unfinished`.
 ///
 /// # Errors
-/// When a thread cannot be started.
-pub fn run_all(cases: &[StabilityCase], quick: bool, runner: &CaseRunner) -> Result<Vec<Status<Report>>> {
+/// When a thread cannot be started, or a result cannot be kept.
+pub fn run_all(
+    cases: &[StabilityCase],
+    quick: bool,
+    runner: &CaseRunner,
+    unfinished: Option<&Unfinished>,
+) -> Result<Vec<Status<Report>>> {
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by_key(|index| !cases[*index].long);
-    let named = |index: &usize| {
-        let case = &cases[*index];
-        Named(case.name.clone(), move |stop: &AtomicBool| run::run_case(case, quick, stop))
-    };
-    let statuses = runner.run(&order.iter().map(named).collect::<Vec<_>>())?;
+    let of_command = |index: &usize| CaseOfCommand { case: &cases[*index], quick, unfinished };
+    let statuses = runner.run(&order.iter().map(of_command).collect::<Vec<_>>())?;
     let mut placed: Vec<_> = order.into_iter().zip(statuses).collect();
     placed.sort_by_key(|(index, _)| *index);
     Ok(placed.into_iter().map(|(_, status)| status).collect())

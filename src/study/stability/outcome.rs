@@ -3,10 +3,11 @@
 use super::case::{Expect, StabilityCase};
 use super::measure::Answer;
 use crate::base::finding::{Failure, FindingKind, Notice, Stopped};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// How a case ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
     /// Ran to its end: every value finite, ledger closed, the known number met.
     Stable,

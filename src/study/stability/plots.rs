@@ -21,7 +21,7 @@ pub fn write(reports: &[Report], folder: &Path) -> Result<Vec<PathBuf>> {
 /// Predicted over empirical critical step.
 fn steps(reports: &[Report]) -> Option<Figure> {
     let point = |report: &Report| {
-        let answer = report.answer.filter(|_| matches!(report.case.kind, Kind::Critical(_)))?;
+        let answer = report.answer.as_ref().filter(|_| matches!(report.case.kind, Kind::Critical(_)))?;
         Some((report.case.name.clone(), [answer.exact, answer.computed]))
     };
     let points: Vec<(String, [f64; 2])> = reports.iter().filter_map(point).collect();

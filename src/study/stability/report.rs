@@ -25,7 +25,7 @@ fn columns() -> Vec<Column<'static, Report>> {
         Column::in_files("about", |report: &Report| report.case.about.clone()),
         Column::new("outcome", "outcome", "", 0, |report: &Report| report.outcome.word())
             .shown_as(|report| report.outcome.to_string()),
-        Column::in_files("unit", of_answer(|answer| answer.unit)),
+        Column::in_files("unit", of_answer(|answer| answer.unit.to_string())),
         Column::in_files("computed", of_answer(|answer| answer.computed)),
         Column::in_files("exact", of_answer(|answer| answer.exact)),
         Column::in_files("error_percent", of_answer(Answer::error_percent)),
@@ -34,7 +34,7 @@ fn columns() -> Vec<Column<'static, Report>> {
         Column::new("steps", "steps", "", 0, |report: &Report| report.steps),
         Column::new("wall_s", "wall", "", 1, |report: &Report| report.wall_s)
             .shown_as(|report| format!("{:.1} s", report.wall_s)),
-        Column::new("measured", "measured", "", 0, of_answer(|answer| answer.what))
+        Column::new("measured", "measured", "", 0, of_answer(|answer| answer.what.to_string()))
             .shown_as(|report| report.answer.as_ref().map(measured).unwrap_or_default()),
         Column::in_files("message", |report: &Report| report.message.clone()),
     ]

@@ -1,10 +1,12 @@
 //! What a case finds: a computed number beside its closed form, and whether the two agree.
 
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::iter::Sum;
 use std::ops::Add;
 
 /// What simulating took.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Spent {
     /// Steps of all runs behind it.
     pub steps: u64,
@@ -26,7 +28,7 @@ impl Sum for Spent {
 }
 
 /// One run of a case that is repeated at several resolutions.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Spacing, step or load per particle over what it is measured by (-).
     pub resolution: f64,
@@ -37,10 +39,10 @@ pub struct Point {
 }
 
 /// Error over resolution.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Convergence {
     /// What the resolution is, such as "a/L".
-    pub axis: &'static str,
+    pub axis: Cow<'static, str>,
     /// From coarse to fine.
     pub points: Vec<Point>,
 }
@@ -54,7 +56,7 @@ impl Convergence {
 }
 
 /// Order of convergence.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Order {
     /// The one between neighbouring resolutions that is furthest from theory (-).
     pub observed: f64,
@@ -98,12 +100,12 @@ impl Verdict {
 }
 
 /// A computed number beside its closed form.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// What was computed.
     pub what: String,
     /// Its unit, SI; "-" for none.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// The engine's number, in `unit`.
     pub computed: f64,
     /// The closed form's, in `unit`.
@@ -112,6 +114,7 @@ pub struct Comparison {
     pub scale: f64,
     /// Least and greatest relative error allowed (-). Nothing but 0 until [`Comparison::within`] or
     /// [`Comparison::between`] says more.
+    #[serde(with = "limits")]
     pub allowed: [f64; 2],
     /// Order of convergence, where there is one.
     pub order: Option<Order>,
@@ -128,7 +131,7 @@ impl Comparison {
     pub fn new(what: impl Into<String>, unit: &'static str, computed: f64, exact: f64, spent: Spent) -> Self {
         Self {
             what: what.into(),
-            unit,
+            unit: unit.into(),
             computed,
             exact,
             scale: exact.abs(),
@@ -173,7 +176,7 @@ impl Comparison {
     /// Shows the error over resolution where theory knows no order, and counts what the points took as spent.
     pub fn over(mut self, axis: &'static str, points: Vec<Point>) -> Self {
         self.spent = points.iter().map(|p| p.spent).sum();
-        self.convergence = Some(Convergence { axis, points });
+        self.convergence = Some(Convergence { axis: axis.into(), points });
         self
     }
 
@@ -213,6 +216,22 @@ impl Comparison {
     }
 }
 
+/// For serde's `with`: limits, of which the lower or the upper one may be infinite, which JSON has no number for.
+mod limits {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    const OPEN: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+    pub fn serialize<S: Serializer>(limits: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
+        limits.map(|limit| limit.is_finite().then_some(limit)).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
+        let limits = <[Option<f64>; 2]>::deserialize(deserializer)?;
+        Ok([0, 1].map(|end| limits[end].unwrap_or(OPEN[end])))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -249,5 +268,18 @@ mod tests {
         assert_eq!(worst.computed, 0.99);
         let worst = Comparison::worst(vec![finding(1.0, 1.0).within(0.2), finding(f64::NAN, 1.0).within(0.01)]);
         assert!(worst.computed.is_nan());
+    }
+
+    #[test]
+    fn a_comparison_that_passes_comes_back_from_json_as_it_is() {
+        let point =
+            |resolution: f64| Point { resolution, error: -resolution.powi(2), spent: Spent { steps: 1, wall_s: 0.1 } };
+        let points = vec![point(0.1 + 0.2), point(0.05)];
+        let with_order = finding(1.001, 1.0).within(0.1).converging("a/L", points, 2.0, 0.1).note("why");
+        let least = Comparison::at_least("a share", "-", 0.9, 0.8, Spent::default());
+        for found in [with_order, least] {
+            let text = serde_json::to_string(&found).unwrap();
+            assert_eq!(serde_json::from_str::<Comparison>(&text).unwrap(), found, "{text}");
+        }
     }
 }

@@ -224,7 +224,8 @@ fn energy_drift(context: &Context) -> Result<Vec<Comparison>> {
         let part = drifts[0].point.resolution / point.resolution;
         let what = format!("trend of energy over the same time at 1/{part:.0} of that step");
         let mut finest = Comparison::new(what, "-", *rise, 0.0, point.spent).relative_to(1.0).within(1e-6);
-        finest.convergence = Some(Convergence { axis: "dt/T", points: drifts.iter().map(|d| d.point).collect() });
+        finest.convergence =
+            Some(Convergence { axis: "dt/T".into(), points: drifts.iter().map(|d| d.point).collect() });
         comparisons.push(finest);
     }
     Ok(comparisons)

@@ -103,7 +103,7 @@ fn decays(context: &Context, mode: &Mode) -> Result<Vec<Comparison>> {
     let mut decrement =
         Comparison::new(format!("logarithmic decrement at 1/{part:.0} of that step"), "-", fine, exact, spent)
             .within(5e-3);
-    decrement.convergence = Some(Convergence { axis: "dt/T", points });
+    decrement.convergence = Some(Convergence { axis: "dt/T".into(), points });
     Ok(vec![
         Comparison::new("logarithmic decrement at the default step", "-", coarse, exact, spent).within(5e-3),
         decrement,

@@ -32,9 +32,10 @@ pub use case::VerificationCase;
 pub use support::Effort;
 
 use crate::base::error::{Error, Result};
-use crate::study::runner::{CaseRunner, Named, Status};
+use crate::study::runner::{Case, CaseRunner, Status, Unfinished};
 use crate::study::select;
 use comparison::{Comparison, Verdict};
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use support::Context;
@@ -139,21 +140,62 @@ pub fn run_one(case: &'static VerificationCase, effort: Effort, stop: &AtomicBoo
     Ok(Report { case, result, wall_s: began.elapsed().as_secs_f64() })
 }
 
+/// A case of a command that may have been ended before.
+struct CaseOfCommand<'a> {
+    case: &'static VerificationCase,
+    effort: Effort,
+    unfinished: Option<&'a Unfinished>,
+}
+
+/// What is kept of a case that passed. One that did not is run again.
+#[derive(PartialEq, Serialize, Deserialize)]
+struct Passed {
+    comparisons: Vec<Comparison>,
+    wall_s: f64,
+}
+
+impl CaseOfCommand<'_> {
+    /// What it is kept by.
+    fn key(&self) -> String {
+        format!("verification case {}, {:?}", self.case.name, self.effort)
+    }
+}
+
+impl Case for CaseOfCommand<'_> {
+    type Output = Report;
+
+    fn name(&self) -> String {
+        self.case.name.into()
+    }
+
+    fn kept(&self) -> Option<Report> {
+        let Passed { comparisons, wall_s } = self.unfinished?.find(&self.key())?;
+        Some(Report { case: self.case, result: Ok(comparisons), wall_s })
+    }
+
+    fn run(&self, stop: &AtomicBool) -> Result<Report> {
+        let report = run_one(self.case, self.effort, stop)?;
+        if let (Some(unfinished), Ok(comparisons), true) = (self.unfinished, &report.result, report.passes()) {
+            let passed = Passed { comparisons: comparisons.clone(), wall_s: report.wall_s };
+            unfinished.keep(&self.key(), passed)?;
+        }
+        Ok(report)
+    }
+}
+
 /// Runs cases; they are small, so a runner with several jobs, each on one thread, is fastest. The statuses come in the
-/// order of `cases`.
+/// order of `cases`. Those that passed in a command that was ended before are taken from `unfinished`.
 ///
 /// # Errors
-/// When a thread cannot be started.
+/// When a thread cannot be started, or a result cannot be kept.
 pub fn run_all(
     cases: &[&'static VerificationCase],
     effort: Effort,
     runner: &CaseRunner,
+    unfinished: Option<&Unfinished>,
 ) -> Result<Vec<Status<Report>>> {
-    let named = |case: &&'static VerificationCase| {
-        let case = *case;
-        Named(case.name.into(), move |stop: &AtomicBool| run_one(case, effort, stop))
-    };
-    runner.run(&cases.iter().map(named).collect::<Vec<_>>())
+    let of_command = |case: &&'static VerificationCase| CaseOfCommand { case, effort, unfinished };
+    runner.run(&cases.iter().map(of_command).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

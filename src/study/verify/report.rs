@@ -28,7 +28,7 @@ fn columns<'a>() -> Vec<Column<'a, Line<'a>>> {
         Column::in_files("case", |(report, _): &Line<'a>| report.case.name),
         Column::new("quantity", "quantity", "", 0, |(_, f): &Line<'a>| f.map_or("", |f| &f.what))
             .shown_as(|(_, f): &Line| f.map_or(String::new(), quantity)),
-        Column::in_files("unit", |(_, f): &Line<'a>| f.map_or("-", |f| f.unit)),
+        Column::in_files("unit", |(_, f): &Line<'a>| f.map_or("-", |f| &*f.unit)),
         Column::new("computed", "computed", "", 6, of(|f| f.computed))
             .shown_as(|(_, f): &Line| f.map_or(String::new(), |f| number(f.computed))),
         Column::new("exact", "exact", "", 6, of(|f| f.exact)).shown_as(|(_, f): &Line| f.map_or(String::new(), exact)),

@@ -37,7 +37,7 @@ fn pulled_bar(context: &Context) -> Result<Vec<Comparison>> {
         ];
     }
     if let Some(finding) = last.last_mut() {
-        finding.convergence = Some(Convergence { axis: "a/L", points });
+        finding.convergence = Some(Convergence { axis: "a/L".into(), points });
     }
     Ok(last)
 }
