@@ -67,7 +67,7 @@ pub fn render(args: Args) -> Result<Ended> {
     let writer = || FrameWriter::new(&out, &output);
     crate::render::check()?;
     let pictures = folder.open_for_pictures()?;
-    let mut writer = writer()?.with_animation(animation.clone());
+    let mut writer = writer()?.with_origin(run.origin()).with_animation(animation.clone());
     if let Some(why) = run.cut_off() {
         eprintln!("note: {why}; what there is will be drawn");
     }

@@ -147,6 +147,12 @@ impl Source {
         })
     }
 
+    /// Shows none of the pictures, as if the run had none.
+    pub fn leave_out_pictures(&mut self) {
+        self.pictures = Pictures::default();
+        self.states.iter_mut().for_each(|state| state.picture = None);
+    }
+
     /// How many states have a picture.
     pub fn pictures_shown(&self) -> usize {
         self.states.iter().filter(|state| state.picture.is_some()).count()

@@ -7,6 +7,7 @@ use crate::base::error::{Error, Result};
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use crate::observe::animation::Animation;
+use crate::observe::origin::Origin;
 use crate::observe::timings::Timings;
 use crate::scene::spec::OutputSpec;
 use image::RgbImage;
@@ -30,6 +31,7 @@ pub struct FrameWriter {
     folder: PathBuf,
     look: OutputSpec,
     animation: Option<Animation>,
+    origin: Option<Origin>,
     /// Memory for snapshots that wait to be drawn (bytes).
     memory: usize,
     curve: Vec<(f64, f64)>,
@@ -64,6 +66,7 @@ impl FrameWriter {
             folder: folder.to_owned(),
             look: look.clone(),
             animation: None,
+            origin: None,
             memory: 0,
             curve: Vec::new(),
             ruptures: Vec::new(),
@@ -76,6 +79,12 @@ impl FrameWriter {
     /// Makes an animation of the pictures when the last one is written, also of those of a run that was stopped.
     pub fn with_animation(mut self, animation: Option<Animation>) -> Self {
         self.animation = animation;
+        self
+    }
+
+    /// Writes into each picture which run it shows.
+    pub fn with_origin(mut self, origin: Origin) -> Self {
+        self.origin = Some(origin);
         self
     }
 
@@ -136,11 +145,11 @@ impl Observer for FrameWriter {
         let waiting = self.memory / (PARTICLE_BYTES * info.particles.max(1));
         let (jobs, waiting) = sync_channel(waiting.clamp(*WAITING.start(), *WAITING.end()));
         let (pictures, drawn) = sync_channel(DRAWN);
-        let folder = self.folder.clone();
+        let (folder, origin) = (self.folder.clone(), self.origin);
         self.workers = Some(Workers {
             jobs,
             draw: std::thread::spawn(move || draw_all(renderer, &waiting, &pictures)),
-            encode: std::thread::spawn(move || encode_all(&folder, &drawn)),
+            encode: std::thread::spawn(move || encode_all(&folder, origin, &drawn)),
         });
         Ok(())
     }
@@ -204,11 +213,11 @@ fn draw_all(mut renderer: Renderer, jobs: &Receiver<Job>, pictures: &SyncSender<
     Ok(renderer.timings())
 }
 
-fn encode_all(folder: &Path, pictures: &Receiver<(usize, RgbImage)>) -> Result<Timings> {
+fn encode_all(folder: &Path, origin: Option<Origin>, pictures: &Receiver<(usize, RgbImage)>) -> Result<Timings> {
     let mut timings = Timings::default();
     for (number, drawn) in pictures.iter() {
         let start = Instant::now();
-        let bytes = png::encode(&drawn)?;
+        let bytes = png::encode(&drawn, origin)?;
         png::write(&picture(folder, number), &bytes)?;
         timings.encode += start.elapsed();
     }
