@@ -56,7 +56,9 @@ impl fmt::Display for Doubt {
 /// [`Error::Io`] when a file cannot be read.
 pub fn seal(summary: &str, origin: Origin, run: &Path, more: &[&str]) -> Result<String> {
     let names = tables::FILES.into_iter().chain([SCENE, TRAJECTORY]).chain(more.iter().copied());
-    let files = names.filter(|name| run.join(name).is_file()).map(|name| Ok((name.to_owned(), Digest::of_file(&run.join(name))?)));
+    let files = names
+        .filter(|name| run.join(name).is_file())
+        .map(|name| Ok((name.to_owned(), Digest::of_file(&run.join(name))?)));
     let seal = Seal { origin, files: files.collect::<Result<_>>()?, summary: Digest::of(summary) };
     let open = summary.trim_end().trim_end_matches('}').trim_end();
     Ok(format!("{open}{SEAL}{}\n}}\n", serde_json::to_string(&seal).expect("a seal holds nothing that JSON lacks")))

@@ -73,18 +73,23 @@ fn way(run: &Folder) -> InvariantOutcome {
     let time = |row: usize| run.curve.number(row, "time_s");
     let found = |row: usize| run.curve.number(row, "strain_percent") * 1e-2 * free;
     let rows = run.curve.rows.len();
-    let longest = (0..rows).map(|row| run.curve.number(row, "time_step_s")).fold(0.0, f64::max);
+    let longest = run.longest_step();
     let most = (0..rows).map(|row| found(row).abs()).fold(0.0, f64::max);
     let mut search = Search::new();
     for row in 0..rows {
         let place = |right: f64| {
-            format!("curve.csv line {}, strain_percent: a way of {:e} m, the drive's is {right:e} m", row + 2, found(row))
+            format!(
+                "curve.csv line {}, strain_percent: a way of {:e} m, the drive's is {right:e} m",
+                row + 2,
+                found(row)
+            )
         };
         if let Some((right, fastest)) = prescribed(run, time(row), free) {
             let off = (found(row) - right).abs() - 2.0 * fastest * longest;
             search.add(off.max(0.0) / most.max(right.abs()).max(f64::MIN_POSITIVE), || place(right));
         } else if let (Some(adaptive), Some(slow), true) = (&grip.adaptive, speed(run), row > 0) {
-            let passed = time(row) - time(row - 1);
+            let middle = |row: usize| time(row) - 0.5 * smoothed(run, time(row));
+            let passed = middle(row) - middle(row - 1);
             let rise = (found(row) - found(row - 1)) * slow.signum();
             let slack = 2.0 * adaptive.fastest * longest;
             let [least, greatest] = [slow.abs() * passed - slack, adaptive.fastest * passed + slack];

@@ -7,7 +7,7 @@ use super::rows::layer_heads;
 use crate::engine::view::Sample;
 use crate::observe::partial;
 use crate::run::folder::RECORDING as RECORDED;
-use crate::run::identity;
+use crate::run::{StopReason, identity};
 
 /// Numbers have nine digits.
 const DIGITS: f64 = 1e-8;
@@ -195,9 +195,14 @@ fn summary(run: &Folder) -> InvariantOutcome {
     let number = |head: &str| run.curve.number(last, head);
     let mut search = Search::new();
     let e = &s.energy;
+    // A run that failed may have gone on after its last row, which would not have been finite.
+    let went_on = s.stopped == StopReason::Failed;
+    for (name, value, head) in [("steps", s.cost.steps as f64, "step"), ("simulated_s", s.cost.simulated_s, "time_s")] {
+        let right = number(head);
+        let value = if went_on { value.min(right) } else { value };
+        search.digits(right, value, || format!("{name}, last row's {head}"));
+    }
     let pairs = [
-        ("steps", Some(s.cost.steps as f64), "step"),
-        ("simulated_s", Some(s.cost.simulated_s), "time_s"),
         ("final_strain_percent", s.final_strain_percent, "strain_percent"),
         ("residual_stress_mpa", s.residual_stress_mpa, "stress_mpa"),
         ("energy.work", Some(e.work), "work_j"),

@@ -14,8 +14,8 @@ use crate::observe::trajectory::{Record, Trajectory};
 use crate::observe::{partial, tables};
 use crate::run::RunSummary;
 use crate::run::folder::{SCENE, SUMMARY, TRAJECTORY, has_checkpoint};
-use crate::run::lock;
 use crate::run::identity::{self, Doubt, Seal};
+use crate::run::lock;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
 use crate::strand::held::Gripped;
@@ -185,7 +185,8 @@ impl Folder {
         let summary: RunSummary = serde_json::from_str(&written).map_err(damaged)?;
         let summary_as_written = serde_json::from_str(&written).map_err(damaged)?;
         let [curve, wires, ruptures] = tables::FILES;
-        let (trajectory, snapshots, maker) = told(&run.join(TRAJECTORY), &spec)?;
+        let (trajectory, snapshots, maker) =
+            told(&run.join(TRAJECTORY), &spec, summary.limits.greatest_time_step.seconds)?;
         let free = spec.grip.as_ref().map(|grip| Gripped::of(grip, &assembly).free_length());
         Ok(Self {
             path: run.into(),
@@ -216,6 +217,11 @@ impl Folder {
     pub fn drew_frames(&self) -> bool {
         let told = self.summary.written.as_ref().map_or(self.summary.cost.frames.is_some(), |written| written.frames);
         told && self.summary.warnings.len() <= self.summary.findings.len()
+    }
+
+    /// The longest step of the run (s).
+    pub fn longest_step(&self) -> f64 {
+        self.summary.limits.greatest_time_step.seconds
     }
 
     /// Step of the first rupture; none: beyond all.
@@ -296,11 +302,11 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
-fn told(path: &Path, spec: &Spec) -> Result<(Told, Snapshots, Maker)> {
+fn told(path: &Path, spec: &Spec, longest_step: f64) -> Result<(Told, Snapshots, Maker)> {
     let damaged = |e: Error| Error::input(format!("{} is damaged: {e}", path.display()), "run the scene again");
     let trajectory = Trajectory::open(path).map_err(damaged)?;
     let info = trajectory.info().clone();
-    let limits = Limits::new(spec, &info);
+    let limits = Limits::new(spec, &info, longest_step);
     let mut made = Maker::new(&info)?;
     let mut told = Told {
         info,

@@ -27,7 +27,7 @@ pub const RUPTURES: Invariant = Invariant {
 
 fn wires(run: &Folder) -> InvariantOutcome {
     let info = &run.trajectory.info;
-    let bounds = Limits::new(&run.spec, info).wire(info.wire_particles);
+    let bounds = Limits::new(&run.spec, info, run.longest_step()).wire(info.wire_particles);
     if !bounds.limits() {
         return InvariantOutcome::NotApplicable("nothing limits what the bonds of this scene carry".into());
     }
@@ -61,10 +61,10 @@ fn wires(run: &Folder) -> InvariantOutcome {
 
 fn ruptures(run: &Folder) -> InvariantOutcome {
     let info = &run.trajectory.info;
-    let limits = Limits::new(&run.spec, info);
+    let limits = Limits::new(&run.spec, info, run.longest_step());
     let mut search = run.snapshots.rupture.clone();
-    for rupture in &run.trajectory.ruptures {
-        let (bounds, stress) = (limits.breaking(rupture.bond), rupture.stress * 1e-6);
+    for (k, rupture) in run.trajectory.ruptures.iter().enumerate() {
+        let (bounds, stress) = (limits.breaking(rupture.bond, k == 0), rupture.stress * 1e-6);
         if bounds.limits() {
             let place = || format!("rupture {} ({})", rupture.order, bond(info, rupture.bond));
             let over = || format!("{}: {stress:.2} MPa, its law has {:.2}", place(), bounds.of(stress));

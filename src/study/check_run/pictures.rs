@@ -100,7 +100,8 @@ fn pictures(run: &Folder) -> InvariantOutcome {
                         search.same(named, right.as_str(), || format!("{}, id of its run", place()));
                     }
                     if own && folder == FRAMES {
-                        let [found, wanted] = [seen.size, run.spec.output.frame_size].map(|[w, h]| format!("{w} × {h}"));
+                        let [found, wanted] =
+                            [seen.size, run.spec.output.frame_size].map(|[w, h]| format!("{w} × {h}"));
                         search.same(found, wanted, || format!("{}, size in pixels", place()));
                     }
                 }
