@@ -3,6 +3,7 @@
 
 use crate::damaged::{Copy, copy};
 use crate::wrong;
+use serde_json::Value;
 use std::fs;
 use strandsnap::observe::trajectory::Trajectory;
 use strandsnap::run::identity;
@@ -12,7 +13,9 @@ impl Copy {
     pub fn seal(&self) {
         let path = self.run.join("summary.json");
         let text = fs::read_to_string(&path).unwrap();
-        let bare = text.rsplit_once(",\n  \"seal\": ").map_or(text.clone(), |(summary, _)| format!("{summary}\n}}"));
+        let mut summary: Value = serde_json::from_str(&text).unwrap();
+        summary.as_object_mut().unwrap().remove("seal");
+        let bare = serde_json::to_string_pretty(&summary).unwrap();
         let origin = Trajectory::open(&self.run.join("trajectory.bin")).unwrap().origin();
         fs::write(&path, identity::seal(&bare, origin, &self.run, &[]).unwrap()).unwrap();
         assert_eq!(identity::doubts(&self.run).unwrap(), [], "the seal is right");
@@ -128,15 +131,15 @@ const SEALED: [&str; 17] = [
     "seal",
 ];
 
-fn paths(value: &serde_json::Value, path: &str, all: &mut Vec<String>) {
+fn paths(value: &Value, path: &str, all: &mut Vec<String>) {
     match value {
-        serde_json::Value::Object(map) => {
+        Value::Object(map) => {
             map.iter().for_each(|(key, value)| paths(value, &format!("{path}/{key}"), all));
         }
-        serde_json::Value::Array(list) => {
+        Value::Array(list) => {
             list.iter().enumerate().for_each(|(k, value)| paths(value, &format!("{path}/{k}"), all));
         }
-        serde_json::Value::Null => {}
+        Value::Null => {}
         _ => all.push(path.to_owned()),
     }
 }
@@ -144,32 +147,31 @@ fn paths(value: &serde_json::Value, path: &str, all: &mut Vec<String>) {
 #[test]
 fn every_number_and_word_of_the_summary() {
     let run = copy();
-    let right: serde_json::Value = serde_json::from_str(&run.text("summary.json")).unwrap();
+    let right: Value = serde_json::from_str(&run.text("summary.json")).unwrap();
     let mut all = Vec::new();
     paths(&right, "", &mut all);
     let all: Vec<&String> = all.iter().filter(|path| !SEALED.contains(&path.split('/').nth(1).unwrap())).collect();
     assert!(all.len() > 60, "{all:?}");
+    let before = run.text("summary.json");
+    let mut missed = Vec::new();
     for path in all {
         let mut changed = right.clone();
         let value = changed.pointer_mut(path).unwrap();
-        let new = match &*value {
-            serde_json::Value::Number(number) => other(&number.to_string(), 1.001)
-                .parse::<f64>()
-                .map(|number| if value.is_u64() { serde_json::Value::from(number as u64) } else { number.into() }),
-            serde_json::Value::Bool(right) => Ok((!right).into()),
-            serde_json::Value::String(words) => Ok(words.replacen(|c: char| c.is_ascii_lowercase(), "q", 1).into()),
+        *value = match &*value {
+            Value::Number(count) if count.is_u64() => (count.as_u64().unwrap() + 1).into(),
+            Value::Number(number) => other(&number.to_string(), 1.001).parse::<f64>().unwrap().into(),
+            Value::Bool(right) => (!right).into(),
+            Value::String(words) => words.replacen(|c: char| c.is_ascii_lowercase(), "q", 1).into(),
             other => panic!("{path}: {other}"),
         };
-        *value = new.unwrap();
-        // What cannot be read any more is found too.
-        let text = serde_json::to_string_pretty(&changed).unwrap();
-        let before = run.text("summary.json");
-        fs::write(run.run.join("summary.json"), text).unwrap();
+        fs::write(run.run.join("summary.json"), changed.to_string()).unwrap();
         run.seal();
-        let seen = strandsnap::study::check_run::check(&run.run).map(|_| wrong(&run.run));
-        assert!(seen.is_err() || seen.is_ok_and(|wrong| !wrong.is_empty()), "{path} is not found");
-        fs::write(run.run.join("summary.json"), before).unwrap();
+        // What cannot be read any more is found too.
+        let silent = strandsnap::study::check_run::check(&run.run).is_ok() && wrong(&run.run).is_empty();
+        missed.extend(silent.then_some(path));
+        fs::write(run.run.join("summary.json"), &before).unwrap();
     }
+    assert!(missed.is_empty(), "{missed:?}");
 }
 
 /// Places of digits in what people read of the page, outside of tags, styles and scripts.
@@ -202,7 +204,8 @@ fn figures_of_the_page_in_words_and_tables() {
     for at in all.iter().step_by(all.len() / 60) {
         let mut changed = page.clone().into_bytes();
         changed[*at] = if changed[*at] == b'7' { b'3' } else { b'7' };
-        let context = page[at - at.min(&30)..at + 10].to_owned();
+        let context: String = page[..*at].chars().rev().take(30).collect();
+        let context: String = context.chars().rev().collect();
         found(&run, "report.html", &String::from_utf8(changed).unwrap(), &context);
     }
     for (from, to) in

@@ -3,16 +3,9 @@
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use super::invariant::Invariant;
-use super::tables::Table;
-use crate::base::error::{Error, Result};
+use crate::engine::REVISION;
 use crate::engine::view::RunInfo;
-use crate::observe::Observer;
-use crate::observe::summary::{Closing, RunSummary, Summariser};
-use crate::observe::tables::{FILES, Tables};
-use crate::observe::trajectory::Record;
-use crate::scene::spec::Spec;
 use serde_json::Value;
-use std::sync::Arc;
 
 pub const TABLES: Invariant = Invariant {
     name: "tables",
@@ -28,7 +21,8 @@ pub const SUMMARY: Invariant = Invariant {
     check: summary,
 };
 
-/// Positions are compared in diameters: cosines of another machine differ in their last digit.
+/// Positions are compared in radii: cosines of another machine differ in their last digit. Ranges of colours are no bodies,
+/// and another revision of the physics may build others.
 pub const BODIES: Invariant = Invariant {
     name: "bodies",
     about: "layers, wires, particles and gauge of the trajectory are those that the scene builds",
@@ -37,73 +31,6 @@ pub const BODIES: Invariant = Invariant {
 
 /// Numbers that are computed again may differ by rounding, on another machine.
 const ROUNDING: f64 = 1e-9;
-
-/// What was made anew.
-pub struct Anew {
-    /// The tables, in the order of [`FILES`].
-    pub tables: [Table; 3],
-    /// `summary.json` without its seal.
-    pub summary: Value,
-}
-
-/// Makes it, record by record.
-pub struct Maker {
-    folder: tempfile::TempDir,
-    tables: Tables,
-    summariser: Summariser,
-}
-
-impl Maker {
-    /// Of a run that begins.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when there is no room for temporary files.
-    pub fn new(info: &Arc<RunInfo>) -> Result<Self> {
-        let folder = tempfile::tempdir().map_err(|e| Error::io("cannot make a folder in", std::env::temp_dir(), e))?;
-        let (mut tables, mut summariser) = (Tables::new(folder.path()), Summariser::new());
-        tables.start(info)?;
-        summariser.start(info)?;
-        Ok(Self { folder, tables, summariser })
-    }
-
-    /// Takes in a record.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when the disk is full.
-    pub fn take(&mut self, record: &Record) -> Result<()> {
-        for observer in [&mut self.tables as &mut dyn Observer, &mut self.summariser] {
-            match record {
-                Record::Sample(sample) => observer.sample(sample)?,
-                Record::Rupture(rupture) => observer.rupture(rupture)?,
-                Record::Notice(notice) => observer.notice(notice)?,
-                Record::Peaks(peaks) => observer.peaks(peaks)?,
-                Record::Snapshot(_) => {}
-            }
-        }
-        Ok(())
-    }
-
-    /// All records were taken in; `told` is the summary as the run wrote it.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when the disk is full.
-    pub fn end(mut self, spec: &Spec, told: &RunSummary, bonds: usize) -> Result<Anew> {
-        self.tables.finish()?;
-        // An error that is no failure of the simulation is a warning without a finding.
-        let error = told.warnings.first().filter(|_| told.warnings.len() > told.findings.len());
-        let closing = Closing {
-            stopped: told.stopped,
-            error: error.cloned(),
-            quasi_static: told.quasi_static,
-            limits: told.limits.clone(),
-            cost: told.cost.clone(),
-            written: told.written.clone(),
-        };
-        let summary = self.summariser.summary(spec, bonds, closing);
-        let [curve, wires, ruptures] = FILES.map(|name| Table::read(self.folder.path(), name, &[]));
-        Ok(Anew { tables: [curve?, wires?, ruptures?], summary: serde_json::to_value(summary).unwrap_or_default() })
-    }
-}
 
 fn tables(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
@@ -136,9 +63,18 @@ fn summary(run: &Folder) -> InvariantOutcome {
 
 fn bodies(run: &Folder) -> InvariantOutcome {
     let (told, made) = (&run.trajectory.info, &run.made);
+    let revision = run.trajectory.origin.revision;
+    if revision != REVISION {
+        return InvariantOutcome::NotApplicable(format!(
+            "the run is of revision {revision} of the physics, this is {REVISION}"
+        ));
+    }
     let mut search = Search::new();
     let rest = |info: &RunInfo| {
-        let bare = RunInfo { rest_position: Vec::new(), ..info.clone() };
+        let [stress_range, plastic_strain_range, speed_range, contact_pressure_range] = [[0.0; 2]; 4];
+        let ranges =
+            RunInfo { stress_range, plastic_strain_range, speed_range, contact_pressure_range, ..info.clone() };
+        let bare = RunInfo { rest_position: Vec::new(), ..ranges };
         serde_json::to_value(bare).unwrap_or_default()
     };
     leaves(&rest(told), &rest(made), "head of trajectory.bin", &mut search);

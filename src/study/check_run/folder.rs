@@ -1,8 +1,8 @@
 //! All files of a run, read once.
 
-use super::anew::{Anew, Maker};
 use super::finding::Search;
 use super::limits::Limits;
+use super::maker::{Anew, Maker};
 use super::tables::Table;
 use crate::base::error::{Error, Result};
 use crate::base::finding::Notice;

@@ -12,6 +12,7 @@ mod folder;
 mod invariant;
 mod law;
 mod limits;
+mod maker;
 mod mechanics;
 mod page;
 mod page_words;
