@@ -55,6 +55,7 @@ strain = "6 %"
 [output]
 samples = 400
 snapshots = 30
+frame_size = [160, 120]
 "#;
 
 /// A scene from text; `set` are `--set` options.
