@@ -7,6 +7,7 @@ use serde_json::Value;
 use std::fs;
 use strandsnap::observe::trajectory::Trajectory;
 use strandsnap::run::identity;
+use strandsnap::study::check_run::{InvariantCheck, check};
 
 impl Copy {
     /// The summary gets a seal that fits the files as they are now.
@@ -152,6 +153,8 @@ fn every_number_and_word_of_the_summary() {
     paths(&right, "", &mut all);
     let all: Vec<&String> = all.iter().filter(|path| !SEALED.contains(&path.split('/').nth(1).unwrap())).collect();
     assert!(all.len() > 60, "{all:?}");
+    // The page shows most of them: it must not be what finds them.
+    fs::remove_file(run.run.join("report.html")).unwrap();
     let before = run.text("summary.json");
     let mut missed = Vec::new();
     for path in all {
@@ -167,7 +170,7 @@ fn every_number_and_word_of_the_summary() {
         fs::write(run.run.join("summary.json"), changed.to_string()).unwrap();
         run.seal();
         // What cannot be read any more is found too.
-        let silent = strandsnap::study::check_run::check(&run.run).is_ok() && wrong(&run.run).is_empty();
+        let silent = check(&run.run).is_ok_and(|findings| !findings.iter().any(InvariantCheck::failed));
         missed.extend(silent.then_some(path));
         fs::write(run.run.join("summary.json"), &before).unwrap();
     }
@@ -201,7 +204,7 @@ fn figures_of_the_page_in_words_and_tables() {
     let page = run.text("report.html");
     let all = digits(&page);
     assert!(all.len() > 300, "{}", all.len());
-    for at in all.iter().step_by(all.len() / 60) {
+    for at in all.iter().step_by(all.len() / 40) {
         let mut changed = page.clone().into_bytes();
         changed[*at] = if changed[*at] == b'7' { b'3' } else { b'7' };
         let context: String = page[..*at].chars().rev().take(30).collect();
