@@ -286,7 +286,8 @@ fn drive_and_summarise(
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
     let (outcome, error) = drive::drive(engine, spec, &mut observers, stop, Some(&mut job.keeper), resumed)?;
     let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
-    let closing = closing(&job.clock, &outcome, error.as_ref(), frames);
+    let written = Some(job.options.written());
+    let closing = Closing { written, ..closing(&job.clock, &outcome, error.as_ref(), frames) };
     let summary = summariser.summary(spec, job.bonds, closing);
     let kept = write_summary(&job, &summary);
     // What came to its end, or cannot go on, has nothing to be resumed from.
@@ -312,6 +313,7 @@ fn closing(clock: &Clock, outcome: &Outcome, error: Option<&Error>, frames: Opti
         quasi_static: outcome.quasi_static,
         limits: outcome.limits.clone(),
         cost: clock.cost(outcome, frames),
+        written: None,
     }
 }
 
@@ -319,7 +321,10 @@ fn write_summary(job: &Job, summary: &RunSummary) -> Result<()> {
     let path = job.folder.file(folder::SUMMARY);
     let text = serde_json::to_string_pretty(summary)
         .map_err(|e| Error::io("cannot write", &path, std::io::Error::other(e)))?;
-    write_whole(&path, &identity::seal(&text, Origin::of(&job.scene.spec), &job.options.out)?)
+    // An animation elsewhere is no file of this folder.
+    let animation = summary.written.as_ref().and_then(|written| written.animation.as_deref());
+    let own: Vec<&str> = animation.into_iter().filter(|name| !Path::new(name).is_absolute()).collect();
+    write_whole(&path, &identity::seal(&text, Origin::of(&job.scene.spec), &job.options.out, &own)?)
 }
 
 /// Adds where the results so far are, and how many `earlier` findings in them may tell why.

@@ -1,8 +1,14 @@
-//! `strandsnap check-run`: invariants between all files of a run, on every shipped scene after a break, on random scenes, and
-//! on files that were tampered with.
+//! `strandsnap check-run`: invariants between all files of a run, on every shipped scene after a break, on runs of many
+//! kinds and random scenes, which must all pass, and on files that were tampered with, which must not.
 
 #[path = "check_run/damaged.rs"]
 mod damaged;
+#[path = "check_run/drawn.rs"]
+mod drawn;
+#[path = "check_run/falsified.rs"]
+mod falsified;
+#[path = "check_run/honest.rs"]
+mod honest;
 #[path = "check_run/random.rs"]
 mod random;
 #[path = "check_run/shipped.rs"]
@@ -49,6 +55,7 @@ strain = "6 %"
 [output]
 samples = 400
 snapshots = 30
+frame_size = [160, 120]
 "#;
 
 /// A scene from text; `set` are `--set` options.

@@ -42,7 +42,7 @@ fn folder_of(run: &Run, pictures: usize) -> TempDir {
     let closing = Closing { stopped: StopReason::Steps { limit: 7, reached: 7 }, cost, ..Closing::default() };
     let summary = summariser.summary(&scene.spec, 10_000, closing);
     let text = serde_json::to_string_pretty(&summary).unwrap();
-    fs::write(at("summary.json"), run::identity::seal(&text, origin, folder.path()).unwrap()).unwrap();
+    fs::write(at("summary.json"), run::identity::seal(&text, origin, folder.path(), &[]).unwrap()).unwrap();
     fs::create_dir(at("frames")).unwrap();
     for number in 0..pictures {
         let shade = |x: u32, y: u32| image::Rgb([x as u8, y as u8, number as u8 * 9]);

@@ -93,7 +93,8 @@ pub fn render(args: Args) -> Result<Ended> {
         }
     }
     let whole = pictures.whole().clone();
-    let mut writer = FrameWriter::new(&out, &output)?.with_animation(animation.clone()).without(whole);
+    let mut writer =
+        FrameWriter::new(&out, &output)?.with_origin(run.origin()).with_animation(animation.clone()).without(whole);
     if let Some(why) = run.cut_off() {
         eprintln!("note: {why}; what there is will be drawn");
     }

@@ -27,5 +27,5 @@ pub fn picture(run: &Path, view: &View, size: [u32; 2]) -> Result<Vec<u8>> {
     let record = record::Record::read(run)?;
     view.check(record.info(), record.states())?;
     let picture = draw::Artist::new(&record)?.draw(&record, view, size)?;
-    crate::render::png::encode(&picture.image)
+    crate::render::png::encode(&picture.image, None)
 }

@@ -285,7 +285,7 @@ impl Session<'_> {
 
     fn draw_whole(&mut self, kind: Kind, look: &Look) -> std::result::Result<(), End> {
         let drawn = self.drawn(&look.view, look.size).and_then(|picture| {
-            let bytes = crate::render::png::encode(&picture.image)?;
+            let bytes = crate::render::png::encode(&picture.image, None)?;
             Ok((bytes, picture.took))
         });
         match drawn {

@@ -6,6 +6,9 @@ use crate::scene::spec::{PathSpec, Spec};
 use crate::scene::write;
 use serde::{Deserialize, Serialize};
 
+/// Keyword of the text chunk in which a PNG file carries the id of the run that it shows.
+pub const RUN_KEYWORD: &str = "strandsnap run";
+
 /// What decides every bit of a run's result: two runs with the same id are the same run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Origin {

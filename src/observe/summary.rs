@@ -86,6 +86,9 @@ pub struct RunSummary {
     /// What the run cost and with what it was made.
     #[serde(flatten)]
     pub cost: Cost,
+    /// What lies in the run's folder besides; `None` where nothing was written, or by a program that did not tell.
+    #[serde(default)]
+    pub written: Option<OutputFiles>,
     /// What must be known before believing the run, in words: an error that ended it, then the findings in their order;
     /// empty when there is nothing.
     pub warnings: Vec<String>,
@@ -174,6 +177,19 @@ pub struct Closing {
     pub limits: Limits,
     /// What it cost.
     pub cost: Cost,
+    /// What it wrote.
+    pub written: Option<OutputFiles>,
+}
+
+/// What a run writes besides tables, summary and trajectory.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct OutputFiles {
+    /// Numbered frames, one per snapshot.
+    pub frames: bool,
+    /// A recording.
+    pub recording: bool,
+    /// The animation of the frames: its name in the run's folder, or all of its path where it lies elsewhere.
+    pub animation: Option<String>,
 }
 
 /// Broken wires of a layer.
@@ -301,6 +317,7 @@ impl Summariser {
             particles: self.info.as_ref().map_or(0, |info| info.particles),
             bonds,
             cost: closing.cost,
+            written: closing.written,
             warnings: closing.error.into_iter().chain(said).collect(),
             findings: notices.into_iter().map(found).collect(),
         }

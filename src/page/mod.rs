@@ -32,7 +32,7 @@ use crate::base::error::{Error, Result};
 use crate::base::regular::check_target;
 use crate::observe::files::write_whole;
 use crate::run::folder::{self, REPORT};
-use crate::run::identity;
+use crate::run::identity::{self, Doubt};
 use std::path::{Path, PathBuf};
 
 /// The sections, in their order on the page. A new one is a file with such a function, and a row here.
@@ -74,12 +74,17 @@ pub fn write(run: &Path, out: Option<&Path>, study: Option<&Path>, overwrite: bo
     check_target(&path, overwrite, "--out")?;
     let doubts = identity::check(run, anyway)?;
     let mut source = Source::read(run)?;
-    source.notes.extend(doubts.iter().map(|doubt| format!("This page is of doubtful files: {doubt}.")));
+    source.notes.extend(doubts.iter().map(doubtful));
     source.accuracy = read_study(study, &source.info.name)?;
     let text = html(&source)?;
     write_whole(&path, &text)?;
     let frames = [source.pictures_shown(), source.pictures.found];
     Ok(Written { path, bytes: text.len(), frames, notes: source.notes })
+}
+
+/// What a page says of a file that is not believed.
+pub fn doubtful(doubt: &Doubt) -> String {
+    format!("This page is of doubtful files: {doubt}.")
 }
 
 /// The page as text.

@@ -4,6 +4,7 @@ use super::picture::Pictures;
 use super::select;
 use super::study::Study;
 use crate::base::error::{Error, Result};
+use crate::base::finding::StopReason;
 use crate::base::regular;
 use crate::base::units::{mm, ms, percent};
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
@@ -145,6 +146,12 @@ impl Source {
             accuracy: None,
             notes,
         })
+    }
+
+    /// Shows none of the pictures, as if the run had none.
+    pub fn leave_out_pictures(&mut self) {
+        self.pictures = Pictures::default();
+        self.states.iter_mut().for_each(|state| state.picture = None);
     }
 
     /// How many states have a picture.
@@ -298,7 +305,10 @@ fn summary(
             )
         })?;
         let (rows, ruptures) = (pass.samples.last().map(|s| s.step), pass.ruptures.len());
-        if pass.cut.is_none() && (rows != Some(summary.cost.steps) || ruptures != summary.bonds_broken) {
+        // A run that failed may have gone on after its last row, which would not have been finite.
+        let went_on = summary.stopped == StopReason::Failed && rows.is_some_and(|row| row < summary.cost.steps);
+        let same = (went_on || rows == Some(summary.cost.steps)) && ruptures == summary.bonds_broken;
+        if pass.cut.is_none() && !same {
             return Err(Error::input(
                 format!(
                     "{SUMMARY} and {TRAJECTORY} in {} are not of one run: {} steps and {} broken bonds against {} and {}",

@@ -1,20 +1,33 @@
 //! PNG files that are either whole or absent.
 
 use crate::base::error::{Error, Result};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, RgbImage};
+use crate::observe::origin::{Origin, RUN_KEYWORD};
+use image::RgbImage;
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 use std::io::Write;
 use std::path::Path;
 
-/// The picture as PNG bytes, compressed fast (a few milliseconds; twice the size of the slowest setting).
+/// The picture as PNG bytes, compressed fast (a few milliseconds; twice the size of the slowest setting). One that shows a
+/// run of which the `origin` is known carries the run's id in a text chunk.
 ///
 /// # Errors
 /// When the picture is empty.
-pub fn encode(picture: &RgbImage) -> Result<Vec<u8>> {
+pub fn encode(picture: &RgbImage, origin: Option<Origin>) -> Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(picture.len() / 4);
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
-        .write_image(picture, picture.width(), picture.height(), ExtendedColorType::Rgb8)
-        .map_err(|e| Error::input(format!("cannot encode a picture: {e}"), "choose a size of at least 1 × 1 pixel"))?;
+    let refuse = |e: EncodingError| {
+        Error::input(format!("cannot encode a picture: {e}"), "choose a size of at least 1 × 1 pixel")
+    };
+    let mut encoder = Encoder::new(&mut bytes, picture.width(), picture.height());
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    if let Some(origin) = origin {
+        encoder.add_text_chunk(RUN_KEYWORD.into(), origin.run.to_string()).map_err(refuse)?;
+    }
+    let mut writer = encoder.write_header().map_err(refuse)?;
+    writer.write_image_data(picture).map_err(refuse)?;
+    writer.finish().map_err(refuse)?;
     Ok(bytes)
 }
 

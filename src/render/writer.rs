@@ -8,6 +8,7 @@ use crate::base::regular;
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use crate::observe::animation::Animation;
+use crate::observe::origin::Origin;
 use crate::observe::timings::Timings;
 use crate::scene::spec::OutputSpec;
 use image::RgbImage;
@@ -34,6 +35,7 @@ pub struct FrameWriter {
     animation: Option<Animation>,
     /// Pictures that are there and are not drawn again.
     whole: HashSet<PathBuf>,
+    origin: Option<Origin>,
     /// Memory for snapshots that wait to be drawn (bytes).
     memory: usize,
     curve: Vec<(f64, f64)>,
@@ -71,6 +73,7 @@ impl FrameWriter {
             look: look.clone(),
             animation: None,
             whole: HashSet::new(),
+            origin: None,
             memory: 0,
             curve: Vec::new(),
             ruptures: Vec::new(),
@@ -89,6 +92,12 @@ impl FrameWriter {
     /// Leaves out pictures that are there already, from an earlier process that drew the same.
     pub fn without(mut self, whole: HashSet<PathBuf>) -> Self {
         self.whole = whole;
+        self
+    }
+
+    /// Writes into each picture which run it shows.
+    pub fn with_origin(mut self, origin: Origin) -> Self {
+        self.origin = Some(origin);
         self
     }
 
@@ -149,11 +158,11 @@ impl Observer for FrameWriter {
         let waiting = self.memory / (PARTICLE_BYTES * info.particles.max(1));
         let (jobs, waiting) = sync_channel(waiting.clamp(*WAITING.start(), *WAITING.end()));
         let (pictures, drawn) = sync_channel(DRAWN);
-        let folder = self.folder.clone();
+        let (folder, origin) = (self.folder.clone(), self.origin);
         self.workers = Some(Workers {
             jobs,
             draw: std::thread::spawn(move || draw_all(renderer, &waiting, &pictures)),
-            encode: std::thread::spawn(move || encode_all(&folder, &drawn)),
+            encode: std::thread::spawn(move || encode_all(&folder, origin, &drawn)),
         });
         Ok(())
     }
@@ -222,11 +231,11 @@ fn draw_all(mut renderer: Renderer, jobs: &Receiver<Job>, pictures: &SyncSender<
     Ok(renderer.timings())
 }
 
-fn encode_all(folder: &Path, pictures: &Receiver<(usize, RgbImage)>) -> Result<Timings> {
+fn encode_all(folder: &Path, origin: Option<Origin>, pictures: &Receiver<(usize, RgbImage)>) -> Result<Timings> {
     let mut timings = Timings::default();
     for (number, drawn) in pictures.iter() {
         let start = Instant::now();
-        let bytes = png::encode(&drawn)?;
+        let bytes = png::encode(&drawn, origin)?;
         png::write(&picture(folder, number), &bytes)?;
         timings.encode += start.elapsed();
     }

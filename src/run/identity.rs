@@ -49,20 +49,23 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// A summary's JSON object with its seal, for the run in the folder `run`, whose other files are whole.
+/// A summary's JSON object with its seal, for the run in the folder `run`, whose other files are whole, `more` of them in the
+/// seal than those that every run writes.
 ///
 /// # Errors
 /// [`Error::Io`] when a file cannot be read.
-pub fn seal(summary: &str, origin: Origin, run: &Path) -> Result<String> {
-    let names = tables::FILES.into_iter().chain([SCENE, TRAJECTORY]).filter(|name| run.join(name).is_file());
-    let files = names.map(|name| Ok((name.to_owned(), Digest::of_file(&run.join(name))?)));
+pub fn seal(summary: &str, origin: Origin, run: &Path, more: &[&str]) -> Result<String> {
+    let names = tables::FILES.into_iter().chain([SCENE, TRAJECTORY]).chain(more.iter().copied());
+    let files = names
+        .filter(|name| run.join(name).is_file())
+        .map(|name| Ok((name.to_owned(), Digest::of_file(&run.join(name))?)));
     let seal = Seal { origin, files: files.collect::<Result<_>>()?, summary: Digest::of(summary) };
     let open = summary.trim_end().trim_end_matches('}').trim_end();
     Ok(format!("{open}{SEAL}{}\n}}\n", serde_json::to_string(&seal).expect("a seal holds nothing that JSON lacks")))
 }
 
 /// The seal of a summary, if it has one and is as it was sealed.
-fn unsealed(text: &str) -> Option<Seal> {
+pub fn unsealed(text: &str) -> Option<Seal> {
     let at = text.rfind(SEAL)?;
     let seal: Seal = serde_json::from_str(text[at + SEAL.len()..].trim_end().strip_suffix('}')?).ok()?;
     (seal.summary == Digest::of(format!("{}\n}}", &text[..at]))).then_some(seal)
@@ -137,7 +140,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("curve.csv"), "step\n").unwrap();
         let summary = serde_json::to_string_pretty(&serde_json::json!({ "scene": "a", "strength": 1.5 })).unwrap();
-        let sealed = seal(&summary, Origin::default(), folder.path()).unwrap();
+        let sealed = seal(&summary, Origin::default(), folder.path(), &[]).unwrap();
         let read: serde_json::Value = serde_json::from_str(&sealed).unwrap();
         assert_eq!((read["scene"].as_str(), read["strength"].as_f64()), (Some("a"), Some(1.5)));
         let seal = unsealed(&sealed).unwrap();

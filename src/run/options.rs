@@ -1,6 +1,7 @@
 //! What a run is asked for.
 
 use crate::observe::animation::Animation;
+use crate::observe::summary::OutputFiles;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -45,6 +46,16 @@ impl RunOptions {
     pub(super) fn outputs(&self) -> Outputs {
         let animation = self.animation.as_ref().map(|animation| (animation.file.clone(), animation.width));
         Outputs { frames: self.frames, recording: self.recording, animation }
+    }
+
+    /// What the summary says of them.
+    pub(super) fn written(&self) -> OutputFiles {
+        let whole = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.into());
+        let animation = self.animation.as_ref().map(|animation| {
+            let file = whole(&animation.file);
+            file.strip_prefix(whole(&self.out)).unwrap_or(&file).to_string_lossy().into_owned()
+        });
+        OutputFiles { frames: self.frames, recording: self.recording, animation }
     }
 
     /// Those of a run that goes on.

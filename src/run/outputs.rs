@@ -92,7 +92,8 @@ fn check_frames() -> Result<()> {
 #[cfg(feature = "render")]
 fn frames(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Frames> {
     let writer = crate::render::FrameWriter::new(&folder.file(folder::FRAMES), &spec.output)?;
-    let writer = writer.with_animation(options.animation.clone()).with_memory(WAITING_FRAMES);
+    let writer =
+        writer.with_origin(Origin::of(spec)).with_animation(options.animation.clone()).with_memory(WAITING_FRAMES);
     let timings = writer.shared_timings();
     Ok((Box::new(writer), timings))
 }

@@ -21,12 +21,15 @@ fn template() -> &'static Path {
     Box::leak(folder.path().join("run").into_boxed_path())
 }
 
-struct Copy {
+/// A copy of a run that broke.
+pub struct Copy {
     _folder: tempfile::TempDir,
-    run: PathBuf,
+    /// Its folder.
+    pub run: PathBuf,
 }
 
-fn copy() -> Copy {
+/// A fresh one.
+pub fn copy() -> Copy {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("run");
     fs::create_dir(&run).unwrap();
@@ -257,7 +260,11 @@ fn what_is_no_run_is_refused_with_2() {
     refused(&empty.path().join("nowhere"), &["does not exist"]);
     let cut = copy();
     fs::rename(cut.run.join("curve.csv"), cut.run.join("curve.csv.partial")).unwrap();
-    refused(&cut.run, &["has not ended", "curve.csv"]);
+    refused(&cut.run, &["has not ended", "curve.csv is unfinished", "run the scene again"]);
+    fs::rename(cut.run.join("trajectory.bin"), cut.run.join("trajectory.bin.partial")).unwrap();
+    refused(&cut.run, &["trajectory.bin and curve.csv are unfinished", "no checkpoint"]);
+    fs::write(cut.run.join("checkpoint-1.bin"), "").unwrap();
+    refused(&cut.run, &["strandsnap resume"]);
     let foreign = copy();
     fs::write(foreign.run.join("trajectory.bin"), "nothing of the kind").unwrap();
     refused(&foreign.run, &["trajectory.bin", "damaged"]);

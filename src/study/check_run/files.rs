@@ -5,7 +5,9 @@ use super::folder::{CURVE as COLUMNS, Folder, energies};
 use super::invariant::Invariant;
 use super::rows::layer_heads;
 use crate::engine::view::Sample;
-use crate::run::identity;
+use crate::observe::partial;
+use crate::run::folder::RECORDING as RECORDED;
+use crate::run::{StopReason, identity};
 
 /// Numbers have nine digits.
 const DIGITS: f64 = 1e-8;
@@ -61,7 +63,7 @@ pub const STRENGTH: Invariant = Invariant {
 
 pub const RECORDING: Invariant = Invariant {
     name: "recording",
-    about: "recording.rrd has the trajectory's stresses, counts and energies, and its last state",
+    about: "recording.rrd is there if the run wrote it, and has the trajectory's stresses, counts and energies, and its last state",
     check: recording,
 };
 
@@ -193,9 +195,14 @@ fn summary(run: &Folder) -> InvariantOutcome {
     let number = |head: &str| run.curve.number(last, head);
     let mut search = Search::new();
     let e = &s.energy;
+    // A run that failed may have gone on after its last row, which would not have been finite.
+    let went_on = s.stopped == StopReason::Failed;
+    for (name, value, head) in [("steps", s.cost.steps as f64, "step"), ("simulated_s", s.cost.simulated_s, "time_s")] {
+        let right = number(head);
+        let value = if went_on { value.min(right) } else { value };
+        search.digits(right, value, || format!("{name}, last row's {head}"));
+    }
     let pairs = [
-        ("steps", Some(s.cost.steps as f64), "step"),
-        ("simulated_s", Some(s.cost.simulated_s), "time_s"),
         ("final_strain_percent", s.final_strain_percent, "strain_percent"),
         ("residual_stress_mpa", s.residual_stress_mpa, "stress_mpa"),
         ("energy.work", Some(e.work), "work_j"),
@@ -256,12 +263,26 @@ fn strength(run: &Folder) -> InvariantOutcome {
     search.end(DIGITS, "-", "there are no rows")
 }
 
-#[cfg(feature = "record")]
 fn recording(run: &Folder) -> InvariantOutcome {
+    let file = run.path.join(RECORDED);
+    if file.is_file() {
+        return look_into_recording(run);
+    }
+    let mut search = Search::new();
+    if partial::name(&file).exists() {
+        search.add(1.0, || format!("{RECORDED} is unfinished; `strandsnap record` writes it again"));
+    } else if run.summary.written.as_ref().is_some_and(|written| written.recording) {
+        search.add(1.0, || format!("{RECORDED} is missing, which the run wrote; `strandsnap record` writes it again"));
+    }
+    search.end(0.0, "-", "the run wrote no recording")
+}
+
+#[cfg(feature = "record")]
+fn look_into_recording(run: &Folder) -> InvariantOutcome {
     super::recording::check(run)
 }
 
 #[cfg(not(feature = "record"))]
-fn recording(_run: &Folder) -> InvariantOutcome {
+fn look_into_recording(_run: &Folder) -> InvariantOutcome {
     InvariantOutcome::NotApplicable("this program was built without recordings".into())
 }

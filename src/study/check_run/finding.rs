@@ -70,6 +70,11 @@ impl Search {
         self.add(off, || format!("{}: {found} against {right}", place()));
     }
 
+    /// Whether nothing is off at all.
+    pub fn holds(&self) -> bool {
+        self.worst <= 0.0
+    }
+
     /// Passed when nothing is further off than `allowed`, in `unit`; not applicable, for the reason `nothing`, when nothing
     /// was seen.
     pub fn end(self, allowed: f64, unit: &'static str, nothing: &str) -> InvariantOutcome {

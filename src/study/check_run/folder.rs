@@ -2,19 +2,26 @@
 
 use super::finding::Search;
 use super::limits::Limits;
+use super::maker::{Anew, Maker};
 use super::tables::Table;
 use crate::base::error::{Error, Result};
 use crate::base::finding::Notice;
 use crate::base::regular;
+use crate::engine::Engine;
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
+use crate::observe::origin::Origin;
 use crate::observe::trajectory::{Record, Trajectory};
 use crate::observe::{partial, tables};
 use crate::run::RunSummary;
-use crate::run::folder::{SCENE, SUMMARY, TRAJECTORY};
-use crate::run::identity::{self, Doubt};
+use crate::run::folder::{SCENE, SUMMARY, TRAJECTORY, has_checkpoint};
+use crate::run::identity::{self, Doubt, Seal};
+use crate::run::lock;
 use crate::scene::spec::Spec;
+use crate::strand::assembly::Assembly;
+use crate::strand::held::Gripped;
 use crate::strand::theory::Theory;
-use std::collections::{BTreeMap, BTreeSet};
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -98,8 +105,16 @@ pub struct Folder {
     pub spec: Spec,
     /// Strand theory of its bodies, whatever loads them.
     pub theory: Option<Theory>,
+    /// What does not change of its bodies, made anew from the scene.
+    pub made: RunInfo,
+    /// Length between the last particles that one grip holds and those that the other does (m); `None` without grips.
+    pub free_length: Option<f64>,
     /// `summary.json`.
     pub summary: RunSummary,
+    /// The same as it stands there, its seal included.
+    pub summary_as_written: Value,
+    /// Its seal, if it is whole.
+    pub seal: Option<Seal>,
     /// `curve.csv`.
     pub curve: Table,
     /// `wires.csv`.
@@ -110,6 +125,10 @@ pub struct Folder {
     pub trajectory: Told,
     /// What was looked for in each snapshot: they are too many to be kept.
     pub snapshots: Snapshots,
+    /// Mass that moves with the drive's speed in the even field of a pull, Σ m s², s a particle's share of that speed (kg).
+    pub affine_mass: f64,
+    /// Tables and summary as the program makes them of scene and trajectory.
+    pub anew: Anew,
 }
 
 /// The trajectory without its snapshots.
@@ -122,7 +141,11 @@ pub struct Told {
     pub ruptures: Vec<Rupture>,
     /// Notices.
     pub notices: Vec<Notice>,
-    /// The last snapshot.
+    /// Which run it is of.
+    pub origin: Origin,
+    /// How many snapshots it holds.
+    pub snapshots: usize,
+    /// The last of them.
     pub last: Option<Snapshot>,
 }
 
@@ -147,20 +170,35 @@ impl Folder {
     pub fn read(run: &Path) -> Result<Self> {
         check_files(run)?;
         let text = |name: &str| regular::text(&run.join(name), regular::LONGEST_TABLE);
-        let spec = crate::scene::parse(&text(SCENE)?, SCENE, run, &[])?.spec;
-        let summary: RunSummary = serde_json::from_str(&text(SUMMARY)?).map_err(|e| {
+        let scene = crate::scene::parse(&text(SCENE)?, SCENE, run, &[])?;
+        let assembly = crate::run::assemble(&scene)?;
+        let (bonds, made) = (assembly.bond_count(), Engine::new(&scene.spec, &scene.plan, assembly.clone())?.info());
+        let affine_mass = affine_mass(&assembly, &made);
+        let spec = scene.spec;
+        let damaged = |e: serde_json::Error| {
             Error::input(
                 format!("{} is damaged or of another version of strandsnap: {e}", run.join(SUMMARY).display()),
                 "run the scene again with this program",
             )
-        })?;
+        };
+        let written = text(SUMMARY)?;
+        let summary: RunSummary = serde_json::from_str(&written).map_err(damaged)?;
+        let summary_as_written = serde_json::from_str(&written).map_err(damaged)?;
         let [curve, wires, ruptures] = tables::FILES;
-        let (trajectory, snapshots) = told(&run.join(TRAJECTORY), &spec)?;
+        let (trajectory, snapshots, maker) =
+            told(&run.join(TRAJECTORY), &spec, summary.limits.greatest_time_step.seconds)?;
+        let free = spec.grip.as_ref().map(|grip| Gripped::of(grip, &assembly).free_length());
         Ok(Self {
             path: run.into(),
             doubts: identity::doubts(run)?,
             theory: Theory::of(&spec),
+            free_length: free.filter(|length| *length > 0.0),
+            affine_mass,
+            anew: maker.end(&spec, &summary, bonds)?,
+            made,
             summary,
+            summary_as_written,
+            seal: identity::unsealed(&written),
             curve: Table::read(run, curve, &CURVE)?,
             wires: Table::read(run, wires, &WIRES)?,
             ruptures: Table::read(run, ruptures, &RUPTURES)?,
@@ -173,6 +211,17 @@ impl Folder {
     /// Whether grips strain a body, so that there is a stress and a strain.
     pub fn is_gripped(&self) -> bool {
         self.trajectory.info.gauge.is_some()
+    }
+
+    /// Whether the run drew frames, all of them: those of one that an error ended may be fewer.
+    pub fn drew_frames(&self) -> bool {
+        let told = self.summary.written.as_ref().map_or(self.summary.cost.frames.is_some(), |written| written.frames);
+        told && self.summary.warnings.len() <= self.summary.findings.len()
+    }
+
+    /// The longest step of the run (s).
+    pub fn longest_step(&self) -> f64 {
+        self.summary.limits.greatest_time_step.seconds
     }
 
     /// Step of the first rupture; none: beyond all.
@@ -204,6 +253,13 @@ impl Folder {
     }
 }
 
+/// See [`Folder::affine_mass`].
+fn affine_mass(assembly: &Assembly, info: &RunInfo) -> f64 {
+    let Some([low, high]) = info.gauge else { return 0.0 };
+    let share = |z: f64| ((z - low) / (high - low)).clamp(0.0, 1.0);
+    assembly.mass.iter().zip(&assembly.position.z).map(|(mass, z)| mass * share(*z).powi(2)).sum()
+}
+
 /// Every file that a whole run writes must be there under its own name.
 fn check_files(run: &Path) -> Result<()> {
     let give = "give the folder of a run, such as out/ka4";
@@ -214,9 +270,10 @@ fn check_files(run: &Path) -> Result<()> {
     let needed: Vec<&str> = [SCENE, SUMMARY, TRAJECTORY].into_iter().chain(tables::FILES).collect();
     let partial: Vec<&str> = needed.iter().copied().filter(|name| partial::name(&run.join(name)).exists()).collect();
     if !partial.is_empty() {
+        let are = if partial.len() == 1 { "is" } else { "are" };
         return Err(Error::input(
-            format!("{}: the run has not ended, {} is unfinished", run.display(), partial.join(", ")),
-            "wait for its end, or run the scene again",
+            format!("{}: the run has not ended, {} {are} unfinished", run.display(), listed(&partial)),
+            how_to_go_on(run),
         ));
     }
     let missing: Vec<&str> = needed.into_iter().filter(|name| !run.join(name).is_file()).collect();
@@ -226,21 +283,47 @@ fn check_files(run: &Path) -> Result<()> {
     Err(Error::input(format!("{} holds no {}", run.display(), missing.join(", no ")), give))
 }
 
-fn told(path: &Path, spec: &Spec) -> Result<(Told, Snapshots)> {
+/// What to do about a run that has not ended.
+fn how_to_go_on(run: &Path) -> String {
+    if let Some(by) = lock::holder(run) {
+        return format!("wait for its end: process {by} writes into it");
+    }
+    match has_checkpoint(run) {
+        true => format!("go on with it: strandsnap resume {}", run.display()),
+        false => "it has kept no checkpoint: run the scene again".into(),
+    }
+}
+
+/// Names in a row: "a, b and c".
+fn listed(names: &[&str]) -> String {
+    match names {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        _ => names.join(", "),
+    }
+}
+
+fn told(path: &Path, spec: &Spec, longest_step: f64) -> Result<(Told, Snapshots, Maker)> {
     let damaged = |e: Error| Error::input(format!("{} is damaged: {e}", path.display()), "run the scene again");
     let trajectory = Trajectory::open(path).map_err(damaged)?;
     let info = trajectory.info().clone();
-    let limits = Limits::new(spec, &info);
-    let mut told = Told { info, samples: Vec::new(), ruptures: Vec::new(), notices: Vec::new(), last: None };
+    let limits = Limits::new(spec, &info, longest_step);
+    let mut made = Maker::new(&info)?;
+    let mut told = Told {
+        info,
+        samples: Vec::new(),
+        ruptures: Vec::new(),
+        notices: Vec::new(),
+        origin: trajectory.origin(),
+        snapshots: 0,
+        last: None,
+    };
     let mut seen = Snapshots { rows: Search::new(), silent: Search::new(), law: Search::new(), rupture: Search::new() };
     let mut broken: BTreeMap<usize, u64> = BTreeMap::new();
-    let mut rows: BTreeSet<u64> = BTreeSet::new();
     for record in trajectory {
-        match record.map_err(damaged)? {
-            Record::Sample(sample) => {
-                rows.insert(sample.step);
-                told.samples.push(sample);
-            }
+        let record = record.map_err(damaged)?;
+        made.take(&record)?;
+        match record {
+            Record::Sample(sample) => told.samples.push(sample),
             Record::Rupture(rupture) => {
                 broken.entry(rupture.bond).or_insert(rupture.step);
                 told.ruptures.push(rupture);
@@ -249,11 +332,12 @@ fn told(path: &Path, spec: &Spec) -> Result<(Told, Snapshots)> {
             Record::Peaks(_) => {}
             Record::Snapshot(snapshot) => {
                 seen.snapshot(&snapshot, &told, &broken, &limits);
+                told.snapshots += 1;
                 told.last = Some(snapshot);
             }
         }
     }
-    Ok((told, seen))
+    Ok((told, seen, made))
 }
 
 impl Snapshots {

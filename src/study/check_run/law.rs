@@ -15,7 +15,7 @@ pub const BONDS: Invariant = Invariant {
 
 pub const WIRES: Invariant = Invariant {
     name: "wire-law",
-    about: "no wire and no layer of any row or table carries more than the law gives before it breaks",
+    about: "no wire and no layer of any row or table carries more than the law gives before it breaks, pulled or pushed",
     check: wires,
 };
 
@@ -27,12 +27,14 @@ pub const RUPTURES: Invariant = Invariant {
 
 fn wires(run: &Folder) -> InvariantOutcome {
     let info = &run.trajectory.info;
-    let Some(limit) = Limits::new(&run.spec, info).wire(info.wire_particles) else {
-        return InvariantOutcome::NotApplicable("bonds of this scene have no limit".into());
-    };
+    let bounds = Limits::new(&run.spec, info, run.longest_step()).wire(info.wire_particles);
+    if !bounds.limits() {
+        return InvariantOutcome::NotApplicable("nothing limits what the bonds of this scene carry".into());
+    }
     let mut search = Search::new();
     let mut add = |stress: f64, place: &dyn Fn() -> String| {
-        search.add(stress.abs() / limit - 1.0, || format!("{}: {stress:.2} MPa, wires carry {limit:.2}", place()));
+        let over = || format!("{}: {stress:.2} MPa, wires carry {:.2}", place(), bounds.of(stress));
+        search.add(bounds.over(stress), over);
     };
     for row in 0..run.curve.rows.len() {
         for head in rows::layer_heads(run) {
@@ -59,18 +61,14 @@ fn wires(run: &Folder) -> InvariantOutcome {
 
 fn ruptures(run: &Folder) -> InvariantOutcome {
     let info = &run.trajectory.info;
-    let limits = Limits::new(&run.spec, info);
+    let limits = Limits::new(&run.spec, info, run.longest_step());
     let mut search = run.snapshots.rupture.clone();
-    for rupture in &run.trajectory.ruptures {
-        if let Some(limit) = limits.breaking(rupture.bond) {
-            let stress = rupture.stress * 1e-6;
-            search.add(stress / limit - 1.0, || {
-                format!(
-                    "rupture {} ({}): {stress:.2} MPa, its law has {limit:.2}",
-                    rupture.order,
-                    bond(info, rupture.bond)
-                )
-            });
+    for (k, rupture) in run.trajectory.ruptures.iter().enumerate() {
+        let (bounds, stress) = (limits.breaking(rupture.bond, k == 0), rupture.stress * 1e-6);
+        if bounds.limits() {
+            let place = || format!("rupture {} ({})", rupture.order, bond(info, rupture.bond));
+            let over = || format!("{}: {stress:.2} MPa, its law has {:.2}", place(), bounds.of(stress));
+            search.add(bounds.over(stress), over);
         }
     }
     search.end(1e-3, "-", "nothing breaks in this scene")

@@ -3,11 +3,12 @@
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use super::invariant::Invariant;
-use super::rows::free_length;
 use crate::base::finding::FindingKind;
+use crate::engine::view::Sample;
 use crate::observe::guard::ENERGY_LIMIT;
 use crate::observe::stiffness::{self, Row, Stiffness};
 use crate::scene::spec::{DriveSpec, GripKind, Shape};
+use crate::strand::theory::Theory;
 
 pub const GRIP: Invariant = Invariant {
     name: "wires-and-grips",
@@ -39,9 +40,27 @@ const SETTLED: f64 = 2.0;
 /// A little more than forces are smoothed over, in passages of an elastic wave (-).
 const SMOOTHED: f64 = 0.3;
 
-/// Σ N cos β′ over the wires against the mean of the two grips' forces, β′ the lay angle of a strand that keeps its volume.
-/// Wires are measured at mid-gauge and grips at the ends, through a filter of a fraction of a wave's passage, so a force may
-/// be what it changes by in one passage beside.
+/// Force along the strand that the wires carry in a row (N): Σ N cos β′, β′ the lay angle of a strand that keeps its volume.
+fn carried(run: &Folder, theory: &Theory, row: &Sample) -> f64 {
+    // Wires given one by one are a layer each in theory; all of them are straight.
+    let slope = |layer: usize| match run.spec.strand {
+        Some(_) => theory.layers[layer].lay_angle().tan(),
+        None => 0.0,
+    };
+    let wires = run.trajectory.info.wires.iter().zip(&row.wire_stress);
+    wires
+        .map(|(wire, stress)| {
+            let area = std::f64::consts::FRAC_PI_4 * wire.diameter.powi(2);
+            // tan β goes as R/(1 + ε), R as 1/√(1 + ε).
+            stress * area / 1f64.hypot(slope(wire.layer) / (1.0 + row.strain).powf(1.5))
+        })
+        .sum()
+}
+
+/// What the wires carry against the mean of the two grips' forces. Wires are measured at mid-gauge and grips at the ends, so
+/// that waves along the body, which yield, and grips that swing, set going, pull them apart: by no more than the two grips
+/// differ, and than either force changes by while a wave passes, at its fastest in the rows within a passage. A row's own
+/// change does not count for it.
 fn grips(run: &Folder) -> InvariantOutcome {
     let not = |why: &str| InvariantOutcome::NotApplicable(why.into());
     let Some(grip) = run.spec.grip.as_ref().filter(|grip| grip.kind == GripKind::All) else {
@@ -56,49 +75,42 @@ fn grips(run: &Folder) -> InvariantOutcome {
     if matches!(grip.drive, DriveSpec::Speed(0.0)) {
         return not("nothing is pulled");
     }
-    let info = &run.trajectory.info;
     let samples = &run.trajectory.samples;
-    let mean = |sample: &crate::engine::view::Sample| 0.5 * (sample.grip_force[0] + sample.grip_force[1]);
-    let most = samples.iter().map(|s| mean(s).abs()).fold(0.0, f64::max);
-    // Wires given one by one are a layer each in theory; all of them are straight.
-    let slope = |layer: usize| match run.spec.strand {
-        Some(_) => theory.layers[layer].lay_angle().tan(),
-        None => 0.0,
+    let held: Vec<f64> = samples.iter().map(|row| 0.5 * (row.grip_force[0] + row.grip_force[1])).collect();
+    let carried: Vec<f64> = samples.iter().map(|row| carried(run, theory, row)).collect();
+    let most = held.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+    // What a force changes by in a passage, from one row to the next.
+    let change = |force: &[f64], row: usize| {
+        (force[row] - force[row - 1]).abs() / (samples[row].time - samples[row - 1].time) * passage
     };
+    let near = |row: usize, other: &usize| (samples[*other].time - samples[row].time).abs() <= passage;
     let mut search = Search::new();
-    for pair in samples.windows(2) {
-        let (before, now) = (&pair[0], &pair[1]);
+    for row in 1..samples.len() {
+        let now = &samples[row];
         let quiet = now.energy.kinetic <= run.spec.time.kinetic_limit * now.energy.internal();
         if now.time < SETTLED * passage || now.step >= run.first_rupture() || !quiet {
             continue;
         }
-        let sum: f64 = info
-            .wires
-            .iter()
-            .zip(&now.wire_stress)
-            .map(|(wire, stress)| {
-                let area = std::f64::consts::FRAC_PI_4 * wire.diameter.powi(2);
-                // tan β goes as R/(1 + ε), R as 1/√(1 + ε).
-                let tangent = slope(wire.layer) / (1.0 + now.strain).powf(1.5);
-                stress * area / 1f64.hypot(tangent)
-            })
-            .sum();
-        let force = mean(now);
-        let changes = (force - mean(before)).abs() / (now.time - before.time) * passage;
+        let before = (1..row).rev().take_while(|other| near(row, other));
+        let after = (row + 2..samples.len()).take_while(|other| near(row, other));
+        let others = before.chain(after).map(|other| change(&held, other).max(change(&carried, other)));
+        let changes = others.fold(change(&held, row), f64::max);
         let mismatch = (now.grip_force[1] - now.grip_force[0]).abs();
-        let off = ((sum - force).abs() - changes - mismatch).max(0.0) / most;
+        let off = ((carried[row] - held[row]).abs() - changes - mismatch).max(0.0) / most;
         search.add(off, || {
             format!(
-                "step {}: wires carry {sum:.3} N, grips {force:.3} N, which changes by {changes:.3} N in a passage",
-                now.step
+                "step {}: wires carry {:.3} N, grips {:.3} N; forces change by {changes:.3} N in a passage",
+                now.step, carried[row], held[row]
             )
         });
     }
     search.end(0.02, "of the greatest force", "no row is settled, whole and quasi-static")
 }
 
-/// ∫ F du + ∫ M dφ of the driven grip by the trapezoid rule on all rows; the rule on every other row tells how well that
-/// can be known. Forces of rows are smoothed over a quarter of a wave's passage, so what the greatest force does in
+/// ∫ F du + ∫ M dφ of the driven grip by the trapezoid rule on all rows. The rule on every other row tells how well that can be
+/// known, and few rows tell no more than a force that rises or falls from one to the next: then the rule is off by half of
+/// what the force changes by times the way. An adaptive pull changes the speed of all of the body, which no grip's force
+/// shows. Forces of rows are smoothed over a quarter of a wave's passage, so what the greatest force does in
 /// [`SMOOTHED`] may be missing.
 fn work(run: &Folder) -> InvariantOutcome {
     let not = |why: &str| InvariantOutcome::NotApplicable(why.into());
@@ -108,14 +120,19 @@ fn work(run: &Folder) -> InvariantOutcome {
     if !run.spec.holds.is_empty() {
         return not("other holds and loads do work too");
     }
-    let Some(gauge) = run.trajectory.info.gauge else { return not("there is no gauge") };
-    let free = free_length(run).unwrap_or(gauge[1] - gauge[0]);
+    let Some(free) = run.free_length else { return not("there is no gauge") };
     let number = |row: usize, head: &str| run.curve.number(row, head);
     let piece = |a: usize, b: usize| {
         let mean = |head: &str| 0.5 * (number(a, head) + number(b, head));
         let way = (number(b, "strain_percent") - number(a, "strain_percent")) * 1e-2 * free;
         let turn = (number(b, "time_s") - number(a, "time_s")) * grip.rotation_rate;
         mean("grip_force_upper_n") * way + mean("torque_n_mm") * 1e-3 * turn
+    };
+    let between = |a: usize, b: usize| {
+        let change = |head: &str| (number(b, head) - number(a, head)).abs();
+        let way = change("strain_percent") * 1e-2 * free;
+        0.5 * (change("grip_force_upper_n") * way
+            + change("torque_n_mm") * 1e-3 * change("time_s") * grip.rotation_rate.abs())
     };
     let rows = run.curve.rows.len();
     let most = (0..rows).map(|row| number(row, "work_j").abs()).fold(0.0, f64::max);
@@ -128,16 +145,27 @@ fn work(run: &Folder) -> InvariantOutcome {
     };
     // The first rows are smoothed most, so the whole run's greatest power counts from the start.
     let greatest = (1..rows).map(power).filter(|power| power.is_finite()).fold(0.0, f64::max);
-    let (mut fine, mut coarse) = (0.0, 0.0);
+    let speed = |row: usize| {
+        let way = (number(row, "strain_percent") - number(row - 1, "strain_percent")) * 1e-2 * free;
+        way / (number(row, "time_s") - number(row - 1, "time_s"))
+    };
+    let hastened = |row: usize| match (&grip.adaptive, grip.drive) {
+        (Some(_), DriveSpec::Speed(slow)) => 0.5 * run.affine_mass * (speed(row).powi(2) - slow.powi(2)),
+        _ => 0.0,
+    };
+    let (mut fine, mut coarse, mut widest) = (0.0, 0.0, 0.0);
     let mut search = Search::new();
     for row in (2..rows).step_by(2) {
         fine += piece(row - 2, row - 1) + piece(row - 1, row);
         coarse += piece(row - 2, row);
+        widest += between(row - 2, row - 1) + between(row - 1, row);
         let done = number(row, "work_j") - number(0, "work_j");
+        let right = fine + hastened(row);
         // Simpson's estimate of the trapezoid's error is a third of the difference.
-        let slack = (fine - coarse).abs() + greatest * SMOOTHED * passage;
-        let off = ((fine - done).abs() - slack).max(0.0) / most;
-        search.add(off, || format!("curve.csv line {}: {done:.6e} J, integral {fine:.6e} J", row + 2));
+        let rule = (fine - coarse).abs().max(widest);
+        let slack = rule + (hastened(row) - hastened(row - 1)).abs() + greatest * SMOOTHED * passage;
+        let off = ((right - done).abs() - slack).max(0.0) / most;
+        search.add(off, || format!("curve.csv line {}: {done:.6e} J, integral {right:.6e} J", row + 2));
     }
     search.end(0.01, "of the work", "there are fewer than three rows")
 }

@@ -3,15 +3,20 @@
 //! [`Folder`] reads every file; [`INVARIANTS`] lists what must hold. A new one is a function in the file of its kind and a
 //! row in that table.
 
+mod anew;
 mod breaks;
+mod drive;
 mod files;
 mod finding;
 mod folder;
 mod invariant;
 mod law;
 mod limits;
+mod maker;
 mod mechanics;
 mod page;
+mod page_words;
+mod pictures;
 #[cfg(feature = "record")]
 mod recording;
 pub mod report;
@@ -31,11 +36,14 @@ pub const INVARIANTS: &[Invariant] = &[
     rows::FINITE,
     rows::TIME,
     rows::TIME_STEP,
-    rows::STRAIN,
-    rows::PULL,
+    drive::STRAIN,
+    drive::WAY,
     rows::FORCE,
     // One file against another
     files::OWN,
+    anew::TABLES,
+    anew::SUMMARY,
+    anew::BODIES,
     files::CURVE,
     files::SNAPSHOTS,
     files::LAYERS,
@@ -45,6 +53,9 @@ pub const INVARIANTS: &[Invariant] = &[
     files::STRENGTH,
     files::RECORDING,
     page::PAGE,
+    page_words::WORDS,
+    pictures::PICTURES,
+    pictures::ANIMATION,
     // Breaks
     breaks::COUNTS,
     breaks::ROWS,

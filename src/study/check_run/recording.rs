@@ -9,12 +9,8 @@ use crate::run::folder::RECORDING;
 
 /// See [`super::files::RECORDING`].
 pub fn check(run: &Folder) -> InvariantOutcome {
-    let path = run.path.join(RECORDING);
-    if !path.exists() {
-        return InvariantOutcome::NotApplicable(format!("there is no {RECORDING}"));
-    }
     let mut search = Search::new();
-    match contents(&path) {
+    match contents(&run.path.join(RECORDING)) {
         Ok(read) => {
             series(run, &read, &mut search);
             last_state(run, &read, &mut search);

@@ -3,8 +3,6 @@
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use super::invariant::Invariant;
-use crate::engine::measure::MEAN_LAG;
-use crate::scene::spec::DriveSpec;
 
 pub const FINITE: Invariant =
     Invariant { name: "finite", about: "every number in the tables is finite", check: finite };
@@ -16,15 +14,6 @@ pub const TIME_STEP: Invariant = Invariant {
     name: "time-step",
     about: "time over steps lies between the least and the greatest time step of the summary",
     check: time_step,
-};
-
-pub const STRAIN: Invariant =
-    Invariant { name: "strain", about: "strain only grows under a pull, only falls under a push", check: strain };
-
-pub const PULL: Invariant = Invariant {
-    name: "strain-unit",
-    about: "strain in per cent is the grip's way over the free length, the gauge but for a particle, before the pull gets faster",
-    check: pull,
 };
 
 pub const FORCE: Invariant = Invariant {
@@ -83,55 +72,6 @@ fn time_step(run: &Folder) -> InvariantOutcome {
         });
     }
     search.end(1e-6, "-", "there is one row")
-}
-
-/// Speed of the grip at the start (m/s), where it is prescribed.
-fn speed(run: &Folder) -> Option<f64> {
-    match run.spec.grip.as_ref()?.drive {
-        DriveSpec::Speed(speed) => Some(speed),
-        DriveSpec::Cyclic { .. } => None,
-    }
-}
-
-fn strain(run: &Folder) -> InvariantOutcome {
-    let Some(speed) = speed(run) else {
-        return InvariantOutcome::NotApplicable("no grip moves one way".into());
-    };
-    let mut search = Search::new();
-    for row in 1..run.curve.rows.len() {
-        let rise = run.curve.number(row, "strain_percent") - run.curve.number(row - 1, "strain_percent");
-        let back = if speed == 0.0 { rise.abs() } else { -rise * speed.signum() };
-        search.add(back, || format!("curve.csv line {}: strain changes by {rise} %", row + 2));
-    }
-    search.end(0.0, "%", "there is one row")
-}
-
-/// Length that is free between the grips, by the rows of a pull at constant speed (m): way over strain, both of the instant
-/// that the row's mean stands for.
-pub fn free_length(run: &Folder) -> Option<f64> {
-    let grip = run.spec.grip.as_ref()?;
-    let speed = speed(run).filter(|speed| *speed != 0.0)?;
-    let until = grip.adaptive.as_ref().map_or(f64::INFINITY, |adaptive| adaptive.from);
-    let rows = (1..run.curve.rows.len())
-        .map(|row| (run.curve.number(row, "time_s"), run.curve.number(row, "strain_percent") * 1e-2));
-    // The row that has come furthest is the most exact one.
-    let (time, strain) = rows.take_while(|(_, strain)| strain.abs() < until).last()?;
-    let lag = MEAN_LAG * run.trajectory.info.wave_passage;
-    (strain != 0.0).then(|| speed * (time - lag) / strain)
-}
-
-fn pull(run: &Folder) -> InvariantOutcome {
-    let (Some(free), Some([low, high])) = (free_length(run), run.trajectory.info.gauge) else {
-        return InvariantOutcome::NotApplicable("no grip moves at a constant speed".into());
-    };
-    let gauge = high - low;
-    // Grips hold whole particles: the free length ends at the first and last free bond.
-    let spacing = run.spec.spacing * run.trajectory.info.wires.iter().map(|w| w.diameter).fold(0.0, f64::max);
-    let mut search = Search::new();
-    search.add((free - gauge).abs() * 1e3, || {
-        format!("{:.4} mm by time and strain, {:.4} mm between the grips", free * 1e3, gauge * 1e3)
-    });
-    search.end(2e3 * spacing, "mm", "")
 }
 
 fn force(run: &Folder) -> InvariantOutcome {

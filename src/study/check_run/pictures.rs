@@ -1,0 +1,216 @@
+//! Frames and animation of a run.
+
+use super::finding::{InvariantOutcome, Search};
+use super::folder::Folder;
+use super::invariant::Invariant;
+use crate::base::digest::Digest;
+use crate::base::regular;
+use crate::observe::animation::{Animation, Format};
+use crate::observe::origin::RUN_KEYWORD;
+use crate::run::folder::FRAMES;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+/// A run that draws has one frame for each snapshot, in the size that its scene asks for. Pictures that were drawn again are
+/// as many and as large as whoever drew them wanted. Either carry the id of their run, but for those of earlier programs.
+pub const PICTURES: Invariant = Invariant {
+    name: "frames",
+    about: "a run that drew frames has one of each snapshot, and all pictures in its folder are whole and its own",
+    check: pictures,
+};
+
+/// An animation in another folder is the user's own, who may have moved it.
+pub const ANIMATION: Invariant = Invariant {
+    name: "animation",
+    about: "the animation that the run made is there and whole, and shows every frame",
+    check: animation,
+};
+
+/// Where pictures of a run are drawn again.
+const AGAIN: &str = "render";
+
+/// What is found in a picture.
+#[derive(Debug, Clone, PartialEq)]
+struct Picture {
+    /// Width and height (px).
+    size: [u32; 2],
+    /// Pictures in it, when it is animated.
+    frames: usize,
+    /// Run that it says it shows.
+    run: Option<String>,
+}
+
+/// Decodes all of a PNG file.
+fn picture(path: &Path) -> Result<Picture, String> {
+    let bytes = regular::read(path, regular::LONGEST_TABLE).map_err(|e| e.to_string())?;
+    let damaged = |e: png::DecodingError| format!("it is damaged: {e}");
+    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().map_err(damaged)?;
+    let mut pixels = vec![0; reader.output_buffer_size().ok_or("it is too large")?];
+    let frames = reader.info().animation_control.map_or(1, |animation| animation.num_frames as usize);
+    for _ in 0..frames {
+        reader.next_frame(&mut pixels).map_err(damaged)?;
+    }
+    reader.finish().map_err(damaged)?;
+    let info = reader.info();
+    let run = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == RUN_KEYWORD);
+    Ok(Picture { size: [info.width, info.height], frames, run: run.map(|chunk| chunk.text.clone()) })
+}
+
+/// The pictures in a folder, by number; none without it.
+fn numbered(folder: &Path) -> BTreeMap<usize, PathBuf> {
+    let number = |path: &Path| -> Option<usize> {
+        path.file_name()?.to_str()?.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok()
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    entries.filter_map(|path| Some((number(&path)?, path))).collect()
+}
+
+fn pictures(run: &Folder) -> InvariantOutcome {
+    let mut search = Search::new();
+    let drawn = numbered(&run.path.join(FRAMES));
+    let own = run.drew_frames();
+    if own {
+        let snapshots = run.trajectory.snapshots;
+        search.same(drawn.len(), snapshots, || format!("pictures in {FRAMES}"));
+        let last = drawn.last_key_value().map_or(0, |(number, _)| number + 1);
+        search.same(last, snapshots, || format!("number of the last picture in {FRAMES}, from 1"));
+        if let Some(timings) = &run.summary.cost.frames {
+            search.same(timings.frames as usize, snapshots, || "frames, count in summary.json".into());
+        }
+    }
+    let again = numbered(&run.path.join(AGAIN));
+    let all: Vec<(&str, usize, &PathBuf)> = [(FRAMES, &drawn), (AGAIN, &again)]
+        .into_iter()
+        .flat_map(|(folder, pictures)| pictures.iter().map(move |(number, path)| (folder, *number, path)))
+        .collect();
+    let seen: Vec<Result<Picture, String>> = all.par_iter().map(|(_, _, path)| picture(path)).collect();
+    let right = run.trajectory.origin.run.to_string();
+    for folder in [FRAMES, AGAIN] {
+        let of = || all.iter().zip(&seen).filter(|((of, _, _), _)| *of == folder);
+        let any_named = of().any(|(_, seen)| seen.as_ref().is_ok_and(|seen| seen.run.is_some()));
+        for ((_, number, _), seen) in of() {
+            let place = || format!("{folder}, picture {number}");
+            match seen {
+                Err(what) => search.add(f64::NAN, || format!("{}: {what}", place())),
+                Ok(seen) => {
+                    if any_named {
+                        let named = seen.run.as_deref().unwrap_or("none");
+                        search.same(named, right.as_str(), || format!("{}, id of its run", place()));
+                    }
+                    if own && folder == FRAMES {
+                        let [found, wanted] =
+                            [seen.size, run.spec.output.frame_size].map(|[w, h]| format!("{w} × {h}"));
+                        search.same(found, wanted, || format!("{}, size in pixels", place()));
+                    }
+                }
+            }
+        }
+    }
+    search.end(0.0, "-", "the run drew no frames")
+}
+
+fn animation(run: &Folder) -> InvariantOutcome {
+    let not = |why: String| InvariantOutcome::NotApplicable(why);
+    let Some(name) = run.summary.written.as_ref().and_then(|written| written.animation.as_ref()) else {
+        return not("the run made no animation".into());
+    };
+    let file = run.path.join(name);
+    let elsewhere = Path::new(name).is_absolute();
+    if elsewhere && !file.exists() {
+        return not(format!("the animation lay in another folder: {name}"));
+    }
+    let mut search = Search::new();
+    match frames_in(&file) {
+        Ok(frames) => search.same(frames, run.trajectory.snapshots, || format!("frames of {name}")),
+        Err(what) => search.add(f64::NAN, || format!("{name}: {what}")),
+    }
+    if let (Some(timings), Ok(there)) = (&run.summary.cost.frames, file.metadata()) {
+        search.same(there.len(), timings.animation_bytes, || format!("bytes of {name}"));
+    }
+    let sealed = run.seal.as_ref().and_then(|seal| seal.files.get(name));
+    if let (Some(right), Ok(found)) = (sealed, Digest::of_file(&file)) {
+        search.same(found.to_string(), right.to_string(), || format!("digest of {name}"));
+    }
+    search.end(0.0, "-", "")
+}
+
+/// How many pictures an animation has, which must be whole.
+fn frames_in(file: &Path) -> Result<usize, String> {
+    if !file.is_file() {
+        return Err("it is missing".into());
+    }
+    let animation = Animation { file: file.into(), width: None };
+    match animation.format().map_err(|e| e.to_string())? {
+        Format::Apng => picture(file).map(|picture| picture.frames),
+        Format::Gif => {
+            let bytes = regular::read(file, regular::LONGEST_TABLE).map_err(|e| e.to_string())?;
+            gif_frames(&bytes).ok_or_else(|| "it is damaged, or cut off".into())
+        }
+    }
+}
+
+/// Pictures of a GIF file; `None` unless its blocks follow each other up to the trailer, which ends it. (GIF89a
+/// specification, CompuServe 1990.)
+fn gif_frames(bytes: &[u8]) -> Option<usize> {
+    /// Bytes of the table of colours that a block's flags tell of.
+    fn colours(flags: u8) -> usize {
+        if flags & 0x80 == 0 { 0 } else { 3 << ((flags & 7) + 1) }
+    }
+    /// Where the data that begin at `at` end: blocks with their length before them, the last of length 0.
+    fn end_of_data(bytes: &[u8], mut at: usize) -> Option<usize> {
+        loop {
+            let length = usize::from(*bytes.get(at)?);
+            at += 1 + length;
+            if length == 0 {
+                return Some(at);
+            }
+        }
+    }
+    if !(bytes.starts_with(b"GIF89a") || bytes.starts_with(b"GIF87a")) {
+        return None;
+    }
+    // Width, height, flags, background, aspect; then the table of colours.
+    let mut at = 13 + colours(*bytes.get(10)?);
+    let mut frames = 0;
+    loop {
+        match bytes.get(at)? {
+            // An extension: its kind, then data.
+            0x21 => at = end_of_data(bytes, at + 2)?,
+            // A picture: place, size and flags, colours, width of the codes, data.
+            0x2c => {
+                at = end_of_data(bytes, at + 11 + colours(*bytes.get(at + 9)?))?;
+                frames += 1;
+            }
+            0x3b => return (at + 1 == bytes.len()).then_some(frames),
+            _ => return None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two pictures of one pixel, the second with colours of its own, and a comment.
+    fn gif() -> Vec<u8> {
+        let mut bytes = b"GIF89a\x01\0\x01\0\x80\0\0".to_vec();
+        bytes.extend([0, 0, 0, 255, 255, 255]);
+        bytes.extend(b"\x21\xfe\x02hi\0");
+        bytes.extend([0x2c, 0, 0, 0, 0, 1, 0, 1, 0, 0, 2, 2, 0x4c, 1, 0]);
+        bytes.extend([0x2c, 0, 0, 0, 0, 1, 0, 1, 0, 0x80, 0, 0, 0, 255, 255, 255, 2, 2, 0x4c, 1, 0]);
+        bytes.push(0x3b);
+        bytes
+    }
+
+    #[test]
+    fn pictures_of_a_gif_are_counted_and_a_cut_is_seen() {
+        let whole = gif();
+        assert_eq!(gif_frames(&whole), Some(2));
+        for length in 0..whole.len() {
+            assert_eq!(gif_frames(&whole[..length]), None, "cut at {length}");
+        }
+        assert_eq!(gif_frames(&[&whole[..], b"more"].concat()), None);
+    }
+}
