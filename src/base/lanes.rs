@@ -7,7 +7,7 @@
 
 mod registers;
 
-pub use registers::{LaneMask, Lanes};
+pub use registers::{LaneMask, Lanes, register_width};
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
@@ -375,7 +375,9 @@ mod tests {
 
     #[test]
     fn whole_numbers_are_the_nearest_and_of_two_the_even_one() {
-        for (x, whole) in [(0.5, 0.0), (1.5, 2.0), (2.5, 2.0), (-0.5, 0.0), (-1.5, -2.0), (-3.7, -4.0), (1e15 + 0.25, 1e15)] {
+        for (x, whole) in
+            [(0.5, 0.0), (1.5, 2.0), (2.5, 2.0), (-0.5, 0.0), (-1.5, -2.0), (-3.7, -4.0), (1e15 + 0.25, 1e15)]
+        {
             assert_eq!(Real::round_ties_even(x), whole, "{x}");
         }
     }

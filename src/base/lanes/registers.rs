@@ -2,7 +2,7 @@
 
 use super::{EXPONENT_TO_BITS, Mask, NUMBER_OF_BITS, Real};
 use super::{exponent, exponent_bits, inverse_bits, inverse_sqrt_bits, mantissa};
-use pulp::Simd;
+use pulp::{Arch, Simd, WithSimd};
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 /// Two registers of numbers: what one of them waits for, the other fills. A contact or a bond is a long chain of
@@ -251,4 +251,17 @@ impl<S: Simd> Mask for LaneMask<S> {
     fn any(self) -> bool {
         self.simd.first_true_m64s(self.simd.or_m64s(self.low, self.high)) < S::F64_LANES
     }
+}
+
+/// How many numbers the widest register of this machine holds.
+pub fn register_width() -> usize {
+    struct Width;
+    impl WithSimd for Width {
+        type Output = usize;
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _: S) -> usize {
+            S::F64_LANES
+        }
+    }
+    Arch::new().dispatch(Width)
 }

@@ -1,6 +1,5 @@
 use super::*;
 
-
 macro_rules! formula {
     ($name:ident, |$x:ident, $y:ident| $body:expr) => {
         struct $name;
@@ -24,7 +23,10 @@ formula!(Everything, |x, y| {
 #[test]
 fn what_is_recorded_has_the_bits_of_the_formula() {
     let function = Function::record("everything", &Everything).unwrap();
-    assert_eq!((function.inputs(), function.outputs().collect::<Vec<_>>()), (&["x".into(), "y".into()][..], vec!["result"]));
+    assert_eq!(
+        (function.inputs(), function.outputs().collect::<Vec<_>>()),
+        (&["x".into(), "y".into()][..], vec!["result"])
+    );
     for k in 0..2000 {
         let at = |stream| (crate::base::random::uniform(1, stream, k) - 0.3) * 10.0;
         let inputs = [at(0), if k % 5 == 0 { at(0) } else { at(1) }];

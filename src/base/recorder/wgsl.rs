@@ -101,7 +101,9 @@ fn expression(operation: Operation, [a, b, c]: &[String; 3]) -> String {
             format!("bitcast<f64>(bitcast<u64>({a} + {}) << 52u)", literal(lanes::EXPONENT_TO_BITS))
         }
         Operation::InverseGuess => format!("bitcast<f64>({}lu - bitcast<u64>({a}))", lanes::INVERSE_BITS),
-        Operation::InverseSqrtGuess => format!("bitcast<f64>({}lu - (bitcast<u64>({a}) >> 1u))", lanes::INVERSE_SQRT_BITS),
+        Operation::InverseSqrtGuess => {
+            format!("bitcast<f64>({}lu - (bitcast<u64>({a}) >> 1u))", lanes::INVERSE_SQRT_BITS)
+        }
         Operation::Mantissa => {
             format!("bitcast<f64>((bitcast<u64>({a}) & 0x000ffffffffffffflu) | 0x3ff0000000000000lu)")
         }

@@ -109,7 +109,8 @@ impl<L: BondLaw> Formula for SectionStress<L> {
         let section = self.law.section(&shape(|k| shape_numbers[k]), &L::history(|k| history[k]));
         let [tension, shear] = self.criterion.utilisation(&force(axial, |k| across[k]), &section);
         let Section { radius, area, inertia } = section;
-        let results = [("radius", radius), ("area", area), ("inertia", inertia), ("tension", tension), ("shear", shear)];
+        let results =
+            [("radius", radius), ("area", area), ("inertia", inertia), ("tension", tension), ("shear", shear)];
         results.into_iter().for_each(|(name, number)| put(name, number));
     }
 }

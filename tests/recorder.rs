@@ -1,0 +1,37 @@
+//! Every law that can be recorded has, when what was recorded is done on the processor, the bits of the law itself.
+
+#[path = "common/laws.rs"]
+mod laws;
+
+use strandsnap::base::recorder::Unrecordable;
+
+#[test]
+fn recorded_laws_have_the_bits_of_the_laws() {
+    let mut yielded = 0;
+    for case in laws::cases() {
+        let function = &case.function;
+        println!("{}: {} operations", function.name(), function.operations());
+        let work = function.outputs().position(|name| name.starts_with("plastic"));
+        for batch in &case.batches {
+            for (row, expected) in batch.rows.iter().zip(&batch.expected) {
+                let found = function.evaluate(row);
+                let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+                assert_eq!(
+                    bits(&found),
+                    bits(expected),
+                    "{} {}: {found:?}, not {expected:?}",
+                    function.name(),
+                    batch.name
+                );
+                yielded += usize::from(work.is_some_and(|work| expected[work] != 0.0));
+            }
+        }
+    }
+    assert!(yielded > 10_000, "{yielded} steps with plastic work");
+}
+
+/// Its branches differ from contact to contact, and it asks for cube roots: it works on one contact at a time.
+#[test]
+fn partial_slip_cannot_be_recorded() {
+    assert_eq!(laws::partial_slip().unwrap_err(), Unrecordable::Value);
+}
