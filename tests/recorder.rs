@@ -3,7 +3,11 @@
 #[path = "common/laws.rs"]
 mod laws;
 
-use strandsnap::base::recorder::Unrecordable;
+use strandsnap::base::recorder::{Function, Unrecordable};
+use strandsnap::engine::contact::formula::ContactStep;
+use strandsnap::engine::contact::pair::Laws;
+use strandsnap::law::contact::hertz::Hertz;
+use strandsnap::law::tangential::mindlin_deresiewicz::MindlinDeresiewicz;
 
 #[test]
 fn recorded_laws_have_the_bits_of_the_laws() {
@@ -27,11 +31,13 @@ fn recorded_laws_have_the_bits_of_the_laws() {
             }
         }
     }
-    assert!(yielded > 10_000, "{yielded} steps with plastic work");
+    assert!(yielded > 5_000, "{yielded} steps with plastic work");
 }
 
 /// Its branches differ from contact to contact, and it asks for cube roots: it works on one contact at a time.
 #[test]
 fn partial_slip_cannot_be_recorded() {
-    assert_eq!(laws::partial_slip().unwrap_err(), Unrecordable::Value);
+    let tangential = MindlinDeresiewicz { shear_modulus_star: 13e9, friction: 0.2 };
+    let laws = Laws { normal: Hertz { effective_modulus: 65e9 }, tangential, damping: 0.0 };
+    assert_eq!(Function::record("partial_slip", &ContactStep(laws)).unwrap_err(), Unrecordable::Value);
 }

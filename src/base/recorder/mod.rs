@@ -22,7 +22,8 @@
 //! # A new law on the graphics processor
 //!
 //! Nothing to do, if it is generic over `Real` and keeps to the list above: bonds and contacts are recorded with their laws
-//! (`engine::bonds::formula`, `engine::contact::formula`). A row of the tests of those modules and of `tests/gpu.rs` shows it.
+//! (`engine::bonds::formula`, `engine::contact::formula`). A row of `cases` in `tests/common/laws.rs` compares it on the
+//! processor (`tests/recorder.rs`) and on an adapter (`tests/gpu.rs`).
 
 mod operation;
 mod wgsl;
@@ -84,6 +85,8 @@ pub struct Function {
     outputs: Vec<(String, Place)>,
     nodes: Vec<Node>,
     loops: Vec<Loop>,
+    /// The loop in which each node is worked out.
+    homes: Vec<Option<u32>>,
     /// Whether each node is needed for an output.
     needed: Vec<bool>,
 }
@@ -115,11 +118,12 @@ impl Function {
             },
             &mut |name, number: Recorded| outputs.push((name.to_owned(), number.place)),
         );
-        let Tape { nodes, loops, failure, .. } = recorder.tape.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let Tape { nodes, loops, homes, failure, .. } =
+            recorder.tape.into_inner().unwrap_or_else(PoisonError::into_inner);
         match failure {
             Some(reason) => Err(reason),
             None => {
-                let mut function = Self { name: name.to_owned(), inputs, outputs, needed: vec![], nodes, loops };
+                let mut function = Self { name: name.to_owned(), inputs, outputs, needed: vec![], nodes, loops, homes };
                 function.needed = function.needed();
                 Ok(function)
             }
@@ -174,8 +178,8 @@ impl Function {
     /// When there are fewer inputs than [`Self::inputs`].
     pub fn evaluate(&self, inputs: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; self.nodes.len()];
-        let homes = &self.homes();
-        let within = |home: Option<u32>| (0..self.nodes.len()).filter(move |k| self.needed[*k] && homes[*k] == home);
+        let within =
+            |home: Option<u32>| (0..self.nodes.len()).filter(move |k| self.needed[*k] && self.homes[*k] == home);
         let work = |values: &mut [f64], k: usize| match self.nodes[k] {
             Node::Input(index) => values[k] = inputs[index as usize],
             Node::Number(bits) => values[k] = f64::from_bits(bits),
@@ -206,15 +210,6 @@ impl Function {
             values[k] = number;
         }
         self.outputs.iter().map(|(_, place)| values[*place as usize]).collect()
-    }
-
-    /// The loop in which each node is worked out.
-    fn homes(&self) -> Vec<Option<u32>> {
-        let mut homes = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
-            homes.push(home(node, &homes));
-        }
-        homes
     }
 }
 

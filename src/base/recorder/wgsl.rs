@@ -19,9 +19,8 @@ impl Function {
         let parameters: Vec<String> = self.inputs.iter().map(|name| format!("{name}: f64")).collect();
         let head = format!("}}\n\nfn {}({}) -> {} {{", self.name, parameters.join(", "), self.results_type());
         put(&mut text, 0, &head);
-        let homes = &self.homes();
         let within = |home: Option<u32>| {
-            (0..self.nodes.len() as Place).filter(move |k| self.needed[*k as usize] && homes[*k as usize] == home)
+            (0..self.nodes.len() as Place).filter(move |k| self.needed[*k as usize] && self.homes[*k as usize] == home)
         };
         for place in within(None) {
             match self.nodes[place as usize] {
