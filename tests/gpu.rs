@@ -94,9 +94,9 @@ struct Parts;
 
 impl Formula for Parts {
     fn compute<R: Real>(&self, take: &mut dyn FnMut(&str) -> R, put: &mut dyn FnMut(&str, R)) {
-        let x = take("x");
+        let (x, y) = (take("x"), take("y"));
         put("ln", x.ln());
-        put("exp", (x.ln() * 0.9).exp());
+        put("exp", y.exp());
         put("power", x.powf(0.31));
         put("inverse", x.inverse());
         put("inverse_sqrt", x.inverse_sqrt());
@@ -116,13 +116,16 @@ impl Formula for Parts {
 fn functions_and_constants_agree_over_the_whole_range_of_numbers() {
     let Some(device) = device("functions_and_constants_agree_over_the_whole_range_of_numbers") else { return };
     let function = Function::record("parts", &Parts).unwrap();
-    let inputs: Vec<f64> = (-2990..=2990).map(|k| 10f64.powf(0.1 * f64::from(k))).collect();
-    let found = Kernel::new(&device, &function).unwrap().run(&inputs).unwrap();
-    for (k, x) in inputs.iter().enumerate() {
-        for (column, (output, expected)) in function.outputs().zip(Parts.evaluate(&[*x])).enumerate() {
-            let found = found[column * inputs.len() + k];
+    let rows: Vec<Vec<f64>> =
+        (-2990..=2990).map(f64::from).map(|k| vec![10f64.powf(0.1 * k), 0.25 * k + 1e-5 * k * k]).collect();
+    let found = Kernel::new(&device, &function).unwrap().run(&columns(&rows)).unwrap();
+    for (k, row) in rows.iter().enumerate() {
+        for (column, (output, expected)) in function.outputs().zip(Parts.evaluate(row)).enumerate() {
+            let found = found[column * rows.len() + k];
             let off = (found / expected - 1.0).abs();
-            assert!(found == expected || off <= 4e-15, "{output} of {x:e}: {found:e}, not {expected:e}");
+            // A power has the rounding of its logarithm.
+            let allowed = 4e-15 + if output == "power" { 1e-16 * row[0].ln().abs() } else { 0.0 };
+            assert!(found == expected || off <= allowed, "{output} of {row:?}: {found:e}, not {expected:e}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Numbers by the register.
 
-use super::{EXPONENT_TO_BITS, Mask, NUMBER_OF_BITS, Real};
-use super::{exponent, exponent_bits, inverse_bits, inverse_sqrt_bits, mantissa};
+use super::real::{EXPONENT_TO_BITS, Mask, NUMBER_OF_BITS, Real};
+use super::real::{exponent, exponent_bits, inverse_bits, inverse_sqrt_bits, mantissa};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
