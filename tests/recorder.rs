@@ -34,6 +34,19 @@ fn recorded_laws_have_the_bits_of_the_laws() {
     assert!(yielded > 5_000, "{yielded} steps with plastic work");
 }
 
+/// Checked without an adapter, as `wgpu` checks it.
+#[test]
+fn recorded_laws_are_shader_code() {
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    for case in laws::cases() {
+        let (name, text) = (case.function.name(), case.function.wgsl());
+        let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|e| panic!("{name}: {e}\n{text}"));
+        let able = Capabilities::FLOAT64 | Capabilities::SHADER_INT64;
+        Validator::new(ValidationFlags::all(), able).validate(&module).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        assert!(!text.contains("inf") && !text.contains("NaN"), "{name}:\n{text}");
+    }
+}
+
 /// Its branches differ from contact to contact, and it asks for cube roots: it works on one contact at a time.
 #[test]
 fn partial_slip_cannot_be_recorded() {
