@@ -46,7 +46,7 @@ fn nothing_is_done_twice_or_in_vain_and_constants_are_worked_out() {
     let function = Function::record("repeated", &Repeated).unwrap();
     assert_eq!(function.operations(), 3);
     let expected = "struct repeated_results {\n    result: f64,\n}\n\nfn repeated(x: f64, y: f64) -> repeated_results {\n    \
-                    let n44 = x * y;\n    let n45 = n44 + n44;\n    let n50 = n45 * 1e0lf;\n    return repeated_results(n50);\n}\n";
+                    let n44 = x * y;\n    let n45 = n44 + n44;\n    let n50 = 1e0lf * n45;\n    return repeated_results(n50);\n}\n";
     let text = function.wgsl();
     let plain = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "");
     assert_eq!(plain(&text), plain(expected), "{text}");
