@@ -53,7 +53,7 @@ impl<'d> Kernel<'d> {
         let groups = rows.div_ceil(GROUP) as u32;
         let too_many =
             bytes(self.inputs.max(self.outputs)) > most || groups > gpu.limits().max_compute_workgroups_per_dimension;
-        if rows == 0 || inputs.len() % self.inputs != 0 || too_many {
+        if rows == 0 || !inputs.len().is_multiple_of(self.inputs) || too_many {
             let what = format!("{} numbers for a function of {} inputs", inputs.len(), self.inputs);
             return Err(Error::input(what, format!("give whole columns of at most {most} bytes together")));
         }
