@@ -22,6 +22,7 @@
 //! - [`engine`]: the steps
 //! - [`observe`]: what is shown a run and writes it down
 //! - `render`: pictures (feature `render`)
+//! - `gpu`: formulas of the engine on a graphics processor (feature `gpu`)
 //! - [`run`]: one run from scene to results
 //! - [`page`]: the HTML page of a run (feature `report`)
 //! - [`study`]: many runs (feature `study`)
@@ -68,6 +69,9 @@ pub mod engine;
 pub mod explore;
 #[warn(missing_docs)]
 pub mod export;
+#[cfg(feature = "gpu")]
+#[warn(missing_docs)]
+pub mod gpu;
 #[warn(missing_docs)]
 pub mod law;
 pub mod manual;

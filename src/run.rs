@@ -5,6 +5,7 @@
 pub mod cautions;
 pub mod checkpoint;
 pub mod cost;
+pub mod devices;
 mod drive;
 pub mod estimate;
 pub mod folder;

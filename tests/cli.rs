@@ -176,6 +176,31 @@ fn a_run_that_does_not_exist_cannot_be_drawn() {
 }
 
 #[test]
+fn devices_are_listed_with_what_they_are_used_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = strandsnap(folder.path(), &["devices"]);
+    assert_code(&output, 0);
+    for word in ["processor: ", "thread", "registers of ", "raphics adapters", "used for the simulation: processor"] {
+        assert!(stdout(&output).contains(word), "no `{word}` in\n{}", stdout(&output));
+    }
+    let output = strandsnap(folder.path(), &["devices", "--json"]);
+    assert_code(&output, 0);
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(found["processor"]["threads"].as_u64() > Some(0), "{found}");
+    assert!([128, 256, 512].contains(&found["processor"]["register_bits"].as_u64().unwrap()), "{found}");
+    assert_eq!(found["used_for"]["simulation"], "processor");
+    if cfg!(feature = "gpu") {
+        let adapters = found["adapters"].as_array().unwrap();
+        let whole = |a: &serde_json::Value| a["f64"].is_boolean() && a["largest_binding"].as_u64() > Some(1 << 20);
+        assert!(adapters.iter().all(whole), "{found}");
+        // The adapter that draws frames is one of them.
+        let frames = found["used_for"]["frames"].as_str().unwrap_or_default();
+        let named = |a: &serde_json::Value| frames.starts_with(a["name"].as_str().unwrap());
+        assert!(frames.is_empty() || adapters.iter().any(named), "{found}");
+    }
+}
+
+#[test]
 fn a_plan_names_size_step_and_cost() {
     let folder = tempfile::tempdir().unwrap();
     let output = strandsnap(folder.path(), &["plan", "single-wire"]);

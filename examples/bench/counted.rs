@@ -144,9 +144,6 @@ impl Real for Counted {
         let (mantissa, exponent) = self.0.split();
         (Self(mantissa), Self(exponent))
     }
-    fn each(self, f: impl Fn(f64) -> f64) -> Self {
-        Self(f(self.0))
-    }
     fn inverse_sqrt_guess(self) -> Self {
         done(1.0, 0.0, 0.0);
         Self(self.0.inverse_sqrt_guess())

@@ -107,7 +107,7 @@ fn meeting<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>) -> Operations {
         thinner: zero,
         velocity: Triple { x: Counted(-1e-3), y: Counted(1e-3), z: zero },
         viscosity: one,
-        dt: 1e-7,
+        dt: Counted(1e-7),
     };
     contact_response(laws, &mut history, &at(1e-6));
     GEOMETRY.plus(count(|| {

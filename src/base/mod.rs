@@ -1,4 +1,4 @@
-//! Floor 0: units, vectors, seeded randomness, errors, findings and their words, regular files, ticks of axes. Imports nothing of this crate.
+//! Floor 0: units, vectors, numbers by the register and formulas that are recorded, seeded randomness, errors, findings and their words, regular files, ticks of axes. Imports nothing of this crate.
 
 pub mod bisect;
 pub mod digest;
@@ -7,6 +7,7 @@ pub mod finding;
 pub mod lanes;
 pub mod lay;
 pub mod random;
+pub mod recorder;
 pub mod regular;
 pub mod ticks;
 pub mod triple;

@@ -13,6 +13,7 @@ mod centrelines;
 mod check_run;
 #[cfg(feature = "render")]
 mod counted;
+mod devices;
 mod ended;
 mod explore;
 mod export;
@@ -87,6 +88,8 @@ enum Command {
     /// Run stiff and extreme cases ("friction-*" takes all that begin so): each must be stable, or be refused or
     /// stopped with its reason
     Stability(cases::CaseArgs),
+    /// List what this machine can compute and draw with: processor and graphics adapters, and what each is used for
+    Devices(devices::Args),
     /// Print the completions of a shell for this program, to be put where that shell looks for them
     Completions {
         /// The shell
@@ -144,6 +147,10 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Record(args) => record::record(args),
         Command::View(args) => view::view(args),
         Command::Explore(args) => explore::explore(args),
+        Command::Devices(args) => {
+            devices::devices(&args);
+            Ok(Ended::Well)
+        }
         Command::Completions { shell } => {
             manual::completions(shell, &mut Cli::command());
             Ok(Ended::Well)

@@ -22,6 +22,19 @@ pub fn check() -> Result<()> {
     request_adapter().map(|_| ())
 }
 
+/// Name of the adapter that frames would be drawn with, and of its driver.
+///
+/// # Errors
+/// [`Error::Missing`] when there is none.
+pub fn name() -> Result<String> {
+    request_adapter().map(|adapter| name_of(&adapter))
+}
+
+fn name_of(adapter: &wgpu::Adapter) -> String {
+    let info = adapter.get_info();
+    format!("{} ({} {}, {:?})", info.name, info.driver, info.driver_info, info.backend)
+}
+
 impl Gpu {
     /// Opens the best adapter: a real one if there is one, else a software one.
     ///
@@ -29,8 +42,7 @@ impl Gpu {
     /// [`Error::Missing`] when there is none or when it refuses a device.
     pub fn open() -> Result<Self> {
         let adapter = request_adapter()?;
-        let info = adapter.get_info();
-        let name = format!("{} ({} {}, {:?})", info.name, info.driver, info.driver_info, info.backend);
+        let name = name_of(&adapter);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("strandsnap"),
             required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),

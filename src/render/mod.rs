@@ -1,4 +1,4 @@
-//! Floor 6: off-screen pictures of a run. The only folder that names `wgpu`.
+//! Floor 6: off-screen pictures of a run. The only folder besides `gpu` that names `wgpu`.
 //!
 //! | for | call |
 //! | --- | --- |

@@ -1,4 +1,5 @@
-//! What a run writes besides tables. The one place of this floor that knows which features were built.
+//! What a run writes besides tables. The one place of this floor, besides `devices`, that knows which features were
+//! built.
 
 use super::folder::{self, OutFolder};
 use super::options::RunOptions;

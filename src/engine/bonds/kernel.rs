@@ -77,7 +77,8 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
             [load(constants, SHAPE), load(constants, SHAPE + 1), load(constants, SHAPE + 2), load(constants, SHAPE + 3)]
         });
 
-        let mut step = Step { law: self.law, dt: self.dt, live, plastic: zero, damping: zero };
+        let (dt, per) = (zero.splat(self.dt), zero.splat(1.0 / self.dt));
+        let mut step = Step { law: self.law, dt, per, live, plastic: zero, damping: zero };
         let acts = if TURN {
             let frame = |k| load(record, Layout::<L, TURN>::FRAME + k);
             let mut e1 = Triple { x: frame(0), y: frame(1), z: frame(2) };

@@ -24,7 +24,9 @@ pub(super) struct Acts<R> {
 /// A step of some bonds: what they share, and the energies that they give off (J).
 pub(super) struct Step<'a, L: BondLaw, R: Real> {
     pub(super) law: &'a L,
-    pub(super) dt: f64,
+    /// Step (s), and its inverse (1/s).
+    pub(super) dt: R,
+    pub(super) per: R,
     pub(super) live: R::Mask,
     pub(super) plastic: R,
     pub(super) damping: R,
@@ -83,10 +85,10 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         force
     }
 
-    /// Adds the force of a dashpot across to `f`; `per` is the inverse of the step (1/s).
+    /// Adds the force of a dashpot across to `f`.
     #[inline(always)]
-    fn dashpot(&mut self, f: &mut R, coefficient: R, increment: R, per: f64) {
-        let push = coefficient * increment * per;
+    fn dashpot(&mut self, f: &mut R, coefficient: R, increment: R) {
+        let push = coefficient * increment * self.per;
         *f += push;
         self.damping += push * increment;
     }
@@ -109,7 +111,7 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         let (length, n) = axis(d);
 
         // Mid-step geometry.
-        let middle = d - dv * length.splat(0.5 * dt);
+        let middle = d - dv * (dt * 0.5);
         let inv_middle = middle.length_squared().inverse_sqrt();
         let n_mid = middle * inv_middle;
         let spin = (a.w + b.w).map(|w| w * 0.5);
@@ -136,11 +138,10 @@ impl<L: BondLaw, R: Real> Step<'_, L, R> {
         let mut f = *force;
         if let Some(c) = viscosity {
             f.axial += self.axial_dashpot(c[0], dv.dot(n), dashpot);
-            let per = 1.0 / dt;
-            self.dashpot(&mut f.twist, c[3], step.twist, per);
+            self.dashpot(&mut f.twist, c[3], step.twist);
             for axis in 0..2 {
-                self.dashpot(&mut f.shear[axis], c[1], step.shear[axis], per);
-                self.dashpot(&mut f.bend[axis], c[2], step.bend[axis], per);
+                self.dashpot(&mut f.shear[axis], c[1], step.shear[axis]);
+                self.dashpot(&mut f.bend[axis], c[2], step.bend[axis]);
             }
         }
         let e2 = n.cross(*e1);

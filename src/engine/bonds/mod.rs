@@ -9,6 +9,7 @@
 //! which a register takes a field of a whole block. Its shape and its dashpots, which never change, are kept once for all
 //! blocks that are alike.
 
+pub mod formula;
 mod kernel;
 mod kinematics;
 mod layout;

@@ -43,8 +43,9 @@ impl<L: BondLaw, R: Real> Trial<L, R> {
         let far = Triple { x: zero.splat(stretch), y: zero, z: zero };
         let ends = [Node { x: none, v: none, w: none }, Node { x: far, v: none, w: none }];
         let live = zero.splat(1.0).simd_gt(zero);
-        let mut step = Step { law: &self.law, dt: 1.0, live, plastic: zero, damping: zero };
-        let viscosity = self.damped.then_some([zero.splat(1.0); 4]);
+        let one = zero.splat(1.0);
+        let mut step = Step { law: &self.law, dt: one, per: one, live, plastic: zero, damping: zero };
+        let viscosity = self.damped.then_some([one; 4]);
         let (shape, force, history) = (&self.shape, &mut self.force, &mut self.history);
         let acts = if self.turn {
             step.turning(&ends, shape, &mut self.e1, force, history, &mut self.dashpot, viscosity)

@@ -1,6 +1,7 @@
 //! Contacts: one folder per shape of bodies (`spheres`, `wires`), what a touching pair does ([`pair`]), and the one
 //! place where laws and shape are chosen.
 
+pub mod formula;
 pub mod pair;
 pub(super) mod spheres;
 mod stage;

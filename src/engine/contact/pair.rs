@@ -32,7 +32,7 @@ pub struct ContactKinematics<R = f64> {
     /// 2ξ√m* with the damping fraction ξ and the reduced mass m* (√kg).
     pub viscosity: R,
     /// Step (s).
-    pub dt: f64,
+    pub dt: R,
 }
 
 /// What a contact remembers. All of it but the radius is 0 where nothing touched yet, unless the overlap does not count.
@@ -190,7 +190,7 @@ pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
         let across = meeting.velocity - meeting.normal * approach;
         let input = TangentialInput {
             normal: meeting.normal,
-            slip: across * zero.splat(meeting.dt),
+            slip: across * meeting.dt,
             normal_force: answer.force,
             radius: answer.radius,
             inverse_radius: answer.inverse_radius,
@@ -205,7 +205,7 @@ pub fn press<N: NormalLaw, T: TangentialLaw, R: Real>(
         let damper = -(meeting.viscosity * root * approach);
         let viscous = R::select(answer.force.simd_gt(zero), damper.simd_max(-answer.force), zero);
         push += viscous;
-        given.damping = -((history.viscous + viscous) * approach * (0.5 * meeting.dt));
+        given.damping = -((history.viscous + viscous) * approach * (meeting.dt * 0.5));
         history.viscous = viscous;
     }
     (PairForce { force: friction - meeting.normal * push, friction }, given)

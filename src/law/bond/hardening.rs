@@ -69,7 +69,14 @@ impl Hardening {
                     p_slope.powf(exponent - 1.0) * (exponent * strength),
                 )
             }
-            Hardening::Table(points) => (p.each(|p| table(points, p).0), p.each(|p| table(points, p).1)),
+            Hardening::Table(points) => {
+                if let [[_, stress]] = points[..] {
+                    return (p.splat(stress), p.splat(0.0));
+                }
+                let [[p0, s0], [p1, s1]] = p.rows_around(points);
+                let slope = (s1 - s0) / (p1 - p0);
+                (s0 + slope * (p - p0), slope)
+            }
         }
     }
 
@@ -87,16 +94,6 @@ impl Hardening {
             slope <= stress
         })
     }
-}
-
-fn table(points: &[[f64; 2]], p: f64) -> (f64, f64) {
-    if points.len() == 1 {
-        return (points[0][1], 0.0);
-    }
-    let upper = points.partition_point(|point| point[0] <= p).clamp(1, points.len() - 1);
-    let ([p0, s0], [p1, s1]) = (points[upper - 1], points[upper]);
-    let slope = (s1 - s0) / (p1 - p0);
-    (s0 + slope * (p - p0), slope)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The way back to the yield surface (N/N_p)² + |M|/M_p + (T/T_p)² + (V/V_p)² = 1 of a round section: associative,
 //! implicit, with isotropic hardening within the step.
 
-use crate::base::lanes::{Mask, Real};
+use crate::base::lanes::{Mask, Real, Refinement};
 
 /// Where a return ends: factors on the trial values, and the plastic multiplier.
 #[derive(Clone, Copy)]
@@ -52,6 +52,40 @@ pub(super) struct Trial<R> {
     pub inverse_yield: R,
 }
 
+/// Newton's rule for z on the yield surface that hardens at the rate `h`.
+struct Newton<'a, R> {
+    trial: &'a Trial<R>,
+    h: R,
+}
+
+impl<R: Real> Refinement<R> for Newton<'_, R> {
+    /// The stress point, and by how much it lies outside the surface.
+    type Point = (Point<R>, R);
+
+    #[inline(always)]
+    fn at(&self, z: R) -> (Point<R>, R) {
+        let point = self.trial.at(self.h, z);
+        let f = point.axial * point.axial + point.bend + point.twist * point.twist + point.shear * point.shear - 1.0;
+        (point, f)
+    }
+
+    #[inline(always)]
+    fn unsettled(&self, (_, f): &(Point<R>, R)) -> R::Mask {
+        !f.splat(1.0).simd_gt(f.abs() * 1e10)
+    }
+
+    #[inline(always)]
+    fn next(&self, z: R, (point, f): &(Point<R>, R)) -> R {
+        let (trial, h, zero) = (self.trial, self.h, z.splat(0.0));
+        let slope = fall_of(point.axial, trial.axial_rate, point.soft[0], h)
+            + fall_of(point.twist, trial.twist_rate, point.soft[1], h)
+            + fall_of(point.shear, trial.shear_rate, point.soft[2], h);
+        let bent = point.bend.simd_gt(zero);
+        let falls = slope * 2.0 + R::select(bent, trial.bend * h + trial.bend_rate, zero);
+        trial.within_range(h, z, (z + *f * falls.inverse()).simd_max(zero))
+    }
+}
+
 impl<R: Real> Trial<R> {
     /// Where the trial lies beyond the yield surface.
     #[inline(always)]
@@ -80,27 +114,9 @@ impl<R: Real> Trial<R> {
         let size2 = n2 + t2 + v2;
         let size = size2 * size2.inverse_sqrt();
         let start = ((size - 1.0) * size2 * fall.inverse()).simd_max(zero);
-        let mut z = self.within_range(h, zero, start);
-        let mut open = wanted;
-        for round in 0..=60 {
-            let point = self.at(h, z);
-            let f =
-                point.axial * point.axial + point.bend + point.twist * point.twist + point.shear * point.shear - 1.0;
-            if round > 0 {
-                open = open & !one.simd_gt(f.abs() * 1e10);
-                if !open.any() {
-                    return self.end(z, &point);
-                }
-            }
-            let slope = fall_of(point.axial, self.axial_rate, point.soft[0], h)
-                + fall_of(point.twist, self.twist_rate, point.soft[1], h)
-                + fall_of(point.shear, self.shear_rate, point.soft[2], h);
-            let bent = point.bend.simd_gt(zero);
-            let falls = slope * 2.0 + R::select(bent, self.bend * h + self.bend_rate, zero);
-            let next = self.within_range(h, z, (z + f * falls.inverse()).simd_max(zero));
-            z = R::select(open, next, z);
-        }
-        self.end(z, &self.at(h, z))
+        let newton = Newton { trial: self, h };
+        let (z, (point, _)) = self.within_range(h, zero, start).refine(&newton, wanted, 61);
+        self.end(z, &point)
     }
 
     /// `next`, or half way from `last` to the end of the range of z where it lies beyond that.

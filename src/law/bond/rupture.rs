@@ -7,6 +7,7 @@
 //! | `fibre-strain` | axial + bending strain of the outermost fibre ≥ ε_f | beam theory |
 
 use super::{BondForce, Section};
+use crate::base::lanes::Real;
 use std::f64::consts::LN_2;
 
 /// Beam-stress criterion of Potyondy & Cundall 2004; compression never breaks a bond.
@@ -22,17 +23,15 @@ pub struct BeamStress {
 
 impl BeamStress {
     /// (tensile stress over σ_c, shear stress over τ_c) at the outermost fibre (-); breaks at 1.
-    pub fn utilisation(&self, force: &BondForce, section: &Section) -> [f64; 2] {
-        let tension = if force.axial > 0.0 {
-            (force.axial / section.area + self.moment_share * force.bend_size() * section.radius / section.inertia)
-                / self.tensile
-        } else {
-            0.0
-        };
+    pub fn utilisation<R: Real>(&self, force: &BondForce<R>, section: &Section<R>) -> [R; 2] {
+        let zero = force.axial.splat(0.0);
+        let tension = (force.axial / section.area
+            + force.bend_size() * self.moment_share * section.radius / section.inertia)
+            / zero.splat(self.tensile);
         let shear = (force.shear_size() / section.area
-            + self.moment_share * force.twist.abs() * section.radius / section.polar())
-            / self.shear;
-        [tension, shear]
+            + force.twist.abs() * self.moment_share * section.radius / section.polar())
+            / zero.splat(self.shear);
+        [R::select(force.axial.simd_gt(zero), tension, zero), shear]
     }
 }
 

@@ -147,7 +147,8 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let velocity = velocity::<S, T>(simd, self.seen, [i, j], normal, arms);
         let viscosity = Lanes::load(simd, self.constants, constants + BLOCK);
         let thinner = first.thinned + second.thinned;
-        let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity, dt: self.seen.dt };
+        let dt = zero.splat(self.seen.dt);
+        let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity, dt };
         let (pair, given) = contact_response(self.laws, &mut history, &meeting);
         sums.book(simd, lane, &given, pairs);
         history.each_number(|k, number| number.store(record, k * BLOCK + lane));

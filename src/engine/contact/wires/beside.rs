@@ -228,7 +228,8 @@ impl<R: Real> Beside<R> {
         let reach = at.touching - history.offset;
         let overlap = deepest.simd_max(zero);
         let thinner = self.reach - reach;
-        let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity: self.viscosity, dt };
+        let (viscosity, dt) = (self.viscosity, zero.splat(dt));
+        let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity, dt };
         let (pair, given) = press(laws, history, &meeting, &answer);
         // All that pushes along the normal is spread as the force of the cells is.
         let whole = (pair.friction - pair.force).dot(normal);
