@@ -26,6 +26,9 @@ use clap::Parser;
 use measure::Row;
 use std::path::PathBuf;
 use strandsnap::base::error::{Error, Result};
+use strandsnap::engine::REVISION;
+use strandsnap::run::cost;
+use strandsnap::run::devices::Devices;
 
 #[derive(Parser)]
 pub struct Args {
@@ -53,7 +56,7 @@ pub struct Args {
     /// How often they are timed; the best counts
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..))]
     repeats: u64,
-    /// Also write the rows to this file
+    /// Also write the rows to this file, with what the machine is and which program was measured
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Show what each shipped scene leaves out instead, and what that saves
@@ -81,7 +84,13 @@ fn main() -> miette::Result<()> {
     checkpoint::print(&args)?;
     output::print(&args, &rows)?;
     if let Some(file) = &args.json {
-        let text = serde_json::to_string_pretty(&rows).expect("rows are plain data");
+        let kept = serde_json::json!({
+            "machine": Devices::find(),
+            "versions": cost::versions(),
+            "physics_revision": REVISION,
+            "rows": rows,
+        });
+        let text = serde_json::to_string_pretty(&kept).expect("rows are plain data");
         strandsnap::observe::files::write_whole(file, &text)?;
     }
     Ok(())
