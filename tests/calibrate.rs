@@ -56,7 +56,8 @@ fn a_mean_over_seeds_is_fitted_with_its_interval_and_runs_are_kept() {
 #[test]
 fn seeds_that_mean_nothing_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    for (seeds, why) in [("0", "none is not enough"), ("6..4", "no seeds"), ("1,1", "listed twice"), ("a", "how many")]
+    for (seeds, why) in
+        [("0", "none is not enough"), ("6..4", "ends before it begins"), ("1,1", "listed twice"), ("a", "how many")]
     {
         let output = calibrate(folder.path(), &["--seeds", seeds]);
         assert_eq!(output.status.code(), Some(2), "{seeds}");

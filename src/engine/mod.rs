@@ -30,13 +30,11 @@ pub mod view;
 
 use crate::base::error::{Error, Result};
 use crate::base::finding::{Failure, Notice, StepLimit, Stopped};
-use crate::law::bond::elastic::Elastic;
-use crate::law::bond::elasto_plastic::ElastoPlastic;
-use crate::law::bond::{BondLaw, Moduli};
+use crate::law::bond::BondLaw;
 use crate::scene::plan::{ContactPlan, Plan};
 use crate::scene::spec::{BondLawSpec, Spec};
 use crate::strand::assembly::Assembly;
-use bonds::{BondStage, Bonds};
+use bonds::Bonds;
 use contact::Contacts;
 use grips::Holds;
 use loading_rate::Ahead;
@@ -45,7 +43,6 @@ use memory::StageBytes;
 use monitor::{Action, Monitor};
 use neighbours::Neighbours;
 use pulp::Arch;
-use rupture::RuptureCheck;
 use saved::{Reader, Unfit, Writer};
 use state::{CHUNK, State};
 use std::time::Instant;
@@ -103,7 +100,7 @@ impl Engine {
     /// # Errors
     /// When there is no stable step because nothing is stiff and the scene fixes none, or a grip holds nothing.
     pub fn new(spec: &Spec, plan: &Plan, assembly: Assembly) -> Result<Self> {
-        Self::set_up(spec, plan, assembly, build_bonds)
+        Self::set_up(spec, plan, assembly, bonds::build)
     }
 
     /// [`Engine::new`] with a bond law of one's own in the place of the scene's, whose `bond.law` and hardening then say
@@ -112,7 +109,7 @@ impl Engine {
     /// # Errors
     /// As for [`Engine::new`].
     pub fn with_law<L: BondLaw>(spec: &Spec, plan: &Plan, assembly: Assembly, law: L) -> Result<Self> {
-        Self::set_up(spec, plan, assembly, |spec, plan, assembly| bond_stage(law, spec, plan, assembly))
+        Self::set_up(spec, plan, assembly, |spec, plan, assembly| bonds::with_law(law, spec, plan, assembly))
     }
 
     fn set_up(
@@ -583,26 +580,5 @@ impl Engine {
     /// Neighbour searches so far, candidate pairs and touching pairs now.
     pub fn contact_counts(&self) -> (u64, usize, usize) {
         self.contacts.as_ref().map_or((0, 0, 0), |c| (c.neighbours.rebuilds, c.stage.candidates(), c.stage.active()))
-    }
-}
-
-/// Chooses law and modes, once per run.
-fn build_bonds(spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
-    let moduli = Moduli::new(spec.material.young, spec.material.poisson);
-    match &spec.bond.law {
-        BondLawSpec::Elastic => bond_stage(Elastic { moduli }, spec, plan, assembly),
-        BondLawSpec::ElastoPlastic(h) => {
-            bond_stage(ElastoPlastic { moduli, hardening: h.clone() }, spec, plan, assembly)
-        }
-    }
-}
-
-fn bond_stage<L: BondLaw>(law: L, spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
-    let check = spec.bond.rupture.as_ref().map(|r| RuptureCheck::new(r, spec.seed, assembly));
-    let damping = spec.bond.damping;
-    if plan.rotations {
-        Box::new(BondStage::<L, true>::new(law, assembly, damping, check))
-    } else {
-        Box::new(BondStage::<L, false>::new(law, assembly, damping, check))
     }
 }

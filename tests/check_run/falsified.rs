@@ -112,7 +112,7 @@ fn rows_columns_and_units_of_the_tables() {
 }
 
 /// Keys of a summary whose values only the run itself knew: nothing else in its folder tells of them but the seal.
-const SEALED: [&str; 17] = [
+const SEALED: [&str; 18] = [
     "kinetic_over_internal_max",
     "kinetic_over_internal_overall",
     "grip_force_mismatch_percent",
@@ -125,6 +125,7 @@ const SEALED: [&str; 17] = [
     "cpu_s",
     "ms_per_step",
     "threads",
+    "threads_available",
     "frames",
     "versions",
     "stopped",

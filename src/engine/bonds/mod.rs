@@ -23,12 +23,36 @@ use crate::engine::shared_rows::SharedRows;
 use crate::engine::state::{BondActions, CHUNK, ChunkSums, State};
 use crate::engine::team::Team;
 use crate::engine::time_step::Element;
-use crate::law::bond::{BondForce, BondLaw, BondShape, Section};
+use crate::law::bond::elastic::Elastic;
+use crate::law::bond::elasto_plastic::ElastoPlastic;
+use crate::law::bond::{BondForce, BondLaw, BondShape, Moduli, Section};
 use crate::law::damping::viscous_coefficient;
+use crate::scene::plan::Plan;
+use crate::scene::spec::{BondLawSpec, Spec};
 use crate::strand::assembly::Assembly;
 use kernel::Chunk;
 use layout::{CONSTANTS, Layout, MODES, SHAPE, force, place, shape};
 use pulp::Arch;
+
+/// Chooses law and modes, once per run.
+pub fn build(spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
+    let moduli = Moduli::new(spec.material.young, spec.material.poisson);
+    match &spec.bond.law {
+        BondLawSpec::Elastic => with_law(Elastic { moduli }, spec, plan, assembly),
+        BondLawSpec::ElastoPlastic(h) => with_law(ElastoPlastic { moduli, hardening: h.clone() }, spec, plan, assembly),
+    }
+}
+
+/// Bonds of the law `law`; damping and rupture are the scene's.
+pub fn with_law<L: BondLaw>(law: L, spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
+    let check = spec.bond.rupture.as_ref().map(|r| RuptureCheck::new(r, spec.seed, assembly));
+    let damping = spec.bond.damping;
+    if plan.rotations {
+        Box::new(BondStage::<L, true>::new(law, assembly, damping, check))
+    } else {
+        Box::new(BondStage::<L, false>::new(law, assembly, damping, check))
+    }
+}
 
 /// What the engine asks of bonds, whatever their law.
 pub trait Bonds: Send + Sync {

@@ -83,7 +83,7 @@ pub struct RecordingContents {
     pub headline: String,
     /// Strain (10⁻⁶) and nominal stress of the body (MPa), in the order of the file.
     pub nominal_stress: Vec<(i64, f64)>,
-    /// Scalars by entity: step and values of each row, in the order of the file.
+    /// Scalars by entity: step and values of each row, in the order of steps.
     pub series: BTreeMap<String, Vec<(i64, Vec<f64>)>>,
     /// Whether a layout is embedded, ahead of all data, so that a viewer opens with it.
     pub layout: bool,
@@ -116,6 +116,8 @@ pub fn contents(path: &Path) -> Result<RecordingContents> {
             all.add(&Chunk::from_arrow_msg(&arrow).map_err(|e| broken(&e))?);
         }
     }
+    // Within a chunk rows may lie in the order of strain, which falls where a grip pushes or swings back.
+    all.series.values_mut().for_each(|rows| rows.sort_by_key(|(step, _)| *step));
     Ok(all)
 }
 
@@ -147,7 +149,7 @@ impl RecordingContents {
             self.headline = text.iter().map(ToString::to_string).collect();
         }
         let positions = Points3D::descriptor_positions().component;
-        if let Some(last) = chunk.iter_slices::<[f32; 3]>(positions).last() {
+        if let Some(last) = last_row(chunk, chunk.iter_slices::<[f32; 3]>(positions)) {
             self.last_positions.insert(path, last.to_vec());
         }
     }
@@ -171,7 +173,7 @@ impl RecordingContents {
 
     fn add_fields(&mut self, path: &str, chunk: &Chunk) {
         for field in [STRESS, PLASTIC_STRAIN, UTILISATION, CONTACT_PRESSURE] {
-            if let Some(last) = chunk.iter_slices::<f32>(field.into()).last() {
+            if let Some(last) = last_row(chunk, chunk.iter_slices::<f32>(field.into())) {
                 self.last_fields.entry(path.to_owned()).or_default().insert(field.to_owned(), last.to_vec());
             }
         }
@@ -192,6 +194,12 @@ impl RecordingContents {
             self.nominal_stress.extend(strains(chunk).zip(values.flatten().copied()));
         }
     }
+}
+
+/// Of some rows of a chunk that have a value each, that of the greatest step; the last of rows without steps.
+fn last_row<T>(chunk: &Chunk, values: impl Iterator<Item = T>) -> Option<T> {
+    let steps = chunk.iter_indices(&stream::STEP.into()).map(|(time, _)| time.as_i64());
+    steps.chain(std::iter::repeat(i64::MIN)).zip(values).max_by_key(|(step, _)| *step).map(|(_, value)| value)
 }
 
 fn strains(chunk: &Chunk) -> impl Iterator<Item = i64> + '_ {
