@@ -1,6 +1,16 @@
 //! `strandsnap check-run`: invariants between all files of a run, on every shipped scene after a break, on runs of many
 //! kinds and random scenes, which must all pass, and on files that were tampered with, which must not.
 
+/// Law of the bonds of a soft copper that yields early, in a scene's `[bond]`.
+macro_rules! copper {
+    () => {
+        r#"law = "elasto-plastic"
+damping = 0.02
+hardening = { form = "voce", yield_stress = "100 MPa", saturation = "180 MPa", rate = 12, linear = "550 MPa" }
+"#
+    };
+}
+
 #[path = "check_run/damaged.rs"]
 mod damaged;
 #[path = "check_run/drawn.rs"]
@@ -21,14 +31,14 @@ use strandsnap::scene::Scene;
 use strandsnap::study::check_run::{InvariantCheck, InvariantOutcome, check};
 
 /// A straight core and three wires around it, pulled until they break, in a second.
-pub const STRAND: &str = r#"
+pub const STRAND: &str = concat!(
+    r#"
 about = "A small strand of four wires, pulled until wires break."
 seed = 3
 [bond]
-law = "elasto-plastic"
-damping = 0.02
-hardening = { form = "voce", yield_stress = "100 MPa", saturation = "180 MPa", rate = 12, linear = "550 MPa" }
-rupture = { criterion = "plastic-strain", strain = "3 %", weibull_modulus = 20 }
+"#,
+    copper!(),
+    r#"rupture = { criterion = "plastic-strain", strain = "3 %", weibull_modulus = 20 }
 [contact]
 normal = "thornton"
 tangential = "mindlin"
@@ -56,7 +66,8 @@ strain = "6 %"
 samples = 400
 snapshots = 30
 frame_size = [160, 120]
-"#;
+"#
+);
 
 /// A scene from text; `set` are `--set` options.
 pub fn scene(text: &str, set: &[&str]) -> Scene {

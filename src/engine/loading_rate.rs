@@ -11,7 +11,7 @@ use super::state::State;
 use crate::scene::spec::{AdaptiveSpec, DriveSpec, Spec};
 
 /// Least time in which the pull changes by its fastest speed, in passages of an elastic wave from grip to grip (-).
-const RISE_PASSAGES: f64 = 10.0;
+pub const RISE_PASSAGES: f64 = 10.0;
 /// Parts into which a pull is divided to foretell how long it takes.
 const PARTS: u32 = 500;
 

@@ -11,7 +11,7 @@ pub mod estimates;
 pub mod grips;
 mod info;
 pub mod integrate;
-mod loading_rate;
+pub mod loading_rate;
 pub mod measure;
 pub mod memory;
 mod monitor;

@@ -31,7 +31,7 @@ impl Adapter {
     fn of(adapter: &wgpu::Adapter) -> Self {
         let (info, limits) = (adapter.get_info(), adapter.limits());
         Self {
-            backend: format!("{:?}", info.backend).to_lowercase(),
+            backend: info.backend.to_str().to_owned(),
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
             kind: match info.device_type {
                 wgpu::DeviceType::DiscreteGpu => "discrete",

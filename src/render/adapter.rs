@@ -32,7 +32,15 @@ pub fn name() -> Result<String> {
 
 fn name_of(adapter: &wgpu::Adapter) -> String {
     let info = adapter.get_info();
-    format!("{} ({} {}, {:?})", info.name, info.driver, info.driver_info, info.backend)
+    let interface = match info.backend {
+        wgpu::Backend::Vulkan => "Vulkan",
+        wgpu::Backend::Gl => "OpenGL",
+        other => other.to_str(),
+    };
+    // A driver of OpenGL has no name beside its version.
+    let driver = [info.driver.as_str(), &info.driver_info, interface].map(str::trim);
+    let driver: Vec<&str> = driver.into_iter().filter(|part| !part.is_empty()).collect();
+    format!("{} ({})", info.name, driver.join(", "))
 }
 
 impl Gpu {

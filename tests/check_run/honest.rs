@@ -10,14 +10,14 @@ use strandsnap::observe::Observer;
 use strandsnap::run::{Resumable, RunOptions, run_watched};
 
 /// A straight wire between grips.
-const WIRE: &str = r#"
+const WIRE: &str = concat!(
+    r#"
 about = "A straight wire between grips."
 seed = 3
 [bond]
-law = "elasto-plastic"
-damping = 0.02
-hardening = { form = "voce", yield_stress = "100 MPa", saturation = "180 MPa", rate = 12, linear = "550 MPa" }
-rupture = { criterion = "plastic-strain", strain = "3 %", weibull_modulus = 20 }
+"#,
+    copper!(),
+    r#"rupture = { criterion = "plastic-strain", strain = "3 %", weibull_modulus = 20 }
 [[wire]]
 diameter = "0.39 mm"
 from = ["0 mm", "0 mm", "0 mm"]
@@ -30,17 +30,18 @@ strain = "6 %"
 [output]
 samples = 400
 snapshots = 30
-"#;
+"#
+);
 
 /// Two wires of two diameters between the same grips.
-const TWO_WIRES: &str = r#"
+const TWO_WIRES: &str = concat!(
+    r#"
 about = "Two wires of two diameters side by side."
 seed = 5
 [bond]
-law = "elasto-plastic"
-damping = 0.02
-hardening = { form = "voce", yield_stress = "100 MPa", saturation = "180 MPa", rate = 12, linear = "550 MPa" }
-rupture = { criterion = "plastic-strain", strain = "3 %", weibull_modulus = 20 }
+"#,
+    copper!(),
+    r#"rupture = { criterion = "plastic-strain", strain = "3 %", weibull_modulus = 20 }
 [[wire]]
 diameter = "0.39 mm"
 from = ["0 mm", "0 mm", "0 mm"]
@@ -59,17 +60,18 @@ strain = "6 %"
 [output]
 samples = 200
 snapshots = 20
-"#;
+"#
+);
 
 /// A wire that a hold turns.
-const HELD: &str = r#"
+const HELD: &str = concat!(
+    r#"
 about = "Two wires, one of them turned by a hold."
 seed = 1
 [bond]
-law = "elasto-plastic"
-damping = 0.02
-hardening = { form = "voce", yield_stress = "100 MPa", saturation = "180 MPa", rate = 12, linear = "550 MPa" }
-[[wire]]
+"#,
+    copper!(),
+    r#"[[wire]]
 diameter = "0.39 mm"
 from = ["0 mm", "0 mm", "0 mm"]
 to = ["0 mm", "0 mm", "6 mm"]
@@ -87,7 +89,8 @@ time = "100 us"
 [output]
 samples = 100
 snapshots = 8
-"#;
+"#
+);
 
 /// A wire without grips.
 const BENT: &str = r#"
@@ -228,6 +231,12 @@ const ADAPTIVE: &[Honest] = &[
         "strand.length=16 mm; spacing=0.7; bond.damping=0.1; grip.speed=1 m/s; \
       grip.adaptive={ from = '0.3 %', fastest = '6 m/s', kinetic = '4 %', passages = 5 }; \
       stop.strain=2 %; output.samples=600",
+    ),
+    (
+        "adaptive from fast",
+        STRAND_1X7,
+        "strand.length=14 mm; grip.length=2 mm; grip.speed=80 m/s; spacing=1.5; \
+      grip.adaptive={ fastest = '90 m/s', passages = 5 }; output.samples=300; output.snapshots=12",
     ),
     (
         "adaptive from the start",

@@ -42,7 +42,7 @@ fn strain(run: &Folder) -> InvariantOutcome {
 }
 
 /// Time over which a row at `time` is smoothed (s).
-fn smoothed(run: &Folder, time: f64) -> f64 {
+pub(super) fn smoothed(run: &Folder, time: f64) -> f64 {
     (2.0 * MEAN_LAG * run.trajectory.info.wave_passage).min(time)
 }
 

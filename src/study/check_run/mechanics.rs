@@ -1,9 +1,11 @@
 //! What physics asks of a run.
 
+use super::drive;
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use super::invariant::Invariant;
 use crate::base::finding::FindingKind;
+use crate::engine::loading_rate::RISE_PASSAGES;
 use crate::engine::view::Sample;
 use crate::observe::guard::ENERGY_LIMIT;
 use crate::observe::stiffness::{self, Row, Stiffness};
@@ -37,6 +39,9 @@ pub const STRAND_THEORY: Invariant =
 /// Passages of an elastic wave after which a pull has settled (-).
 const SETTLED: f64 = 2.0;
 
+/// Rows from which on forces are compared over all of them together: more than one wave makes of one row.
+const MANY: usize = 50;
+
 /// A little more than forces are smoothed over, in passages of an elastic wave (-).
 const SMOOTHED: f64 = 0.3;
 
@@ -60,7 +65,8 @@ fn carried(run: &Folder, theory: &Theory, row: &Sample) -> f64 {
 /// What the wires carry against the mean of the two grips' forces. Wires are measured at mid-gauge and grips at the ends, so
 /// that waves along the body, which yield, and grips that swing, set going, pull them apart: by no more than the two grips
 /// differ, and than either force changes by while a wave passes, at its fastest in the rows within a passage. A row's own
-/// change does not count for it.
+/// change does not count for it. Waves of a pull come and go, those of a swing do not: over all rows of a pull together, where
+/// there are many, the two are proportional to each other with a factor of one.
 fn grips(run: &Folder) -> InvariantOutcome {
     let not = |why: &str| InvariantOutcome::NotApplicable(why.into());
     let Some(grip) = run.spec.grip.as_ref().filter(|grip| grip.kind == GripKind::All) else {
@@ -85,6 +91,7 @@ fn grips(run: &Folder) -> InvariantOutcome {
     };
     let near = |row: usize, other: &usize| (samples[*other].time - samples[row].time).abs() <= passage;
     let mut search = Search::new();
+    let (mut rows, mut squares, mut products) = (0, 0.0, 0.0);
     for row in 1..samples.len() {
         let now = &samples[row];
         let quiet = now.energy.kinetic <= run.spec.time.kinetic_limit * now.energy.internal();
@@ -103,6 +110,12 @@ fn grips(run: &Folder) -> InvariantOutcome {
                 now.step, carried[row], held[row]
             )
         });
+        (rows, squares) = (rows + 1, squares + held[row] * held[row]);
+        products += held[row] * carried[row];
+    }
+    if rows >= MANY && squares > 0.0 && matches!(grip.drive, DriveSpec::Speed(_)) {
+        let factor = products / squares;
+        search.add((factor - 1.0).abs(), || format!("over {rows} rows wires carry {factor:.5} of what the grips hold"));
     }
     search.end(0.02, "of the greatest force", "no row is settled, whole and quasi-static")
 }
@@ -110,7 +123,7 @@ fn grips(run: &Folder) -> InvariantOutcome {
 /// ∫ F du + ∫ M dφ of the driven grip by the trapezoid rule on all rows. The rule on every other row tells how well that can be
 /// known, and few rows tell no more than a force that rises or falls from one to the next: then the rule is off by half of
 /// what the force changes by times the way. An adaptive pull changes the speed of all of the body, which no grip's force
-/// shows. Forces of rows are smoothed over a quarter of a wave's passage, so what the greatest force does in
+/// shows, as far as its speed can be known from rows. Forces of rows are smoothed over a quarter of a wave's passage, so what the greatest force does in
 /// [`SMOOTHED`] may be missing.
 fn work(run: &Folder) -> InvariantOutcome {
     let not = |why: &str| InvariantOutcome::NotApplicable(why.into());
@@ -145,13 +158,12 @@ fn work(run: &Folder) -> InvariantOutcome {
     };
     // The first rows are smoothed most, so the whole run's greatest power counts from the start.
     let greatest = (1..rows).map(power).filter(|power| power.is_finite()).fold(0.0, f64::max);
-    let speed = |row: usize| {
-        let way = (number(row, "strain_percent") - number(row - 1, "strain_percent")) * 1e-2 * free;
-        way / (number(row, "time_s") - number(row - 1, "time_s"))
-    };
     let hastened = |row: usize| match (&grip.adaptive, grip.drive) {
-        (Some(_), DriveSpec::Speed(slow)) => 0.5 * run.affine_mass * (speed(row).powi(2) - slow.powi(2)),
-        _ => 0.0,
+        (Some(adaptive), DriveSpec::Speed(slow)) => {
+            let [speed, off] = adaptive_speed(run, row, free, [slow.abs(), adaptive.fastest]);
+            [0.5 * (speed.powi(2) - slow.powi(2)), speed * off].map(|square| square * run.affine_mass)
+        }
+        _ => [0.0; 2],
     };
     let (mut fine, mut coarse, mut widest) = (0.0, 0.0, 0.0);
     let mut search = Search::new();
@@ -160,14 +172,30 @@ fn work(run: &Folder) -> InvariantOutcome {
         coarse += piece(row - 2, row);
         widest += between(row - 2, row - 1) + between(row - 1, row);
         let done = number(row, "work_j") - number(0, "work_j");
-        let right = fine + hastened(row);
+        let [hastened, uncertain] = hastened(row);
+        let right = fine + hastened;
         // Simpson's estimate of the trapezoid's error is a third of the difference.
         let rule = (fine - coarse).abs().max(widest);
-        let slack = rule + (hastened(row) - hastened(row - 1)).abs() + greatest * SMOOTHED * passage;
+        let slack = rule + uncertain + greatest * SMOOTHED * passage;
         let off = ((right - done).abs() - slack).max(0.0) / most;
         search.add(off, || format!("curve.csv line {}: {done:.6e} J, integral {right:.6e} J", row + 2));
     }
     search.end(0.01, "of the work", "there are fewer than three rows")
+}
+
+/// Speed of an adaptive pull at a row, between its slow and its fastest one, and by how much it may be off (m/s): the way of the
+/// rows of one passage over their time. Steps decide on which instants a row's mean is made of, so that a way may be what the
+/// grip does in two of them off; and within a passage the speed itself changes, by no more than the law of it allows.
+fn adaptive_speed(run: &Folder, row: usize, free: f64, [slow, fastest]: [f64; 2]) -> [f64; 2] {
+    let passage = run.trajectory.info.wave_passage;
+    let time =
+        |row: usize| run.curve.number(row, "time_s") - 0.5 * drive::smoothed(run, run.curve.number(row, "time_s"));
+    let first = (0..row).rev().find(|first| time(row) - time(*first) >= passage).unwrap_or(0);
+    let (way, passed) =
+        (run.curve.number(row, "strain_percent") - run.curve.number(first, "strain_percent"), time(row) - time(first));
+    let speed = (way.abs() * 1e-2 * free / passed).clamp(slow, fastest);
+    let off = fastest * (2.0 * run.longest_step() / passed + passed / (RISE_PASSAGES * passage));
+    [speed, off.min(fastest - slow)]
 }
 
 /// Energy that is nothing (J): an elastic strain of 1e-9 everywhere.
@@ -279,4 +307,33 @@ fn strand_theory(run: &Folder) -> InvariantOutcome {
         format!("{measured:.2} GPa measured, {:.2} GPa expected ({deviation:+.2} %)", found.expected_gpa)
     });
     search.end(stiffness::LIMIT, "-", "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{RunOptions, run};
+    use crate::scene;
+    use std::sync::atomic::AtomicBool;
+
+    /// What all wires show too much of all the time hides in no wave.
+    #[test]
+    fn three_per_cent_of_all_wires_in_all_rows_are_seen() {
+        let set =
+            ["strand.length=20 mm", "grip.length=4 mm", "grip.speed=8 m/s", "stop.strain=4 %", "output.samples=300"];
+        let scene = scene::load("strand-1x7", &set.map(String::from)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("run");
+        run(&scene, &RunOptions { threads: Some(1), ..RunOptions::tables(&out) }, &AtomicBool::new(false)).unwrap();
+        let mut seen = Folder::read(&out).unwrap();
+        assert!(matches!(grips(&seen), InvariantOutcome::Passed(_)), "{:?}", grips(&seen));
+        for factor in [0.97, 1.03] {
+            let before = seen.trajectory.samples.clone();
+            let stresses = seen.trajectory.samples.iter_mut().flat_map(|row| &mut row.wire_stress);
+            stresses.for_each(|stress| *stress *= factor);
+            let InvariantOutcome::Failed(found) = grips(&seen) else { panic!("{factor}: {:?}", grips(&seen)) };
+            assert!(found.place.contains("wires carry"), "{}", found.place);
+            seen.trajectory.samples = before;
+        }
+    }
 }
