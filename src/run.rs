@@ -6,6 +6,7 @@ pub mod cautions;
 pub mod checkpoint;
 pub mod cost;
 pub mod devices;
+pub mod drawing;
 mod drive;
 pub mod estimate;
 pub mod folder;
@@ -40,7 +41,7 @@ use crate::observe::summary::{Closing, Cost, Summariser};
 use crate::observe::tables::Tables;
 use crate::observe::timings::Timings;
 use crate::observe::trajectory::Trajectory;
-use crate::scene::spec::PathSpec;
+use crate::scene::spec::{PathSpec, Spec};
 use crate::scene::{Scene, write};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
@@ -48,7 +49,6 @@ use checkpoint::{Checkpoint, Identity, Keeper, Spent};
 use drive::{LoopState, Resumed};
 use folder::OutFolder;
 use std::path::Path;
-use std::sync::PoisonError;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -286,14 +286,15 @@ fn drive_and_summarise(
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
     let (outcome, error) = drive::drive(engine, spec, &mut observers, stop, Some(&mut job.keeper), resumed)?;
-    let frames = written.frames.map(|timings| *timings.lock().unwrap_or_else(PoisonError::into_inner));
-    let written = Some(job.options.written());
-    let closing = Closing { written, ..closing(&job.clock, &outcome, error.as_ref(), frames) };
+    let timings = written.frames.as_ref().map(outputs::Frames::timings);
+    let files = Some(job.options.written());
+    let closing = Closing { written: files, ..closing(&job.clock, &outcome, error.as_ref(), timings) };
     let summary = summariser.summary(spec, job.bonds, closing);
-    let kept = write_summary(&job, &summary);
+    let kept = write_summary(job.folder, spec, &summary);
     // What came to its end, or cannot go on, has nothing to be resumed from.
     if kept.is_ok() && ended(&outcome, error.as_ref()) {
         job.keeper.clear()?;
+        written.frames.map_or(Ok(()), outputs::Frames::complete)?;
     }
     match error {
         Some(error) => Err(with_place(error, &job.options.out, summary.warnings.len() - 1)),
@@ -318,14 +319,14 @@ fn closing(clock: &Clock, outcome: &Outcome, error: Option<&Error>, frames: Opti
     }
 }
 
-fn write_summary(job: &Job, summary: &RunSummary) -> Result<()> {
-    let path = job.folder.file(folder::SUMMARY);
+fn write_summary(folder: &OutFolder, spec: &Spec, summary: &RunSummary) -> Result<()> {
+    let path = folder.file(folder::SUMMARY);
     let text = serde_json::to_string_pretty(summary)
         .map_err(|e| Error::io("cannot write", &path, std::io::Error::other(e)))?;
     // An animation elsewhere is no file of this folder.
     let animation = summary.written.as_ref().and_then(|written| written.animation.as_deref());
     let own: Vec<&str> = animation.into_iter().filter(|name| !Path::new(name).is_absolute()).collect();
-    write_whole(&path, &identity::seal(&text, Origin::of(&job.scene.spec), &job.options.out, &own)?)
+    write_whole(&path, &identity::seal(&text, Origin::of(spec), folder.path(), &own)?)
 }
 
 /// Adds where the results so far are, and how many `earlier` findings in them may tell why.

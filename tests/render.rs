@@ -1,5 +1,5 @@
-//! `strandsnap render` that was killed: what it goes on with, and what it draws again. Needs a graphics adapter; without
-//! one the test says that it was skipped.
+//! Drawing that was ended early, of `strandsnap render` and of a run: what it goes on with, and what it draws again. Needs a
+//! graphics adapter; without one the tests say that they were skipped.
 
 #[path = "common/program.rs"]
 mod program;
@@ -9,7 +9,18 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
+use strandsnap::base::error::Result;
+use strandsnap::engine::view::RunInfo;
+use strandsnap::observe::Observer;
+use strandsnap::observe::animation::Animation;
+use strandsnap::observe::peaks::Peaks;
+use strandsnap::run::drawing::Undrawn;
+use strandsnap::run::{self, RunOptions, StopReason};
+use strandsnap::scene;
+use strandsnap::study::check_run;
 
 /// The pictures in a folder, and when each was written.
 fn pictures(folder: &Path) -> BTreeMap<String, (Vec<u8>, SystemTime)> {
@@ -86,4 +97,88 @@ fn a_render_that_is_killed_draws_what_is_missing() {
     assert!(other.status.success() && text(&other.stderr).contains("all are drawn again"), "{}", text(&other.stderr));
     let other = pictures(&out);
     assert!(other.len() < whole.len() && other["frame_0000.png"].0 != whole["frame_0000.png"].0);
+}
+
+/// Sets a flag when a run has told its last.
+struct StopAtTheEnd<'a>(&'a AtomicBool);
+
+impl Observer for StopAtTheEnd<'_> {
+    fn start(&mut self, _info: &Arc<RunInfo>) -> Result<()> {
+        Ok(())
+    }
+    fn peaks(&mut self, _peaks: &Peaks) -> Result<()> {
+        self.0.store(true, Ordering::Relaxed);
+        Ok(())
+    }
+    fn finish(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// A batch system gives seconds between the first signal and the last.
+#[test]
+fn a_run_that_is_stopped_while_it_draws_keeps_its_results_and_is_drawn_later() {
+    const NAME: &str = "a_run_that_is_stopped_while_it_draws_keeps_its_results_and_is_drawn_later";
+    if strandsnap::render::check().is_err() {
+        let _ = writeln!(std::io::stderr(), "SKIPPED (no graphics adapter): {NAME}");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let set = [
+        "wire.0.to=[\"0 mm\", \"0 mm\", \"30 mm\"]",
+        "grip.length=5 mm",
+        "output.snapshots=30",
+        "output.frame_size=[640, 360]",
+    ];
+    let scene = scene::load("single-wire", &set.map(String::from)).unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let options = |name: &str| {
+        let animation = Some(Animation { file: at(name).join("frames.gif"), width: Some(160) });
+        RunOptions { frames: true, animation, threads: Some(1), ..RunOptions::tables(&at(name)) }
+    };
+    run::run(&scene, &options("whole"), &AtomicBool::new(false)).unwrap();
+    let whole = pictures(&at("whole/frames"));
+    let stop = AtomicBool::new(false);
+    let summary = run::run_watched(&scene, &options("cut"), vec![&mut StopAtTheEnd(&stop)], &stop).unwrap();
+    let left = summary.cost.frames.unwrap().not_drawn as usize;
+    assert!(left > 0 && summary.stopped != StopReason::Interrupted, "{left} left, {}", summary.stopped);
+    let drawn = pictures(&at("cut/frames"));
+    assert_eq!(drawn.len() + left, whole.len());
+    assert!(at("cut/frames/UNFINISHED.txt").is_file() && !at("cut/frames.gif").exists());
+    let agrees = |name: &str| {
+        let checks = check_run::check(&at(name)).unwrap();
+        let wrong = checks.iter().filter(|check| check.failed()).map(|check| &check.outcome).collect::<Vec<_>>();
+        assert!(wrong.is_empty(), "{name}: {wrong:?}");
+    };
+    agrees("cut");
+    // The program is another build than this test, so it begins with the pictures anew.
+    std::fs::create_dir_all(at("copy/frames")).unwrap();
+    for part in ["", "frames"] {
+        for file in std::fs::read_dir(at("cut").join(part)).unwrap().map(|file| file.unwrap().path()) {
+            if file.is_file() {
+                std::fs::copy(&file, at("copy").join(part).join(file.file_name().unwrap())).unwrap();
+            }
+        }
+    }
+    let resumed = strandsnap(folder.path(), &["resume", "copy", "--quiet"]);
+    assert!(resumed.status.success(), "{}", text(&resumed.stderr));
+    // Stopped once more, and then not.
+    for stopped in [true, false] {
+        let undrawn = Undrawn::find(&at("cut")).unwrap().expect("pictures are missing");
+        let mut drawing = undrawn.begin().unwrap();
+        drawing.replay.show(&mut *drawing.writer, &AtomicBool::new(stopped)).unwrap();
+        let frames = drawing.end().unwrap().cost.frames.unwrap();
+        assert_eq!(frames.not_drawn > 0, stopped);
+        assert_eq!((frames.frames + frames.not_drawn) as usize, whole.len());
+    }
+    assert!(Undrawn::find(&at("cut")).unwrap().is_none());
+    for name in ["cut", "copy"] {
+        let all = pictures(&at(name).join("frames"));
+        assert_eq!(all.keys().collect::<Vec<_>>(), whole.keys().collect::<Vec<_>>());
+        assert!(all.iter().all(|(picture, (bytes, _))| *bytes == whole[picture].0), "{name}");
+        assert!(name == "copy" || drawn.iter().all(|(picture, (_, written))| all[picture].1 == *written));
+        assert!(std::fs::read(at(name).join("frames.gif")).ok() == std::fs::read(at("whole/frames.gif")).ok());
+        assert!(!at(name).join("frames/UNFINISHED.txt").exists());
+        agrees(name);
+    }
 }

@@ -6,6 +6,7 @@ use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Passes everything on to another observer, with a bar that counts the snapshots.
 pub struct Counted<'a> {
@@ -48,7 +49,11 @@ impl Observer for Counted<'_> {
     }
 
     fn finish(&mut self) -> Result<()> {
-        let finished = self.inner.finish();
+        self.finish_unless(&AtomicBool::new(false))
+    }
+
+    fn finish_unless(&mut self, stop: &AtomicBool) -> Result<()> {
+        let finished = self.inner.finish_unless(stop);
         self.bar.finish_and_clear();
         finished
     }

@@ -1,6 +1,8 @@
 //! What is said of a run that has ended.
 
 use super::say::say;
+use crate::base::finding::StopReason;
+use crate::base::wording::counted;
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{FRAMES, RECORDING};
 use crate::run::{self, RunOptions, RunSummary, outputs};
@@ -15,7 +17,11 @@ pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
     } else {
         say!("{}\n{}", summary.scene, report(summary));
     }
-    if run::checkpoint::latest(&options.out).is_ok() {
+    let undrawn = summary.cost.frames.map_or(0, |frames| frames.not_drawn as usize);
+    if undrawn > 0 {
+        say!("{} still to be drawn: the run was stopped.", counted(undrawn, "picture"));
+    }
+    if run::checkpoint::latest(&options.out).is_ok() || (undrawn > 0 && summary.stopped != StopReason::Interrupted) {
         say!("Go on with: strandsnap resume {}", options.out.display());
     }
     if !quiet {

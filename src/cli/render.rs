@@ -54,8 +54,7 @@ pub fn render(args: Args) -> Result<Ended> {
     use crate::base::wording::counted;
     use crate::render::FrameWriter;
     use crate::run::replay::Replay;
-    use crate::run::{folder, identity, outputs};
-    use crate::study::runner::store;
+    use crate::run::{cost, folder, identity, outputs};
 
     if let Some(words) = &args.view {
         return one_view(&args, words);
@@ -81,9 +80,9 @@ pub fn render(args: Args) -> Result<Ended> {
     }
     crate::render::check()?;
     // Another build may draw otherwise.
-    let drawn = Digest::of(format!("{} {output:?} {}", run.digest(), store::build()));
+    let drawn = Digest::of(format!("{} {output:?} {}", run.digest(), cost::build()));
     let is_whole: &dyn Fn(&std::path::Path) -> bool = &crate::render::png::is_whole;
-    let pictures = folder.open_for_pictures(&drawn, args.resume.then_some(is_whole))?;
+    let pictures = folder.open_for_pictures(&drawn, args.resume.then_some(is_whole), None)?;
     if begun {
         match pictures.whole().len() {
             0 if pictures.replaced_others() => {
@@ -100,11 +99,14 @@ pub fn render(args: Args) -> Result<Ended> {
     }
     let stop = super::interrupt::install()?;
     let shown = run.show(&mut Counted::new(&mut writer, run.count(), !args.quiet), stop)?;
-    if shown == run.count() {
-        pictures.complete()?;
-    }
     let timings = writer.timings();
-    say!("{} in {}", counted(shown, "picture"), out.display());
+    let drawn = shown - timings.not_drawn as usize;
+    say!("{} in {}", counted(drawn, "picture"), out.display());
+    if drawn == run.count() {
+        pictures.complete()?;
+    } else {
+        say!("{} of {} are left; --resume goes on with them", run.count() - drawn, run.count());
+    }
     if let Some(animation) = animation.filter(|_| timings.animation_bytes > 0) {
         say!("{} of animation are in {}", outputs::megabytes(timings.animation_bytes), animation.file.display());
     }

@@ -1,5 +1,6 @@
 //! `strandsnap resume`.
 
+use super::counted::Counted;
 use super::ended::Ended;
 use super::finished::print;
 use super::interrupt;
@@ -7,13 +8,14 @@ use super::progress::Progress;
 use super::values::{Threads, duration, threads};
 use crate::base::error::Result;
 use crate::observe::Observer;
+use crate::run::drawing::Undrawn;
 use crate::run::{self, Resumable};
 use std::path::PathBuf;
 use std::time::Duration;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Folder of a run that was interrupted or killed, such as out/ka4
+    /// Folder of a run that was interrupted or killed, such as out/ka4; where only pictures are missing, they are drawn
     run: PathBuf,
     /// Threads: a number, or as many as make it faster, up to one per core; the results are the same on any number
     #[arg(long, value_name = "N|auto", value_parser = threads, default_value = "auto")]
@@ -27,6 +29,9 @@ pub struct Args {
 }
 
 pub fn resume(args: &Args) -> Result<Ended> {
+    if let Some(undrawn) = Undrawn::find(&args.run)? {
+        return draw(undrawn, args.time_limit, args.quiet);
+    }
     let resumable = Resumable::open(&args.run, args.threads.count())?;
     go_on(resumable, args.time_limit, args.quiet)
 }
@@ -42,5 +47,19 @@ pub(super) fn go_on(resumable: Resumable, time_limit: Option<Duration>, quiet: b
         resumable.go_on(&|what| eprintln!("note: {what}"), watchers, stop)
     })??;
     print(&summary, &options, quiet);
-    interrupt::ended_run(&summary.stopped)
+    interrupt::ended_run(&summary)
+}
+
+/// Draws the pictures that a run has not drawn, and says how it ended.
+pub(super) fn draw(undrawn: Undrawn, time_limit: Option<Duration>, quiet: bool) -> Result<Ended> {
+    let stop = interrupt::install()?;
+    time_limit.into_iter().for_each(interrupt::after);
+    let options = undrawn.options.clone();
+    eprintln!("note: the run has come to its end; drawing the pictures that are missing");
+    let mut drawing = undrawn.begin()?;
+    let count = drawing.replay.count();
+    drawing.replay.show(&mut Counted::new(&mut *drawing.writer, count, !quiet), stop)?;
+    let summary = drawing.end()?;
+    print(&summary, &options, quiet);
+    interrupt::ended_run(&summary)
 }

@@ -6,10 +6,11 @@ use super::finished::print;
 use super::interrupt;
 use super::look::LookArgs;
 use super::progress::Progress;
-use super::resume::go_on;
+use super::resume::{draw, go_on};
 use super::values::{SceneArgs, Threads, duration, threads};
 use crate::base::error::{Error, Result};
 use crate::observe::Observer;
+use crate::run::drawing::Undrawn;
 use crate::run::folder::{ANIMATION, SUMMARY};
 use crate::run::{self, Resumable, RunOptions, cautions, lock, outputs};
 use std::path::{Path, PathBuf};
@@ -75,6 +76,11 @@ pub fn run(args: Args) -> Result<Ended> {
         resumable.check_scene(&scene)?;
         return go_on(resumable, time_limit, args.quiet);
     }
+    if args.resume
+        && let Some(undrawn) = Undrawn::find(&out)?.filter(|undrawn| undrawn.is_of(&scene))
+    {
+        return draw(undrawn, time_limit, args.quiet);
+    }
     if args.resume && !args.overwrite && out.join(SUMMARY).is_file() && !run::folder::is_unfinished(&out) {
         return Err(Error::input(
             format!("the run in {} has come to its end", out.display()),
@@ -102,7 +108,7 @@ pub fn run(args: Args) -> Result<Ended> {
         run::run_watched(&scene, &options, watchers, stop)
     })??;
     print(&summary, &options, args.quiet);
-    interrupt::ended_run(&summary.stopped)
+    interrupt::ended_run(&summary)
 }
 
 /// Waits until no other process writes into a folder, and says so; `takes_over`: what that one leaves there may be replaced

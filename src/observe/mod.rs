@@ -27,6 +27,7 @@ use crate::base::finding::Notice;
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use peaks::Peaks;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Something that watches a run.
 pub trait Observer {
@@ -54,4 +55,9 @@ pub trait Observer {
     }
     /// After the last step, also of a run that was stopped: everything written so far must be made whole.
     fn finish(&mut self) -> Result<()>;
+    /// [`Self::finish`] that leaves out what takes long once `stop` is set: what is not done then is not there, and does not
+    /// look as if it were.
+    fn finish_unless(&mut self, _stop: &AtomicBool) -> Result<()> {
+        self.finish()
+    }
 }

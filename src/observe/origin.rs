@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 
 /// Keyword of the text chunk in which a PNG file carries the id of the run that it shows.
 pub const RUN_KEYWORD: &str = "strandsnap run";
+/// Keyword of the text chunk with the step of the run whose state the picture shows.
+pub const STEP_KEYWORD: &str = "strandsnap step";
 
 /// What decides every bit of a run's result: two runs with the same id are the same run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

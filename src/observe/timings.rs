@@ -10,6 +10,8 @@ use std::time::Duration;
 pub struct Timings {
     /// Frames drawn.
     pub frames: u32,
+    /// Frames that were left out because the run was stopped.
+    pub not_drawn: u32,
     /// Preparing instances and drawing on the adapter.
     pub draw: Duration,
     /// Copying the picture back.
@@ -32,6 +34,7 @@ impl Timings {
     /// Adds what another thread counted.
     pub fn merge(&mut self, other: &Timings) {
         self.frames += other.frames;
+        self.not_drawn += other.not_drawn;
         self.draw += other.draw;
         self.read_back += other.read_back;
         self.overlay += other.overlay;
@@ -66,6 +69,8 @@ impl fmt::Display for Timings {
 #[derive(Serialize, Deserialize)]
 struct Report {
     count: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    not_drawn: Option<u32>,
     draw_ms: f64,
     read_back_ms: f64,
     charts_and_text_ms: f64,
@@ -84,6 +89,7 @@ impl From<Timings> for Report {
         let animated = timings.animation_bytes > 0;
         Self {
             count: timings.frames,
+            not_drawn: (timings.not_drawn > 0).then_some(timings.not_drawn),
             draw_ms,
             read_back_ms,
             charts_and_text_ms,
@@ -101,6 +107,7 @@ impl From<Report> for Timings {
         let total = |ms: f64| Duration::from_secs_f64(ms * 1e-3 * f64::from(report.count));
         Self {
             frames: report.count,
+            not_drawn: report.not_drawn.unwrap_or(0),
             draw: total(report.draw_ms),
             read_back: total(report.read_back_ms),
             overlay: total(report.charts_and_text_ms),

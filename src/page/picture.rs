@@ -2,7 +2,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::base::regular;
-use crate::run::folder::FRAMES;
+use crate::run::folder::{FRAMES, is_undrawn};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::codecs::jpeg::JpegEncoder;
@@ -22,6 +22,8 @@ const QUALITY: u8 = 75;
 pub struct Pictures {
     /// How many there are.
     pub found: usize,
+    /// They are not all that the run was to draw.
+    pub unfinished: bool,
     by_number: BTreeMap<usize, PathBuf>,
 }
 
@@ -43,8 +45,9 @@ impl Pictures {
         // Number n is snapshot n for what the run drew; for what was drawn again only when nothing was left out.
         let again = numbered(&run.join(RENDER))?;
         let complete = again.len() == snapshots;
-        let by_number = if drawn.is_empty() && complete { again } else { drawn };
-        Ok(Self { found: by_number.len(), by_number })
+        let unfinished = is_undrawn(&run.join(FRAMES));
+        let by_number = if complete && (drawn.is_empty() || unfinished) { again } else { drawn };
+        Ok(Self { found: by_number.len(), unfinished: unfinished && by_number.len() < snapshots, by_number })
     }
 
     /// The picture of a snapshot.

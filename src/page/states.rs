@@ -39,6 +39,7 @@ fn counts(source: &Source) -> Markup {
         (source.states.len()) " of the run's " (source.snapshots) " snapshots"
         @if source.first_rupture_step().is_some() { ", dense after the first rupture" } ". "
         @if source.pictures.found > 0 { (source.pictures_shown()) " of " (source.pictures.found) " frames are in this page. " }
+        @if source.pictures.unfinished { "The run was stopped before it had drawn all of its frames. " }
         "Move with the slider, the arrow keys or the buttons."
     }
 }

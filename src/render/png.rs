@@ -1,18 +1,18 @@
 //! PNG files that are either whole or absent.
 
 use crate::base::error::{Error, Result};
-use crate::observe::origin::{Origin, RUN_KEYWORD};
+use crate::observe::origin::{Origin, RUN_KEYWORD, STEP_KEYWORD};
 use image::RgbImage;
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 use std::io::Write;
 use std::path::Path;
 
-/// The picture as PNG bytes, compressed fast (a few milliseconds; twice the size of the slowest setting). One that shows a
-/// run of which the `origin` is known carries the run's id in a text chunk.
+/// The picture as PNG bytes, compressed fast (a few milliseconds; twice the size of the slowest setting). One of which it is
+/// known which run it shows, and at which step, carries both in text chunks.
 ///
 /// # Errors
 /// When the picture is empty.
-pub fn encode(picture: &RgbImage, origin: Option<Origin>) -> Result<Vec<u8>> {
+pub fn encode(picture: &RgbImage, shows: Option<(Origin, u64)>) -> Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(picture.len() / 4);
     let refuse = |e: EncodingError| {
         Error::input(format!("cannot encode a picture: {e}"), "choose a size of at least 1 × 1 pixel")
@@ -22,8 +22,9 @@ pub fn encode(picture: &RgbImage, origin: Option<Origin>) -> Result<Vec<u8>> {
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
-    if let Some(origin) = origin {
+    if let Some((origin, step)) = shows {
         encoder.add_text_chunk(RUN_KEYWORD.into(), origin.run.to_string()).map_err(refuse)?;
+        encoder.add_text_chunk(STEP_KEYWORD.into(), step.to_string()).map_err(refuse)?;
     }
     let mut writer = encoder.write_header().map_err(refuse)?;
     writer.write_image_data(picture).map_err(refuse)?;

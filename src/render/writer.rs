@@ -14,16 +14,19 @@ use crate::scene::spec::OutputSpec;
 use image::RgbImage;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Fewest and most snapshots that may wait to be drawn.
 const WAITING: std::ops::RangeInclusive<usize> = 4..=1024;
 /// Memory of a snapshot for each particle (bytes): five f32, a position and a state, and the other half for vectors
 /// that grew with room to spare.
 const PARTICLE_BYTES: usize = 48;
+/// Time between two looks at whether the run was stopped while its last frames are drawn.
+const LOOK: Duration = Duration::from_millis(2);
 /// Pictures that may wait to be encoded. Encoding is several times faster than drawing, so few ever do.
 const DRAWN: usize = 2;
 
@@ -47,6 +50,8 @@ pub struct FrameWriter {
 
 struct Workers {
     jobs: SyncSender<Job>,
+    /// Draw no more of those that wait.
+    cut: Arc<AtomicBool>,
     draw: JoinHandle<Result<Timings>>,
     encode: JoinHandle<Result<Timings>>,
 }
@@ -122,13 +127,17 @@ impl FrameWriter {
         self.timings.lock().unwrap_or_else(PoisonError::into_inner).merge(timings);
     }
 
-    /// Ends both threads and returns the first error that either met.
-    fn join(&mut self) -> Result<()> {
-        let Some(Workers { jobs, draw, encode }) = self.workers.take() else {
+    /// Ends both threads, at once where `stop` is set or else when all is drawn, and returns the first error that either met.
+    fn join(&mut self, stop: &AtomicBool) -> Result<()> {
+        let Some(Workers { jobs, cut, draw, encode }) = self.workers.take() else {
             return Ok(());
         };
         let begin = Instant::now();
         drop(jobs);
+        while !draw.is_finished() && !stop.load(Ordering::Relaxed) {
+            std::thread::sleep(LOOK);
+        }
+        cut.store(stop.load(Ordering::Relaxed), Ordering::Relaxed);
         let results = [draw.join(), encode.join()];
         self.add(&Timings { drained: begin.elapsed(), ..Timings::default() });
         // An encoder that failed (disk full) is why the drawing stopped, so its error comes first.
@@ -140,7 +149,8 @@ impl FrameWriter {
     }
 
     fn animate(&mut self) -> Result<()> {
-        let Some(animation) = self.animation.take() else { return Ok(()) };
+        // One that ends too early would look whole.
+        let Some(animation) = self.animation.take().filter(|_| self.timings().not_drawn == 0) else { return Ok(()) };
         let begin = Instant::now();
         let animation_bytes = animation::write(&animation, &self.stills)?;
         self.add(&Timings { animation: begin.elapsed(), animation_bytes, ..Timings::default() });
@@ -159,9 +169,11 @@ impl Observer for FrameWriter {
         let (jobs, waiting) = sync_channel(waiting.clamp(*WAITING.start(), *WAITING.end()));
         let (pictures, drawn) = sync_channel(DRAWN);
         let (folder, origin) = (self.folder.clone(), self.origin);
+        let cut = Arc::new(AtomicBool::new(false));
         self.workers = Some(Workers {
             jobs,
-            draw: std::thread::spawn(move || draw_all(renderer, &waiting, &pictures)),
+            cut: cut.clone(),
+            draw: std::thread::spawn(move || draw_all(renderer, &waiting, &pictures, &cut)),
             encode: std::thread::spawn(move || encode_all(&folder, origin, &drawn)),
         });
         Ok(())
@@ -187,7 +199,7 @@ impl Observer for FrameWriter {
         let begin = Instant::now();
         if workers.jobs.send(job).is_err() {
             // The drawing thread has ended early: say why.
-            return self.join();
+            return self.join(&AtomicBool::new(false));
         }
         self.add(&Timings { waited: begin.elapsed(), ..Timings::default() });
         self.stills.push(Still { picture: file, pause });
@@ -200,7 +212,11 @@ impl Observer for FrameWriter {
     }
 
     fn finish(&mut self) -> Result<()> {
-        self.join()?;
+        self.finish_unless(&AtomicBool::new(false))
+    }
+
+    fn finish_unless(&mut self, stop: &AtomicBool) -> Result<()> {
+        self.join(stop)?;
         self.animate()
     }
 }
@@ -209,33 +225,49 @@ impl Drop for FrameWriter {
     fn drop(&mut self) {
         // An observer that is dropped without `finish` (the run failed) still completes the frames it has.
         if !std::thread::panicking() {
-            let _ = self.join();
+            let _ = self.join(&AtomicBool::new(false));
         }
     }
 }
 
-fn draw_all(mut renderer: Renderer, jobs: &Receiver<Job>, pictures: &SyncSender<(usize, RgbImage)>) -> Result<Timings> {
-    let (mut curve, mut ruptures) = (Vec::new(), Vec::new());
+/// A picture, its number and the step whose state it shows.
+struct Drawn {
+    number: usize,
+    step: u64,
+    picture: RgbImage,
+}
+
+fn draw_all(
+    mut renderer: Renderer,
+    jobs: &Receiver<Job>,
+    pictures: &SyncSender<Drawn>,
+    cut: &AtomicBool,
+) -> Result<Timings> {
+    let (mut curve, mut ruptures, mut not_drawn) = (Vec::new(), Vec::new(), 0);
     for (number, job) in jobs.iter().enumerate() {
         curve.extend(job.curve);
         ruptures.extend(job.ruptures);
         if !job.missing {
             continue;
         }
+        if cut.load(Ordering::Relaxed) {
+            not_drawn += 1;
+            continue;
+        }
         let picture = renderer.draw(&job.snapshot, &curve, &ruptures)?;
-        if pictures.send((number, picture)).is_err() {
+        if pictures.send(Drawn { number, step: job.snapshot.sample.step, picture }).is_err() {
             // The encoder has ended with an error of its own, which `join` reports.
             break;
         }
     }
-    Ok(renderer.timings())
+    Ok(Timings { not_drawn, ..renderer.timings() })
 }
 
-fn encode_all(folder: &Path, origin: Option<Origin>, pictures: &Receiver<(usize, RgbImage)>) -> Result<Timings> {
+fn encode_all(folder: &Path, origin: Option<Origin>, pictures: &Receiver<Drawn>) -> Result<Timings> {
     let mut timings = Timings::default();
-    for (number, drawn) in pictures.iter() {
+    for Drawn { number, step, picture: drawn } in pictures.iter() {
         let start = Instant::now();
-        let bytes = png::encode(&drawn, origin)?;
+        let bytes = png::encode(&drawn, origin.map(|origin| (origin, step)))?;
         png::write(&picture(folder, number), &bytes)?;
         timings.encode += start.elapsed();
     }

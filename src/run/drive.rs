@@ -176,7 +176,7 @@ pub(super) fn drive(
     let ended = driver.go(&info, stop, told);
     let stepping = before.stepping + driver.stepping();
     let observing = before.observing + driver.audience.time;
-    let finished = driver.audience.finish();
+    let finished = driver.audience.finish(stop);
     let (reason, error) = match (ended, finished) {
         (Ok(reason), Ok(())) => (reason, None),
         (Err(error), _) | (Ok(_), Err(error)) => (StopReason::Failed, Some(error)),
@@ -446,11 +446,12 @@ impl Audience<'_, '_> {
         told
     }
 
-    /// Finishes every observer that was started, whatever the others answer; the first error counts.
-    fn finish(&mut self) -> Result<()> {
+    /// Finishes every observer that was started, whatever the others answer, without what takes long once `stop` is set; the
+    /// first error counts.
+    fn finish(&mut self, stop: &AtomicBool) -> Result<()> {
         let begin = Instant::now();
         let started = self.observers.iter_mut().take(self.started);
-        let answers: Vec<Result<()>> = started.map(|observer| observer.finish()).collect();
+        let answers: Vec<Result<()>> = started.map(|observer| observer.finish_unless(stop)).collect();
         self.time += begin.elapsed();
         answers.into_iter().collect()
     }

@@ -1,6 +1,7 @@
 //! The output folder: checked before the simulation, cleared only when nothing else can fail.
 
 use super::lock::{self, LOCK, Lock};
+use super::options::Outputs;
 use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
@@ -32,6 +33,8 @@ pub const ANIMATION: &str = "frames.gif";
 const UNFINISHED: &str = "UNFINISHED.txt";
 /// Begins the line in it that says what is drawn.
 const DRAWN: &str = "drawn: ";
+/// Begins the line in it that says what else a run writes, where it is a run's own folder of pictures.
+const OUTPUTS: &str = "outputs: ";
 /// A study of error against run time, in a folder of its own.
 pub const ACCURACY_STUDY: &str = "accuracy.json";
 /// Its plot.
@@ -156,16 +159,25 @@ impl OutFolder {
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;
         }
-        clear_pictures(&self.path.join(FRAMES), None).map(drop)
+        let frames = self.path.join(FRAMES);
+        clear_pictures(&frames, None)?;
+        remove_if_there(&frames.join(UNFINISHED))?;
+        let _ = fs::remove_dir(frames);
+        Ok(())
     }
 
     /// The same for a folder of pictures only: nothing but numbered pictures is removed. It is marked as unfinished until
     /// [`Pictures::complete`]; the mark says what is `drawn`: of which run, and how. Where an earlier process has begun to
-    /// draw the same and `go_on` tells which of its pictures are whole, those stay.
+    /// draw the same and `go_on` tells which of its pictures are whole, those stay. A run's own pictures are drawn with `outputs`.
     ///
     /// # Errors
     /// As for [`OutFolder::open`].
-    pub fn open_for_pictures(&self, drawn: &Digest, go_on: Option<&dyn Fn(&Path) -> bool>) -> Result<Pictures> {
+    pub fn open_for_pictures(
+        &self,
+        drawn: &Digest,
+        go_on: Option<&dyn Fn(&Path) -> bool>,
+        outputs: Option<&Outputs>,
+    ) -> Result<Pictures> {
         let lock = self.take()?;
         let mark = self.path.join(UNFINISHED);
         let begun = drawn_before(&self.path);
@@ -173,7 +185,10 @@ impl OutFolder {
         let whole = clear_pictures(&self.path, is_whole)?;
         regular::make_folder(&self.path)?;
         let says = "These pictures are not all that were to be drawn: drawing goes on, or was stopped.";
-        write_whole(&mark, &format!("{says}\n{DRAWN}{drawn}\n"))?;
+        let outputs = outputs.map_or(String::new(), |outputs| {
+            format!("{OUTPUTS}{}\n", serde_json::to_string(outputs).expect("they hold nothing that JSON lacks"))
+        });
+        write_whole(&mark, &format!("{says}\n{DRAWN}{drawn}\n{outputs}"))?;
         Ok(Pictures { mark, whole, others: begun.is_some_and(|begun| begun != *drawn), _lock: lock })
     }
 
@@ -206,6 +221,11 @@ impl OutFolder {
         }
         probe(path)?;
         Ok(Self { path: path.into(), overwrite: true })
+    }
+
+    /// The folder itself.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The path of a file in it.
@@ -302,8 +322,23 @@ fn clear_pictures(folder: &Path, is_whole: Option<&dyn Fn(&Path) -> bool>) -> Re
 
 /// What an earlier process has begun to draw into `folder` and not completed; `None` where there is no such mark.
 pub fn drawn_before(folder: &Path) -> Option<Digest> {
+    marked(folder, DRAWN)?.parse().ok()
+}
+
+/// What a run writes whose own pictures in its folder `run` are not all drawn; `None` where they are, or none were asked for.
+pub fn outputs_undrawn(run: &Path) -> Option<Outputs> {
+    serde_json::from_str(&marked(&run.join(FRAMES), OUTPUTS)?).ok()
+}
+
+/// The line of the mark in a folder of pictures that begins with `key`, without it.
+fn marked(folder: &Path, key: &str) -> Option<String> {
     let mark = regular::text_if_there(&folder.join(UNFINISHED), regular::LONGEST_TABLE).ok()??;
-    mark.lines().find_map(|line| line.strip_prefix(DRAWN)?.parse().ok())
+    mark.lines().find_map(|line| line.strip_prefix(key).map(str::to_owned))
+}
+
+/// Whether pictures in `folder` are not all that were to be drawn.
+pub fn is_undrawn(folder: &Path) -> bool {
+    folder.join(UNFINISHED).exists()
 }
 
 /// Whether a file is named as the frames are: a PNG (or the beginning of one) with a number in its name, or what a process
@@ -387,7 +422,7 @@ mod tests {
     fn pictures_are_unfinished_until_all_are_drawn() {
         let folder = tempfile::tempdir().unwrap();
         let out = || OutFolder::check(folder.path(), true).unwrap();
-        let pictures = out().open_for_pictures(&Digest::of("a"), None).unwrap();
+        let pictures = out().open_for_pictures(&Digest::of("a"), None, None).unwrap();
         assert!(folder.path().join(UNFINISHED).is_file());
         pictures.complete().unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
@@ -402,7 +437,7 @@ mod tests {
         let open = |drawn: &Digest, go_on: bool| {
             let is_whole: &dyn Fn(&Path) -> bool = &is_whole;
             let pictures = OutFolder::check(folder.path(), true).unwrap();
-            let pictures = pictures.open_for_pictures(drawn, go_on.then_some(is_whole)).unwrap();
+            let pictures = pictures.open_for_pictures(drawn, go_on.then_some(is_whole), None).unwrap();
             (pictures.whole().len(), pictures.replaced_others())
         };
         assert_eq!((drawn_before(folder.path()), open(&first, true)), (None, (0, false)));

@@ -1,15 +1,19 @@
 //! What a run writes besides tables. The one place of this floor, besides `devices`, that knows which features were
 //! built.
 
-use super::folder::{self, OutFolder};
+use super::folder::{self, OutFolder, Pictures};
 use super::options::RunOptions;
+#[cfg(feature = "render")]
+use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
 use crate::observe::Observer;
 use crate::observe::origin::Origin;
 use crate::observe::timings::Timings;
 use crate::observe::trajectory::TrajectoryWriter;
 use crate::scene::spec::Spec;
-use std::sync::{Arc, Mutex};
+#[cfg(feature = "render")]
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Memory for snapshots that wait to be drawn (bytes): some 500 of the main scene's, more than one run has.
 #[cfg(feature = "render")]
@@ -54,8 +58,36 @@ pub fn megabytes(bytes: u64) -> String {
 pub(super) struct Written {
     /// Trajectory and, if asked for, recording and frames.
     pub observers: Vec<Box<dyn Observer>>,
-    /// Where the time of the frames goes.
-    pub frames: Option<Arc<Mutex<Timings>>>,
+    /// The frames, if any are drawn.
+    pub frames: Option<Frames>,
+}
+
+/// Frames that a run draws; their observer is beside it.
+pub(super) struct Frames {
+    /// Where their time goes.
+    timings: Arc<Mutex<Timings>>,
+    /// Their folder, marked as unfinished.
+    pictures: Pictures,
+}
+
+impl Frames {
+    /// Where their time has gone.
+    pub fn timings(&self) -> Timings {
+        *self.timings.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Those that were there already.
+    pub fn kept(&self) -> usize {
+        self.pictures.whole().len()
+    }
+
+    /// Takes the mark off, if the writer has drawn all that it was told of.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be removed.
+    pub fn complete(self) -> Result<()> {
+        if self.timings().not_drawn > 0 { Ok(()) } else { self.pictures.complete() }
+    }
 }
 
 /// Opens all that writes a run.
@@ -68,17 +100,14 @@ pub(super) fn open(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Res
     if options.recording {
         observers.push(recording(options, spec, folder)?);
     }
-    let mut timings = None;
+    let mut drawn = None;
     if options.frames {
-        let (writer, shared) = frames(options, spec, folder)?;
+        let (writer, frames) = frames(options, spec, folder, false)?;
         observers.push(writer);
-        timings = Some(shared);
+        drawn = Some(frames);
     }
-    Ok(Written { observers, frames: timings })
+    Ok(Written { observers, frames: drawn })
 }
-
-/// An observer that draws frames, and where their time goes.
-type Frames = (Box<dyn Observer>, Arc<Mutex<Timings>>);
 
 #[cfg(feature = "render")]
 fn check_frames() -> Result<()> {
@@ -90,17 +119,33 @@ fn check_frames() -> Result<()> {
     Err(built_without("frames", "render", "leave them out with --no-frames"))
 }
 
+/// An observer that draws the frames of a run; where it goes `on`, those that are missing.
+///
+/// # Errors
+/// [`Error::Missing`] as in [`check`]; [`Error::Io`] when the folder cannot be written.
 #[cfg(feature = "render")]
-fn frames(options: &RunOptions, spec: &Spec, folder: &OutFolder) -> Result<Frames> {
-    let writer = crate::render::FrameWriter::new(&folder.file(folder::FRAMES), &spec.output)?;
-    let writer =
-        writer.with_origin(Origin::of(spec)).with_animation(options.animation.clone()).with_memory(WAITING_FRAMES);
+pub(super) fn frames(
+    options: &RunOptions,
+    spec: &Spec,
+    folder: &OutFolder,
+    on: bool,
+) -> Result<(Box<dyn Observer>, Frames)> {
+    let at = folder.file(folder::FRAMES);
+    let origin = Origin::of(spec);
+    let writer = crate::render::FrameWriter::new(&at, &spec.output)?;
+    // Another build may draw otherwise.
+    let drawn = Digest::of(format!("{} {:?} {}", origin.run, spec.output, super::cost::build()));
+    let is_whole: &dyn Fn(&Path) -> bool = &crate::render::png::is_whole;
+    let pictures = OutFolder::check(&at, true)?;
+    let pictures = pictures.open_for_pictures(&drawn, on.then_some(is_whole), Some(&options.outputs()))?;
+    let writer = writer.with_origin(origin).with_animation(options.animation.clone()).with_memory(WAITING_FRAMES);
+    let writer = writer.without(pictures.whole().clone());
     let timings = writer.shared_timings();
-    Ok((Box::new(writer), timings))
+    Ok((Box::new(writer), Frames { timings, pictures }))
 }
 
 #[cfg(not(feature = "render"))]
-fn frames(_: &RunOptions, _: &Spec, _: &OutFolder) -> Result<Frames> {
+pub(super) fn frames(_: &RunOptions, _: &Spec, _: &OutFolder, _: bool) -> Result<(Box<dyn Observer>, Frames)> {
     Err(built_without("frames", "render", "leave them out with --no-frames"))
 }
 

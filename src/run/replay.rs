@@ -169,7 +169,7 @@ impl Replay {
         let trajectory = Trajectory::open(&self.file)?;
         observer.start(&self.info(trajectory.info()))?;
         let shown = self.pass_on(trajectory, observer, stop);
-        observer.finish()?;
+        observer.finish_unless(stop)?;
         shown
     }
 

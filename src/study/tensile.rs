@@ -1,7 +1,6 @@
 //! Tensile runs of a study: [`TensileCase`] runs a scene that a grip pulls, and [`TensileResult`] is what is kept of it:
 //! cost, strength and elongation, breaks, and histories over strain.
 
-use super::runner::store::build;
 use super::runner::{Case, CaseStore, Identity, Record, Status};
 use crate::base::error::{Error, Result};
 use crate::base::finding::StopReason;
@@ -10,6 +9,7 @@ use crate::engine::measure::MEAN_LAG;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
 use crate::observe::summary::{Break, RunSummary};
+use crate::run::cost::build;
 use crate::run::folder::{SCENE, has_checkpoint};
 use crate::run::{Resumable, RunOptions, cost, lock, outputs, run_watched, summarise};
 use crate::scene::spec::{PathSpec, Spec};

@@ -4,9 +4,9 @@
 use crate::base::error::Result;
 use crate::engine::REVISION;
 use crate::observe::files::write_whole;
+use crate::run::cost::build;
 use crate::study::column::{self, Column};
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series, Slope};
-use crate::study::runner::store::build;
 use crate::study::runner::{Case, CaseRunner, CaseStore, Identity, Status};
 use crate::study::table::Table;
 use crate::study::verify::comparison::{Comparison, Convergence};

@@ -143,8 +143,8 @@ pub struct Told {
     pub notices: Vec<Notice>,
     /// Which run it is of.
     pub origin: Origin,
-    /// How many snapshots it holds.
-    pub snapshots: usize,
+    /// Steps of its snapshots.
+    pub snapshots: Vec<u64>,
     /// The last of them.
     pub last: Option<Snapshot>,
 }
@@ -314,7 +314,7 @@ fn told(path: &Path, spec: &Spec, longest_step: f64) -> Result<(Told, Snapshots,
         ruptures: Vec::new(),
         notices: Vec::new(),
         origin: trajectory.origin(),
-        snapshots: 0,
+        snapshots: Vec::new(),
         last: None,
     };
     let mut seen = Snapshots { rows: Search::new(), silent: Search::new(), law: Search::new(), rupture: Search::new() };
@@ -332,7 +332,7 @@ fn told(path: &Path, spec: &Spec, longest_step: f64) -> Result<(Told, Snapshots,
             Record::Peaks(_) => {}
             Record::Snapshot(snapshot) => {
                 seen.snapshot(&snapshot, &told, &broken, &limits);
-                told.snapshots += 1;
+                told.snapshots.push(snapshot.sample.step);
                 told.last = Some(snapshot);
             }
         }

@@ -4,20 +4,22 @@ use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use super::invariant::Invariant;
 use crate::base::digest::Digest;
+use crate::base::finding::StopReason;
 use crate::base::regular;
 use crate::observe::animation::{Animation, Format};
-use crate::observe::origin::RUN_KEYWORD;
-use crate::run::folder::FRAMES;
+use crate::observe::origin::{RUN_KEYWORD, STEP_KEYWORD};
+use crate::run::folder::{FRAMES, is_undrawn};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// A run that draws has one frame for each snapshot, in the size that its scene asks for. Pictures that were drawn again are
-/// as many and as large as whoever drew them wanted. Either carry the id of their run, but for those of earlier programs.
+/// A run that draws has one frame for each snapshot, in order and in the size that its scene asks for; one that was stopped
+/// while it drew lacks the last of them, and its folder says so. Pictures that were drawn again are as many and as large as
+/// whoever drew them wanted. Either carry the id of their run and the step that they show, but for those of earlier programs.
 pub const PICTURES: Invariant = Invariant {
     name: "frames",
-    about: "a run that drew frames has one of each snapshot, and all pictures in its folder are whole and its own",
+    about: "a run that drew frames has one of each snapshot, in order, and all pictures in its folder are whole and its own",
     check: pictures,
 };
 
@@ -40,6 +42,8 @@ struct Picture {
     frames: usize,
     /// Run that it says it shows.
     run: Option<String>,
+    /// Step whose state it says it shows.
+    step: Option<String>,
 }
 
 /// Decodes all of a PNG file.
@@ -54,8 +58,11 @@ fn picture(path: &Path) -> Result<Picture, String> {
     }
     reader.finish().map_err(damaged)?;
     let info = reader.info();
-    let run = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == RUN_KEYWORD);
-    Ok(Picture { size: [info.width, info.height], frames, run: run.map(|chunk| chunk.text.clone()) })
+    let says = |keyword| {
+        let chunk = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == keyword);
+        chunk.map(|chunk| chunk.text.clone())
+    };
+    Ok(Picture { size: [info.width, info.height], frames, run: says(RUN_KEYWORD), step: says(STEP_KEYWORD) })
 }
 
 /// The pictures in a folder, by number; none without it.
@@ -72,7 +79,8 @@ fn pictures(run: &Folder) -> InvariantOutcome {
     let drawn = numbered(&run.path.join(FRAMES));
     let own = run.drew_frames();
     if own {
-        let snapshots = run.trajectory.snapshots;
+        let left_out = run.summary.cost.frames.map_or(0, |frames| frames.not_drawn as usize);
+        let snapshots = run.trajectory.snapshots.len().saturating_sub(left_out);
         search.same(drawn.len(), snapshots, || format!("pictures in {FRAMES}"));
         let last = drawn.last_key_value().map_or(0, |(number, _)| number + 1);
         search.same(last, snapshots, || format!("number of the last picture in {FRAMES}, from 1"));
@@ -89,7 +97,17 @@ fn pictures(run: &Folder) -> InvariantOutcome {
     let right = run.trajectory.origin.run.to_string();
     for folder in [FRAMES, AGAIN] {
         let of = || all.iter().zip(&seen).filter(|((of, _, _), _)| *of == folder);
-        let any_named = of().any(|(_, seen)| seen.as_ref().is_ok_and(|seen| seen.run.is_some()));
+        let says = |what: fn(&Picture) -> &Option<String>| {
+            of().any(|(_, seen)| seen.as_ref().is_ok_and(|seen| what(seen).is_some()))
+        };
+        let (any_named, any_dated) = (says(|seen| &seen.run), says(|seen| &seen.step));
+        if any_dated && own && folder == FRAMES {
+            let left_out = run.summary.cost.frames.is_some_and(|frames| frames.not_drawn > 0);
+            let unfinished = left_out || run.summary.stopped == StopReason::Interrupted;
+            search
+                .same(is_undrawn(&run.path.join(FRAMES)), unfinished, || format!("{FRAMES} are marked as unfinished"));
+        }
+        let mut steps = run.trajectory.snapshots.iter();
         for ((_, number, _), seen) in of() {
             let place = || format!("{folder}, picture {number}");
             match seen {
@@ -98,6 +116,15 @@ fn pictures(run: &Folder) -> InvariantOutcome {
                     if any_named {
                         let named = seen.run.as_deref().unwrap_or("none");
                         search.same(named, right.as_str(), || format!("{}, id of its run", place()));
+                    }
+                    let step = seen.step.as_deref().unwrap_or("none");
+                    if any_dated && own && folder == FRAMES {
+                        let right = run.trajectory.snapshots.get(*number).map_or("none".into(), u64::to_string);
+                        search.same(step, right.as_str(), || format!("{}, step that it shows", place()));
+                    } else if any_dated {
+                        // Some snapshots may have been left out.
+                        let later = steps.any(|later| step == later.to_string());
+                        search.same(later, true, || format!("{} shows step {step}, a snapshot in order", place()));
                     }
                     if own && folder == FRAMES {
                         let [found, wanted] =
@@ -116,6 +143,9 @@ fn animation(run: &Folder) -> InvariantOutcome {
     let Some(name) = run.summary.written.as_ref().and_then(|written| written.animation.as_ref()) else {
         return not("the run made no animation".into());
     };
+    if run.summary.cost.frames.is_some_and(|frames| frames.not_drawn > 0) {
+        return not("the run was stopped while it drew".into());
+    }
     let file = run.path.join(name);
     let elsewhere = Path::new(name).is_absolute();
     if elsewhere && !file.exists() {
@@ -123,7 +153,7 @@ fn animation(run: &Folder) -> InvariantOutcome {
     }
     let mut search = Search::new();
     match frames_in(&file) {
-        Ok(frames) => search.same(frames, run.trajectory.snapshots, || format!("frames of {name}")),
+        Ok(frames) => search.same(frames, run.trajectory.snapshots.len(), || format!("frames of {name}")),
         Err(what) => search.add(f64::NAN, || format!("{name}: {what}")),
     }
     if let (Some(timings), Ok(there)) = (&run.summary.cost.frames, file.metadata()) {

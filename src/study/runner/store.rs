@@ -1,10 +1,12 @@
 //! Finished cases, each kept in a folder named by the hash of its identity: a study that was interrupted goes on where it
 //! stopped.
 
+use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::engine::REVISION;
 use crate::observe::files::write_whole;
+use crate::run::cost;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -17,6 +19,9 @@ const CASES: &str = "cases";
 const RECORD: &str = "case.json";
 /// Where the run of a case lies until it is over, in the folder of its case.
 const UNFINISHED: &str = "unfinished";
+
+/// What stands before the digest at the end of a record.
+const DIGEST: &str = ",\"digest\":\"";
 
 /// What decides the result of a case: two cases that agree in this are the same.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -125,10 +130,11 @@ impl CaseStore {
         let file = self.folder.join(identity.name()).join(RECORD);
         let why = match regular::text_if_there(&file, regular::LONGEST_TABLE) {
             Ok(None) => return None,
-            Ok(Some(text)) => match serde_json::from_str::<Record<T>>(&text) {
-                Ok(record) if record.identity == *identity => return Some(record),
-                Ok(_) => "it is of another case".into(),
-                Err(error) => error.to_string(),
+            Ok(Some(text)) => match unsealed(&text).map(|record| serde_json::from_str::<Record<T>>(&record)) {
+                Some(Ok(record)) if record.identity == *identity => return Some(record),
+                Some(Ok(_)) => "it is of another case".into(),
+                Some(Err(error)) => error.to_string(),
+                None => "it was changed since it was written, or cut off".into(),
             },
             Err(error) => error.to_string(),
         };
@@ -159,26 +165,23 @@ impl CaseStore {
         regular::make_folder(&folder)?;
         write_whole(&folder.join(file), &identity.definition)?;
         let path = folder.join(RECORD);
-        let record = Record { identity: identity.clone(), build: build(), result };
+        let record = Record { identity: identity.clone(), build: cost::build(), result };
         let text = serde_json::to_string(&record).expect("a record holds nothing that JSON lacks");
-        write_whole(&path, &text)?;
+        write_whole(&path, &sealed(&text))?;
         serde_json::from_str(&text).map_err(|e| Error::io("cannot read back", &path, std::io::Error::other(e)))
     }
 }
 
-/// Which build of the program this is, by length and time of its file: one revision may be built many times while it is
-/// worked on.
-pub fn build() -> String {
-    build_id().unwrap_or_else(|| "unknown".into())
+/// A record's JSON object with its digest, so that an edited number is seen.
+fn sealed(record: &str) -> String {
+    format!("{}{DIGEST}{}\"}}", record.strip_suffix('}').unwrap_or(record), Digest::of(record))
 }
 
-/// The same; `None` where the system does not tell.
-pub(super) fn build_id() -> Option<String> {
-    let told = std::env::current_exe().and_then(|path| path.metadata()).and_then(|file| {
-        let since = file.modified()?.duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
-        Ok(format!("{} bytes of {} s", file.len(), since.as_secs()))
-    });
-    told.ok()
+/// The record without its digest; `None` unless that is the record's.
+fn unsealed(text: &str) -> Option<String> {
+    let (record, digest) = text.rsplit_once(DIGEST)?;
+    let record = format!("{record}}}");
+    (digest.strip_suffix("\"}")?.parse() == Ok(Digest::of(&record))).then_some(record)
 }
 
 #[cfg(test)]
@@ -224,6 +227,24 @@ mod tests {
         assert_eq!(found(&store, &one), None);
         assert_eq!(found(&store, &identity("never run", 1)), None);
         let damaged = store.damaged();
-        assert!(matches!(&damaged[..], [(file, why)] if *file == path && why.contains("EOF")), "{damaged:?}");
+        assert!(matches!(&damaged[..], [(file, why)] if *file == path && why.contains("cut off")), "{damaged:?}");
+    }
+
+    #[test]
+    fn a_record_with_another_number_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = CaseStore::open(folder.path(), false).unwrap();
+        let one = identity("a scene", 1);
+        store.keep(&one, "scene.toml", 1.5).unwrap();
+        let path = store.folder().join(one.name()).join(RECORD);
+        let text = std::fs::read_to_string(&path).unwrap();
+        for changed in
+            [text.replace("1.5", "1.6"), text.replace("\"build\":", "\"building\":"), text.replace(DIGEST, ",\"a\":\"")]
+        {
+            std::fs::write(&path, changed).unwrap();
+            assert_eq!(found(&store, &one), None);
+        }
+        std::fs::write(&path, &text).unwrap();
+        assert_eq!(found(&store, &one), Some(1.5));
     }
 }

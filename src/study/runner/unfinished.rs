@@ -2,8 +2,9 @@
 //! interrupted goes on when it is started again, and one that has come to its end leaves nothing, so that the next checks
 //! everything anew.
 
-use super::store::{CaseStore, Identity, build_id};
+use super::store::{CaseStore, Identity};
 use crate::base::error::{Error, Result};
+use crate::run::cost::build_id;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io::ErrorKind;

@@ -3,8 +3,8 @@
 use super::definition::Definition;
 use super::quantity::Quantity;
 use crate::base::units::{self, Dimension};
+use crate::run::cost::build;
 use crate::scene::spec::{LayerSpec, Spec};
-use crate::study::runner::store::build;
 use crate::study::runner::{CaseStore, Record};
 use crate::study::statistics::Statistics;
 use crate::study::tensile::{TensileOutcome, TensileResult, identity};
