@@ -31,7 +31,7 @@ pub use schedule::{Due, Schedule};
 pub use stop::StopRule;
 
 use crate::base::error::{Error, Result};
-use crate::base::finding::Kept;
+use crate::base::finding::KeptResults;
 use crate::base::units::ms;
 use crate::engine::Engine;
 use crate::observe::Observer;
@@ -333,7 +333,7 @@ fn write_summary(folder: &OutFolder, spec: &Spec, summary: &RunSummary) -> Resul
 fn with_place(error: Error, out: &Path, earlier: usize) -> Error {
     match error {
         Error::Simulation(mut stopped) => {
-            stopped.kept = Some(Kept { folder: out.into(), earlier });
+            stopped.kept = Some(KeptResults { folder: out.into(), earlier });
             Error::Simulation(stopped)
         }
         other => other,

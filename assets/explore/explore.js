@@ -119,14 +119,14 @@ const untwisted = (of, v) => {
   const rows = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(turned(of));
   return rows.map(row => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
 };
-const ridden = () => (view.follow !== undefined && now?.ridden) || 0;
+const followOffset = () => (view.follow !== undefined && now?.follow_offset) || 0;
 const spread = ([x, y, z]) => {
   const [ax, ay] = run.body.axis, apart = 1 + view.explode;
   return [ax + (x - ax) * apart, ay + (y - ay) * apart, z];
 };
 function projector(of) {
   const rotate = turned(of), { width, height } = stage.getBoundingClientRect(), scale = height / of.height;
-  const centre = [of.centre[0], of.centre[1], of.centre[2] + (of.follow !== undefined ? now?.ridden ?? 0 : 0)];
+  const centre = [of.centre[0], of.centre[1], of.centre[2] + (of.follow !== undefined ? now?.follow_offset ?? 0 : 0)];
   return p => {
     const [x, y, z] = rotate(p.map((v, k) => v - centre[k]));
     return [width / 2 + x * scale, height / 2 - y * scale, z];
@@ -202,7 +202,7 @@ $("follow").onchange = ({ target }) => {
     const { z } = rest(view.centre[2]);
     Object.assign(view, { follow: z, centre: [view.centre[0], view.centre[1], 0] });
   } else {
-    view.centre[2] += ridden();
+    view.centre[2] += followOffset();
     delete view.follow;
   }
   changed();

@@ -462,12 +462,12 @@ pub struct Stopped {
     /// Why.
     pub failure: Failure,
     /// What is left of the run, when it was written somewhere.
-    pub kept: Option<Kept>,
+    pub kept: Option<KeptResults>,
 }
 
 /// What a run that failed has left.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Kept {
+pub struct KeptResults {
     /// Folder of its results.
     pub folder: PathBuf,
     /// Findings made before the failure.

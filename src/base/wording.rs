@@ -290,7 +290,7 @@ impl Stopped {
             }
             Failure::Bends { .. } => "set plan = \"general\", so that every stage runs".to_owned(),
         };
-        let Some(Kept { folder, earlier }) = &self.kept else { return remedy };
+        let Some(KeptResults { folder, earlier }) = &self.kept else { return remedy };
         let kept = format!("{remedy}; the results up to there are in {}", folder.display());
         match earlier {
             0 => kept,
@@ -340,8 +340,11 @@ mod tests {
     fn a_failure_counts_the_earlier_warnings() {
         let at = Instant::default();
         let failure = Failure::NotFinite { quantity: Quantity::Torque };
-        let stopped =
-            |earlier| Stopped { at, failure: failure.clone(), kept: Some(Kept { folder: "out".into(), earlier }) };
+        let stopped = |earlier| Stopped {
+            at,
+            failure: failure.clone(),
+            kept: Some(KeptResults { folder: "out".into(), earlier }),
+        };
         assert!(stopped(1).remedy().ends_with("has 1 earlier warning"), "{}", stopped(1).remedy());
         assert!(stopped(2).remedy().ends_with("has 2 earlier warnings"), "{}", stopped(2).remedy());
     }

@@ -1,7 +1,7 @@
 //! One view to one picture: everything that this floor knows of the renderer and of a snapshot's particles.
 
 use super::pick::{Cone, Picked, nearest};
-use super::record::{Record, ridden};
+use super::record::{Record, follow_offset};
 use super::view::View;
 use crate::base::error::{Error, Result};
 use crate::base::units::mm;
@@ -208,11 +208,11 @@ impl Artist {
 
     fn camera(&self, info: &RunInfo, snapshot: &Snapshot, view: &View, size: [u32; 2]) -> Camera {
         let [w, h] = size.map(|side| side as f32);
-        let ridden = ridden(info, snapshot, view);
+        let follow_offset = follow_offset(info, snapshot, view);
         let [x, y, z] = view.centre.map(|c| (c / mm(1.0)) as f32);
         Camera {
             rotation: Camera::orientation(view.azimuth.to_radians(), view.elevation.to_radians()),
-            centre: Vec3::new(x, y, z + ridden),
+            centre: Vec3::new(x, y, z + follow_offset),
             panel: Rect::new(0.0, 0.0, w, h),
             scale: h * mm(1.0) as f32 / view.height as f32,
             depth: self.body.depth_of_view(),

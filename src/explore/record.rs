@@ -177,7 +177,7 @@ impl Record {
             [all.clone().fold(f32::MAX, f32::min), all.fold(f32::MIN, f32::max)].map(|end| mm(f64::from(end)))
         };
         json!({
-            "state": view.state, "ridden": mm(f64::from(ridden(info, &snapshot, view))),
+            "state": view.state, "follow_offset": mm(f64::from(follow_offset(info, &snapshot, view))),
             "x": abscissa.value(sample), "when": abscissa.moment(abscissa.value(sample)),
             "stress": mpa(sample.stress), "time_ms": ms(sample.time), "wires_broken": sample.wires_broken,
             "bonds_broken": sample.bonds_broken, "layers": (0..info.layers.len()).map(whole).collect::<Vec<_>>(),
@@ -248,7 +248,7 @@ fn between(a: &Snapshot, b: &Snapshot, share: f64) -> Snapshot {
 }
 
 /// Where the material section that a view rides on is now (m); 0 where it rides on none.
-pub fn ridden(info: &RunInfo, snapshot: &Snapshot, view: &View) -> f32 {
+pub fn follow_offset(info: &RunInfo, snapshot: &Snapshot, view: &View) -> f32 {
     view.follow.map_or(0.0, |z| current_z(info, snapshot, (z / mm(1.0)) as f32))
 }
 

@@ -9,7 +9,7 @@ const AFTER_RUPTURE: usize = 32;
 
 /// A snapshot that was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Chosen {
+pub struct SelectedSnapshot {
     /// Which one, from 0.
     pub number: usize,
     /// What is special about it.
@@ -30,7 +30,7 @@ pub fn spread(from: usize, to: usize, most: usize) -> Vec<usize> {
 
 /// The snapshots to show, in order: dense after the first rupture, sparse before it, with the states that people look
 /// for. `steps` are the steps of the snapshots.
-pub fn states(samples: &[Sample], ruptures: &[Rupture], steps: &[u64], pulled: bool) -> Vec<Chosen> {
+pub fn states(samples: &[Sample], ruptures: &[Rupture], steps: &[u64], pulled: bool) -> Vec<SelectedSnapshot> {
     if steps.is_empty() {
         return Vec::new();
     }
@@ -52,7 +52,7 @@ pub fn states(samples: &[Sample], ruptures: &[Rupture], steps: &[u64], pulled: b
         0 => Some("start"),
         _ => None,
     };
-    numbers.into_iter().map(|number| Chosen { number, label: label(number) }).collect()
+    numbers.into_iter().map(|number| SelectedSnapshot { number, label: label(number) }).collect()
 }
 
 fn peak_step(samples: &[Sample]) -> Option<u64> {

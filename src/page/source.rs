@@ -221,7 +221,7 @@ fn first_pass(trajectory: Trajectory) -> Result<Pass> {
 }
 
 /// The chosen snapshots, in order; one at a time is in memory.
-fn second_pass(trajectory: Trajectory, chosen: &[select::Chosen], pictures: &Pictures) -> Result<Vec<State>> {
+fn second_pass(trajectory: Trajectory, chosen: &[select::SelectedSnapshot], pictures: &Pictures) -> Result<Vec<State>> {
     let mut wanted = chosen.iter().peekable();
     let mut states = Vec::new();
     let snapshots = trajectory.filter_map(|record| match record {

@@ -129,7 +129,7 @@ pub struct Keeper {
 }
 
 /// State of the step loop at a checkpoint.
-pub struct Now {
+pub struct LoopPosition {
     /// Steps done.
     pub step: u64,
     /// State of the loop.
@@ -209,7 +209,7 @@ impl Keeper {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be written: the run cannot be relied on to survive, and its disk is full.
-    pub fn keep(&mut self, now: Now) -> Result<()> {
+    pub fn keep(&mut self, now: LoopPosition) -> Result<()> {
         let begin = Instant::now();
         self.number += 1;
         let cpu = super::cost::cpu_time().zip(self.cpu).map_or(0.0, |(now, began)| now - began);

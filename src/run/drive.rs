@@ -1,6 +1,6 @@
 //! The step loop: engine, schedule, stop rule and observers.
 
-use super::checkpoint::{Checkpoint, Keeper, Now};
+use super::checkpoint::{Checkpoint, Keeper, LoopPosition};
 use super::schedule::Schedule;
 use super::stop::StopRule;
 use crate::base::error::{Error, Result};
@@ -276,7 +276,7 @@ impl Driver<'_, '_> {
         let (driver, engine, step) = (self.state.save(), self.engine.save(), self.engine.steps());
         let (stepping, observing) = (self.stepping(), self.audience.time);
         match &mut self.audience.keeper {
-            Some(keeper) => keeper.keep(Now { step, driver, engine, stepping, observing }),
+            Some(keeper) => keeper.keep(LoopPosition { step, driver, engine, stepping, observing }),
             None => Ok(()),
         }
     }

@@ -16,12 +16,12 @@ const FAR: f32 = 0.06;
 
 /// How the close view looks at the body: from `eye` (a unit vector across z) with `up` upwards and z to the right.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Gaze {
+pub(super) struct ViewDirection {
     pub eye: [f32; 3],
     pub up: [f32; 3],
 }
 
-impl Gaze {
+impl ViewDirection {
     /// From the side of −x, before anything is known.
     pub const START: Self = Self { eye: [-1.0, 0.0, 0.0], up: [0.0, 1.0, 0.0] };
 
@@ -74,13 +74,21 @@ impl FirstBreak {
     }
 
     /// Sends mark, leader and label for the close view and for the view of the whole strand; `from` counts places.
-    pub fn send(&self, stream: &Stream, info: &RunInfo, gaze: Gaze, from: usize) -> Result<()> {
+    pub fn send(&self, stream: &Stream, info: &RunInfo, direction: ViewDirection, from: usize) -> Result<()> {
         let [low, high] = ends(info).map(|z| z as f32);
-        self.send_at(names::FIRST_BREAK, NEAR * thickness(info), stream, info, gaze, from)?;
-        self.send_at(names::FIRST_BREAK_FAR, FAR * (high - low), stream, info, gaze, from)
+        self.send_at(names::FIRST_BREAK, NEAR * thickness(info), stream, info, direction, from)?;
+        self.send_at(names::FIRST_BREAK_FAR, FAR * (high - low), stream, info, direction, from)
     }
 
-    fn send_at(&self, path: &str, reach: f32, stream: &Stream, info: &RunInfo, gaze: Gaze, from: usize) -> Result<()> {
+    fn send_at(
+        &self,
+        path: &str,
+        reach: f32,
+        stream: &Stream,
+        info: &RunInfo,
+        direction: ViewDirection,
+        from: usize,
+    ) -> Result<()> {
         let places = &self.places[from..];
         if places.is_empty() {
             return Ok(());
@@ -91,9 +99,9 @@ impl FirstBreak {
         let instants: Vec<_> = places.iter().map(|(instant, _)| *instant).collect();
         let one = vec![1; places.len()];
         let label = |p: [f32; 3]| -> [f32; 3] {
-            let along = p[0] * gaze.up[0] + p[1] * gaze.up[1];
+            let along = p[0] * direction.up[0] + p[1] * direction.up[1];
             let lift = (reach - along).max(0.0);
-            std::array::from_fn(|axis| p[axis] + lift * gaze.up[axis])
+            std::array::from_fn(|axis| p[axis] + lift * direction.up[axis])
         };
         let ends = vectors(Points3D::descriptor_positions(), places.iter().map(|(_, p)| label(*p)));
         let leaders = strips(LineStrips3D::descriptor_strips(), places.iter().flat_map(|(_, p)| [*p, label(*p)]), 2);
@@ -120,15 +128,15 @@ mod tests {
     #[test]
     fn the_eye_stands_on_the_side_of_the_break_with_z_to_the_right() {
         for place in [[2.0, 0.0, 5.0], [0.0, -3.0, 1.0], [1.0, 1.0, 0.0]] {
-            let Gaze { eye, up } = Gaze::towards(place, [0.0, 0.0, 9.0]);
+            let ViewDirection { eye, up } = ViewDirection::towards(place, [0.0, 0.0, 9.0]);
             let toward: f32 = (0..2).map(|axis| eye[axis] * place[axis]).sum();
             assert!((toward - place[0].hypot(place[1])).abs() < 1e-5);
             // Looking along −eye, right = −eye × up.
             let right = eye[1] * up[0] - eye[0] * up[1];
             assert!((right - 1.0).abs() < 1e-5, "{right}");
         }
-        assert_eq!(Gaze::towards([1.0, 2.0, 3.0], [1.0, 2.0, 9.0]), Gaze::START);
-        let start = Gaze::towards([-1.0, 0.0, 0.0], [0.0; 3]);
-        assert_eq!((start.eye, start.up), (Gaze::START.eye, Gaze::START.up));
+        assert_eq!(ViewDirection::towards([1.0, 2.0, 3.0], [1.0, 2.0, 9.0]), ViewDirection::START);
+        let start = ViewDirection::towards([-1.0, 0.0, 0.0], [0.0; 3]);
+        assert_eq!((start.eye, start.up), (ViewDirection::START.eye, ViewDirection::START.up));
     }
 }

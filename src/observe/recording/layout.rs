@@ -4,7 +4,7 @@
 //! hand: entity by entity into a store of its own, which is then sent with the recording.
 
 use super::chart::Chart;
-use super::first_break::Gaze;
+use super::first_break::ViewDirection;
 use super::map::Map;
 use super::sections::thickness;
 use super::{names, stream};
@@ -40,7 +40,7 @@ pub(super) struct Scenery<'a> {
     pub map: &'a Map,
     pub chart: Option<&'a Chart>,
     /// How the close view looks at the body, about `target` (mm).
-    pub gaze: Gaze,
+    pub direction: ViewDirection,
     pub target: [f32; 3],
     /// Layer of the first break, when there was one.
     pub broken_layer: Option<usize>,
@@ -175,7 +175,7 @@ impl Layout {
             };
             contents.extend([drawn, names::marks(names::STRAND, info, number)].map(|path| path.to_string()));
         }
-        let Gaze { eye, up } = scenery.gaze;
+        let ViewDirection { eye, up } = scenery.direction;
         let distance = 2.0 * thickness(info).max(1e-3);
         let controls = blueprint::EyeControls3D::new()
             .with_kind(Eye3DKind::Orbital)
@@ -325,7 +325,7 @@ fn whole_eye(scenery: &Scenery) -> blueprint::EyeControls3D {
     let longest = (high - low) * (1.0 + scenery.info.strain_end.unwrap_or(0.0) as f32);
     let middle = [0.0, 0.0, low + 0.5 * longest];
     let distance = 0.5 * 1.04 * longest / ASPECT / (0.5 * FIELD_OF_VIEW).tan();
-    let Gaze { eye, up } = scenery.gaze;
+    let ViewDirection { eye, up } = scenery.direction;
     blueprint::EyeControls3D::new()
         .with_kind(Eye3DKind::Orbital)
         .with_position(offset(offset(middle, eye, distance), up, 0.15 * distance))

@@ -1,7 +1,7 @@
 //! One run on its way into a recording: what waits to be sent, and what is known so far.
 
 use super::chart::Chart;
-use super::first_break::{FirstBreak, Gaze};
+use super::first_break::{FirstBreak, ViewDirection};
 use super::headline::{Headline, about};
 use super::layout::Scenery;
 use super::map::Map;
@@ -120,23 +120,23 @@ impl Run {
         // Bonds and cost are not shown.
         let summary = self.summariser.summary(scene, 0, Closing::default());
         self.headline.send_end(&self.stream, &self.info, &summary)?;
-        let mut gaze = Gaze::START;
+        let mut direction = ViewDirection::START;
         if let Some(first) = &self.first {
             let axis = self.sections.last(first.rest_z()).unwrap_or_default();
-            gaze = Gaze::towards(first.last(), axis);
-            first.send(&self.stream, &self.info, gaze, 0)?;
+            direction = ViewDirection::towards(first.last(), axis);
+            first.send(&self.stream, &self.info, direction, 0)?;
             self.sections.send_focus(&self.stream, &self.info, first.rest_z(), 0)?;
         }
-        layout::send(&self.stream, &format!("{}-layout-end", self.id), &self.scenery(gaze), active)
+        layout::send(&self.stream, &format!("{}-layout-end", self.id), &self.scenery(direction), active)
     }
 
-    fn scenery(&self, gaze: Gaze) -> Scenery<'_> {
+    fn scenery(&self, direction: ViewDirection) -> Scenery<'_> {
         let rest_z = self.first.as_ref().map_or(self.sections.middle(), FirstBreak::rest_z);
         Scenery {
             info: &self.info,
             map: &self.map,
             chart: self.chart.as_ref(),
-            gaze,
+            direction,
             target: self.sections.last(rest_z).unwrap_or([0.0, 0.0, rest_z]),
             broken_layer: self.first.as_ref().map(|first| first.rupture.layer),
         }
@@ -144,7 +144,7 @@ impl Run {
 
     fn send_fixed(&mut self) -> Result<()> {
         let (stream, info) = (&self.stream, &self.info);
-        layout::send(stream, &format!("{}-layout", self.id), &self.scenery(Gaze::START), true)?;
+        layout::send(stream, &format!("{}-layout", self.id), &self.scenery(ViewDirection::START), true)?;
         // Rerun hands on data before messages; without this the layout would come last, and a viewer that is still
         // loading would invent one.
         stream.checked(stream.rerun.flush_blocking())?;
@@ -221,7 +221,7 @@ impl Run {
         self.headline.send(&self.stream, &self.info)?;
         let [focused, placed] = self.followed;
         if let Some(first) = &self.first {
-            first.send(&self.stream, &self.info, Gaze::START, placed)?;
+            first.send(&self.stream, &self.info, ViewDirection::START, placed)?;
         }
         let rest_z = self.first.as_ref().map_or(self.sections.middle(), FirstBreak::rest_z);
         self.sections.send_focus(&self.stream, &self.info, rest_z, focused)?;

@@ -2,7 +2,7 @@
 
 use super::finding::Search;
 use super::limits::Limits;
-use super::maker::{Anew, Maker};
+use super::maker::{Maker, Remade};
 use super::tables::Table;
 use crate::base::error::{Error, Result};
 use crate::base::finding::Notice;
@@ -122,17 +122,17 @@ pub struct Folder {
     /// `ruptures.csv`.
     pub ruptures: Table,
     /// What the trajectory holds besides snapshots.
-    pub trajectory: Told,
+    pub trajectory: History,
     /// What was looked for in each snapshot: they are too many to be kept.
     pub snapshots: Snapshots,
     /// Mass that moves with the drive's speed in the even field of a pull, Σ m s², s a particle's share of that speed (kg).
     pub affine_mass: f64,
     /// Tables and summary as the program makes them of scene and trajectory.
-    pub anew: Anew,
+    pub anew: Remade,
 }
 
 /// The trajectory without its snapshots.
-pub struct Told {
+pub struct History {
     /// What does not change.
     pub info: Arc<RunInfo>,
     /// Rows.
@@ -302,13 +302,13 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
-fn told(path: &Path, spec: &Spec, longest_step: f64) -> Result<(Told, Snapshots, Maker)> {
+fn told(path: &Path, spec: &Spec, longest_step: f64) -> Result<(History, Snapshots, Maker)> {
     let damaged = |e: Error| Error::input(format!("{} is damaged: {e}", path.display()), "run the scene again");
     let trajectory = Trajectory::open(path).map_err(damaged)?;
     let info = trajectory.info().clone();
     let limits = Limits::new(spec, &info, longest_step);
     let mut made = Maker::new(&info)?;
-    let mut told = Told {
+    let mut told = History {
         info,
         samples: Vec::new(),
         ruptures: Vec::new(),
@@ -341,7 +341,7 @@ fn told(path: &Path, spec: &Spec, longest_step: f64) -> Result<(Told, Snapshots,
 }
 
 impl Snapshots {
-    fn snapshot(&mut self, now: &Snapshot, told: &Told, broken: &BTreeMap<usize, u64>, limits: &Limits) {
+    fn snapshot(&mut self, now: &Snapshot, told: &History, broken: &BTreeMap<usize, u64>, limits: &Limits) {
         let step = now.sample.step;
         // The snapshot comes after its row, at times after later ones: it may have been kept until the next rupture.
         let row = told.samples.iter().rev().find(|row| row.step <= step);

@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::sync::Arc;
 
 /// What was made anew.
-pub struct Anew {
+pub struct Remade {
     /// The tables, in the order of [`FILES`].
     pub tables: [Table; 3],
     /// `summary.json` without its seal.
@@ -60,7 +60,7 @@ impl Maker {
     ///
     /// # Errors
     /// [`Error::Io`] when the disk is full.
-    pub fn end(mut self, spec: &Spec, told: &RunSummary, bonds: usize) -> Result<Anew> {
+    pub fn end(mut self, spec: &Spec, told: &RunSummary, bonds: usize) -> Result<Remade> {
         self.tables.finish()?;
         // An error that is no failure of the simulation is a warning without a finding.
         let error = told.warnings.first().filter(|_| told.warnings.len() > told.findings.len());
@@ -74,6 +74,6 @@ impl Maker {
         };
         let summary = self.summariser.summary(spec, bonds, closing);
         let [curve, wires, ruptures] = FILES.map(|name| Table::read(self.folder.path(), name, &[]));
-        Ok(Anew { tables: [curve?, wires?, ruptures?], summary: serde_json::to_value(summary).unwrap_or_default() })
+        Ok(Remade { tables: [curve?, wires?, ruptures?], summary: serde_json::to_value(summary).unwrap_or_default() })
     }
 }
