@@ -2,6 +2,7 @@
 //!
 //! [`run`] writes a folder; [`simulate`] shows a run to observers and writes nothing.
 
+pub mod build;
 pub mod cautions;
 pub mod checkpoint;
 pub mod cost;

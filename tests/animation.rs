@@ -4,6 +4,11 @@
 
 use image::codecs::png::PngDecoder;
 use image::{AnimationDecoder, DynamicImage, Frame, Rgb, RgbImage};
+use openh264::decoder::Decoder;
+use openh264::formats::YUVSource;
+use shiguredo_mp4::bitstream::h264::{LengthSize, length_prefixed_to_annexb};
+use shiguredo_mp4::boxes::SampleEntry;
+use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
@@ -40,6 +45,7 @@ fn stills(folder: &Path, count: u32) -> Vec<Still> {
 fn decoded(file: &Path) -> Vec<(RgbImage, u128)> {
     match file.extension().unwrap().to_str().unwrap() {
         "gif" => decoded_gif(file),
+        "mp4" => decoded_film(file),
         _ => {
             let reader = BufReader::new(File::open(file).unwrap());
             let frames = PngDecoder::new(reader).unwrap().apng().unwrap().into_frames().collect_frames().unwrap();
@@ -73,6 +79,32 @@ fn decoded_gif(file: &Path) -> Vec<(RgbImage, u128)> {
     shown
 }
 
+fn decoded_film(file: &Path) -> Vec<(RgbImage, u128)> {
+    let bytes = std::fs::read(file).unwrap();
+    let mut film = Mp4FileDemuxer::new();
+    while film.required_input().is_some() {
+        film.handle_input(Input { position: 0, data: &bytes });
+    }
+    assert_eq!(film.tracks().unwrap().len(), 1);
+    let mut decoder = Decoder::new().unwrap();
+    let mut shown = Vec::new();
+    while let Some(sample) = film.next_sample().unwrap() {
+        let mut stream = Vec::new();
+        if let Some(SampleEntry::Avc1(entry)) = sample.sample_entry {
+            let sets = entry.avcc_box.sps_list.iter().chain(&entry.avcc_box.pps_list);
+            sets.for_each(|set| stream.extend([&[0, 0, 0, 1], &set[..]].concat()));
+        }
+        let data = &bytes[sample.data_offset as usize..][..sample.data_size];
+        stream.extend(length_prefixed_to_annexb(data, LengthSize::FourBytes).unwrap());
+        let picture = decoder.decode(&stream).unwrap().expect("each sample is a picture");
+        let (width, height) = picture.dimensions();
+        let mut pixels = vec![0; picture.rgb8_len()];
+        picture.write_rgb8(&mut pixels);
+        shown.push((RgbImage::from_raw(width as u32, height as u32, pixels).unwrap(), u128::from(sample.duration)));
+    }
+    shown
+}
+
 /// Greatest difference in any channel of any pixel.
 fn difference(seen: &RgbImage, picture: &RgbImage) -> u8 {
     let seen = seen.pixels().zip(picture.pixels());
@@ -101,6 +133,32 @@ fn an_animation_shows_every_picture_for_its_time() {
     }
 }
 
+/// Colours of four pixels are one in a film, so that edges differ and areas do not.
+#[test]
+fn a_film_shows_every_picture_for_its_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.mp4");
+    let bytes = write(&Animation { file: file.clone(), width: None }, &stills(folder.path(), 6)).unwrap();
+    assert_eq!(bytes, std::fs::metadata(&file).unwrap().len());
+    let frames = decoded(&file);
+    let times: Vec<u128> = frames.iter().map(|(_, time)| *time).collect();
+    assert_eq!(times, [70, 70, 500, 70, 70, 2500]);
+    for (number, (frame, _)) in (0..).zip(&frames) {
+        assert_eq!(<[u32; 2]>::from(frame.dimensions()), SIZE);
+        let right = picture(number);
+        let off = frame.as_raw().iter().zip(right.as_raw()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
+        assert!(off / right.as_raw().len() as f64 <= 2.0, "frame {number}");
+        for [x, y] in [[2, 50], [12 + 7 * number, 32]] {
+            let [seen, right] = [frame, &right].map(|picture| picture.get_pixel(x, y).0);
+            assert!((0..3).all(|k| seen[k].abs_diff(right[k]) <= 12), "frame {number}: {seen:?}, not {right:?}");
+        }
+    }
+    // The same pictures give the same bits.
+    let again = folder.path().join("b.mp4");
+    write(&Animation { file: again.clone(), width: None }, &stills(folder.path(), 6)).unwrap();
+    assert!(std::fs::read(&again).unwrap() == std::fs::read(&file).unwrap());
+}
+
 #[test]
 fn ground_and_marks_keep_their_colours_in_a_gif() {
     let folder = tempfile::tempdir().unwrap();
@@ -114,20 +172,24 @@ fn ground_and_marks_keep_their_colours_in_a_gif() {
 
 #[test]
 fn pictures_that_do_not_change_still_take_their_time() {
-    for name in ["a.gif", "a.png"] {
+    for name in ["a.gif", "a.png", "a.mp4"] {
         let folder = tempfile::tempdir().unwrap();
         let one = stills(folder.path(), 1).remove(0);
         let file = folder.path().join(name);
         write(&Animation { file: file.clone(), width: None }, &[one.clone(), one.clone(), one]).unwrap();
         let frames = decoded(&file);
         assert_eq!(frames.len(), 3, "{name}");
-        assert!(frames.iter().all(|(f, _)| difference(f, &picture(0)) <= 12), "{name}");
+        // Edges of a film differ, but not from one picture to the next.
+        let right = if name == "a.mp4" { &frames[0].0 } else { &picture(0) };
+        assert!(frames.iter().all(|(f, _)| difference(f, right) <= 12), "{name}");
     }
 }
 
 #[test]
 fn an_animation_can_be_smaller_than_its_pictures() {
-    for (name, width, right) in [("a.gif", 48, [48, 27]), ("a.png", 32, [32, 18]), ("b.png", 4000, SIZE)] {
+    for (name, width, right) in
+        [("a.gif", 48, [48, 27]), ("a.png", 32, [32, 18]), ("b.png", 4000, SIZE), ("a.mp4", 48, [48, 26])]
+    {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(name);
         let options = Animation { file: file.clone(), width: Some(width) };
@@ -143,7 +205,7 @@ fn a_lost_picture_is_named_and_leaves_no_animation() {
     let folder = tempfile::tempdir().unwrap();
     let stills = stills(folder.path(), 3);
     std::fs::remove_file(&stills[1].picture).unwrap();
-    for name in ["a.gif", "a.png"] {
+    for name in ["a.gif", "a.png", "a.mp4"] {
         let file = folder.path().join(name);
         let error = write(&Animation { file: file.clone(), width: None }, &stills).unwrap_err();
         assert!(error.to_string().contains("frame_0001.png"), "{error}");

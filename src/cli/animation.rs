@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 /// Whether and where to make an animation.
 #[derive(Debug, clap::Args)]
 pub struct AnimationArgs {
-    /// Also make a looping animation of the pictures: .gif, or .png for an animated PNG [default: frames.gif in the
-    /// folder of the results]
+    /// Also make an animation of the pictures: .gif, .png for an animated PNG (both loop), or .mp4 for a film (H.264), as
+    /// slides and phones play it [default: frames.gif in the folder of the results]
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     animation: Option<Option<PathBuf>>,
     /// Make the animation smaller than the pictures

@@ -53,8 +53,9 @@ pub fn render(args: Args) -> Result<Ended> {
     use crate::base::error::Error;
     use crate::base::wording::counted;
     use crate::render::FrameWriter;
+    use crate::run::build::build;
     use crate::run::replay::Replay;
-    use crate::run::{cost, folder, identity, outputs};
+    use crate::run::{folder, identity, outputs};
 
     if let Some(words) = &args.view {
         return one_view(&args, words);
@@ -80,7 +81,7 @@ pub fn render(args: Args) -> Result<Ended> {
     }
     crate::render::check()?;
     // Another build may draw otherwise.
-    let drawn = Digest::of(format!("{} {output:?} {}", run.digest(), cost::build()));
+    let drawn = Digest::of(format!("{} {output:?} {}", run.digest(), build()));
     let is_whole: &dyn Fn(&std::path::Path) -> bool = &crate::render::png::is_whole;
     let pictures = folder.open_for_pictures(&drawn, args.resume.then_some(is_whole), None)?;
     if begun {

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Where it goes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Animation {
-    /// Its file: `.gif`, or `.png` or `.apng` for an animated PNG.
+    /// Its file: `.gif`, `.mp4`, or `.png` or `.apng` for an animated PNG.
     pub file: PathBuf,
     /// Width, when it is to be smaller than the frames (px).
     pub width: Option<u32>,
@@ -20,6 +20,8 @@ pub enum Format {
     Gif,
     /// Animated PNG.
     Apng,
+    /// H.264 in MP4.
+    Film,
 }
 
 impl Animation {
@@ -32,9 +34,13 @@ impl Animation {
         match ending.as_str() {
             "gif" => Ok(Format::Gif),
             "png" | "apng" => Ok(Format::Apng),
+            "mp4" => Ok(Format::Film),
             _ => {
                 let what = format!("an animation cannot be written as {}", self.file.display());
-                Err(Error::input(what, "give a name that ends in .gif, or in .png for an animated PNG"))
+                Err(Error::input(
+                    what,
+                    "give a name that ends in .gif, in .mp4 for a film, or in .png for an animated PNG",
+                ))
             }
         }
     }
@@ -55,10 +61,10 @@ mod tests {
 
     #[test]
     fn other_endings_are_refused_and_the_right_ones_named() {
-        for right in ["a.gif", "a.PNG", "b/a.apng"] {
+        for right in ["a.gif", "a.PNG", "b/a.apng", "a.mp4"] {
             assert!(Animation { file: right.into(), width: None }.format().is_ok(), "{right}");
         }
-        for wrong in ["a.mp4", "gif", "a"] {
+        for wrong in ["a.mov", "gif", "a"] {
             let Error::Input { help: Some(help), .. } =
                 Animation { file: wrong.into(), width: None }.format().unwrap_err()
             else {

@@ -1,9 +1,10 @@
-//! The numbered pictures as one looping animation: GIF or animated PNG.
+//! The numbered pictures as one animation: GIF or animated PNG, which loop, or a film.
 //!
 //! It is made of the pictures when the last one is written: then their number is known, which an animated PNG states
 //! at its beginning, and one palette can be chosen for all of them, which a GIF needs to be free of flicker.
 
 mod apng;
+mod film;
 mod gif;
 mod palette;
 mod pictures;
@@ -32,6 +33,7 @@ pub fn write(animation: &Animation, stills: &[Still]) -> Result<u64> {
     match animation.format()? {
         Format::Gif => gif::write(&pictures, &mut out, &refuse)?,
         Format::Apng => apng::write(&pictures, &mut out, &refuse)?,
+        Format::Film => film::write(&pictures, &mut out, &refuse)?,
     }
     out.flush().map_err(refuse)?;
     let bytes = out.get_ref().metadata().map_err(refuse)?.len();

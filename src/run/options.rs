@@ -44,24 +44,27 @@ impl RunOptions {
 
     /// What a checkpoint must know of them.
     pub(super) fn outputs(&self) -> Outputs {
-        let animation = self.animation.as_ref().map(|animation| (animation.file.clone(), animation.width));
+        let animation = self.animation.as_ref().map(|animation| (self.within(animation), animation.width));
         Outputs { frames: self.frames, recording: self.recording, animation }
     }
 
     /// What the summary says of them.
     pub(super) fn written(&self) -> OutputFiles {
-        let whole = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.into());
-        let animation = self.animation.as_ref().map(|animation| {
-            let file = whole(&animation.file);
-            file.strip_prefix(whole(&self.out)).unwrap_or(&file).to_string_lossy().into_owned()
-        });
+        let animation = self.animation.as_ref().map(|animation| self.within(animation).to_string_lossy().into_owned());
         OutputFiles { frames: self.frames, recording: self.recording, animation }
+    }
+
+    /// The file of an animation: within the folder of the results, which may be moved, or from the root.
+    fn within(&self, animation: &Animation) -> PathBuf {
+        let whole = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.into());
+        let file = whole(&animation.file);
+        file.strip_prefix(whole(&self.out)).map_or(file.clone(), Path::to_owned)
     }
 
     /// Those of a run that goes on.
     pub(super) fn of_resumed(out: &Path, outputs: &Outputs, threads: Option<usize>) -> Self {
         let Outputs { frames, recording, animation } = outputs.clone();
-        let animation = animation.map(|(file, width)| Animation { file, width });
+        let animation = animation.map(|(file, width)| Animation { file: out.join(file), width });
         let (overwrite, wait, live) = (true, false, None);
         Self { out: out.into(), overwrite, wait, threads, frames, animation, recording, live }
     }
@@ -74,6 +77,6 @@ pub struct Outputs {
     pub frames: bool,
     /// A recording.
     pub recording: bool,
-    /// File and width (px) of an animation.
+    /// File of an animation, within the folder of the results or from the root, and its width (px).
     pub animation: Option<(PathBuf, Option<u32>)>,
 }

@@ -134,7 +134,7 @@ pub(super) fn frames(
     let origin = Origin::of(spec);
     let writer = crate::render::FrameWriter::new(&at, &spec.output)?;
     // Another build may draw otherwise.
-    let drawn = Digest::of(format!("{} {:?} {}", origin.run, spec.output, super::cost::build()));
+    let drawn = Digest::of(format!("{} {:?} {}", origin.run, spec.output, super::build::build()));
     let is_whole: &dyn Fn(&Path) -> bool = &crate::render::png::is_whole;
     let pictures = OutFolder::check(&at, true)?;
     let pictures = pictures.open_for_pictures(&drawn, on.then_some(is_whole), Some(&options.outputs()))?;

@@ -9,7 +9,7 @@ use crate::engine::measure::MEAN_LAG;
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::Observer;
 use crate::observe::summary::{Break, RunSummary};
-use crate::run::cost::build;
+use crate::run::build::build;
 use crate::run::folder::{SCENE, has_checkpoint};
 use crate::run::{Resumable, RunOptions, cost, lock, outputs, run_watched, summarise};
 use crate::scene::spec::{PathSpec, Spec};

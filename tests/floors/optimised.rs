@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 const COLD: [(&str, &[&str]); 9] = [
     (
         "reads or writes a few kB per run",
-        &["miette", "schemars", "serde_json", "strsim", "thiserror", "toml", "toml_edit"],
+        &["miette", "schemars", "serde_json", "strsim", "thiserror", "shiguredo_mp4", "toml", "toml_edit"],
     ),
     ("is generic: compiled with our own code", &["nalgebra", "levenberg-marquardt", "postcard", "serde", "uom"]),
     ("describes a table once", &["arrow-schema"]),

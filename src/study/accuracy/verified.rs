@@ -4,7 +4,7 @@
 use crate::base::error::Result;
 use crate::engine::REVISION;
 use crate::observe::files::write_whole;
-use crate::run::cost::build;
+use crate::run::build::build;
 use crate::study::column::{self, Column};
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series, Slope};
 use crate::study::runner::{Case, CaseRunner, CaseStore, Identity, Status};

@@ -10,6 +10,7 @@ use crate::observe::animation::{Animation, Format};
 use crate::observe::origin::{RUN_KEYWORD, STEP_KEYWORD};
 use crate::run::folder::{FRAMES, is_undrawn};
 use rayon::prelude::*;
+use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -174,11 +175,32 @@ fn frames_in(file: &Path) -> Result<usize, String> {
     let animation = Animation { file: file.into(), width: None };
     match animation.format().map_err(|e| e.to_string())? {
         Format::Apng => picture(file).map(|picture| picture.frames),
+        Format::Film => {
+            let bytes = regular::read(file, regular::LONGEST_TABLE).map_err(|e| e.to_string())?;
+            film_frames(&bytes).map_err(|e| format!("it is damaged, or cut off: {e}"))
+        }
         Format::Gif => {
             let bytes = regular::read(file, regular::LONGEST_TABLE).map_err(|e| e.to_string())?;
             gif_frames(&bytes).ok_or_else(|| "it is damaged, or cut off".into())
         }
     }
+}
+
+/// Pictures of an MP4 file, all of which must lie in it.
+fn film_frames(bytes: &[u8]) -> Result<usize, String> {
+    let mut film = Mp4FileDemuxer::new();
+    // It asks for one part after the other, and for no more once something is wrong.
+    while film.required_input().is_some() {
+        film.handle_input(Input { position: 0, data: bytes });
+    }
+    let mut frames = 0;
+    while let Some(sample) = film.next_sample().map_err(|e| e.to_string())? {
+        if sample.data_offset + sample.data_size as u64 > bytes.len() as u64 {
+            return Err(format!("picture {} lies beyond its end", frames + 1));
+        }
+        frames += 1;
+    }
+    Ok(frames)
 }
 
 /// Pictures of a GIF file; `None` unless its blocks follow each other up to the trailer, which ends it. (GIF89a

@@ -6,7 +6,7 @@ use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::engine::REVISION;
 use crate::observe::files::write_whole;
-use crate::run::cost;
+use crate::run::build::build;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -165,7 +165,7 @@ impl CaseStore {
         regular::make_folder(&folder)?;
         write_whole(&folder.join(file), &identity.definition)?;
         let path = folder.join(RECORD);
-        let record = Record { identity: identity.clone(), build: cost::build(), result };
+        let record = Record { identity: identity.clone(), build: build(), result };
         let text = serde_json::to_string(&record).expect("a record holds nothing that JSON lacks");
         write_whole(&path, &sealed(&text))?;
         serde_json::from_str(&text).map_err(|e| Error::io("cannot read back", &path, std::io::Error::other(e)))

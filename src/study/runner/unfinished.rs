@@ -4,7 +4,7 @@
 
 use super::store::{CaseStore, Identity};
 use crate::base::error::{Error, Result};
-use crate::run::cost::build_id;
+use crate::run::build::build_id;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io::ErrorKind;

@@ -3,7 +3,7 @@
 use super::definition::Definition;
 use super::quantity::Quantity;
 use crate::base::units::{self, Dimension};
-use crate::run::cost::build;
+use crate::run::build::build;
 use crate::scene::spec::{LayerSpec, Spec};
 use crate::study::runner::{CaseStore, Record};
 use crate::study::statistics::Statistics;
