@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use strandsnap::base::error::{Error, Result};
 use strandsnap::engine::Engine;
 use strandsnap::observe::partial;
-use strandsnap::run::checkpoint::{Identity, Keeper, Now};
+use strandsnap::run::checkpoint::{Identity, Keeper, LoopPosition};
 use strandsnap::run::folder::TRAJECTORY;
 use strandsnap::run::{Outputs, assemble};
 use strandsnap::scene::write;
@@ -34,7 +34,7 @@ pub fn print(args: &Args) -> Result<()> {
         gathered += begin.elapsed();
         bytes = state.len();
         let begin = Instant::now();
-        keeper.keep(Now {
+        keeper.keep(LoopPosition {
             step: engine.steps(),
             driver: Vec::new(),
             engine: state,
