@@ -27,12 +27,12 @@ use tungstenite::{Message, WebSocket};
 const PATIENCE: Duration = Duration::from_secs(60);
 const SIZE: [u32; 2] = [320, 200];
 
-/// The folder of a run that was not simulated.
-fn folder() -> TempDir {
+/// The folder of a run that was not simulated, with so many snapshots.
+fn folder(snapshots: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let spec = scene::load("ka4", &[]).unwrap().spec;
     let file = folder.path().join("trajectory.bin");
-    Run::new(12).show(&mut TrajectoryWriter::new(&file, Origin::of(&spec)).unwrap()).unwrap();
+    Run::new(snapshots).show(&mut TrajectoryWriter::new(&file, Origin::of(&spec)).unwrap()).unwrap();
     std::fs::write(folder.path().join("scene.toml"), scene::write::to_toml(&spec)).unwrap();
     folder
 }
@@ -53,12 +53,18 @@ struct Shown {
 impl Shown {
     /// `None`, said aloud, when there is no graphics adapter.
     fn start(test: &str) -> Option<Self> {
+        Self::beside(test, None)
+    }
+
+    /// The same with another run beside it.
+    fn beside(test: &str, with: Option<&Path>) -> Option<Self> {
         if strandsnap::render::check().is_err() {
             skipped(test, "no graphics adapter");
             return None;
         }
-        let folder = folder();
-        let options = Options { command: "strandsnap render RUN".into(), ..Options::default() };
+        let folder = folder(12);
+        let with = with.map(Path::to_owned);
+        let options = Options { command: "strandsnap render RUN".into(), with, ..Options::default() };
         let server = Server::open(folder.path(), options).unwrap();
         let (address, stop) = (server.address(), Arc::new(AtomicBool::new(false)));
         let flag = stop.clone();
@@ -243,6 +249,44 @@ fn render_and_explore_draw_the_same_view() {
         .unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     assert_eq!(whole, std::fs::read(out.join("view.png")).unwrap(), "another picture than the program's");
+}
+
+#[test]
+fn two_runs_stand_side_by_side_at_the_same_strain() {
+    const NAME: &str = "two_runs_stand_side_by_side_at_the_same_strain";
+    let beside = folder(7);
+    let Some(shown) = Shown::beside(NAME, Some(beside.path())) else { return };
+    let strains =
+        |count: usize| Run::new(count).snapshots().iter().map(|s| s.sample.strain * 1e2).collect::<Vec<f64>>();
+    let (left, right) = (strains(12), strains(7));
+    let strain = 0.5 * (left[9] + left[10]);
+    let after = right.iter().position(|x| *x >= strain).unwrap();
+    let state = (after - 1) as f64 + (strain - right[after - 1]) / (right[after] - right[after - 1]);
+    let facts = json_of(&shown.fetch("/run.json"));
+    assert_eq!(facts["other"]["states"].as_array().unwrap().len(), 7);
+    let mut socket = shown.socket();
+    let view = close_up(9.5);
+    say(&mut socket, json!({ "look": { "number": 1, "size": SIZE, "view": view } }));
+    let told = next_words(&mut socket, "state");
+    let x = told["other"]["x"].as_f64().unwrap();
+    assert!((told["x"].as_f64().unwrap() - strain).abs() < 1e-9 && (x - strain).abs() < 1e-9, "{told}");
+    next_picture(&mut socket, 0);
+    say(&mut socket, json!({ "shown": 1 }));
+    let (_, _, whole) = next_picture(&mut socket, 1);
+    let whole = image::load_from_memory(&whole).unwrap().into_rgb8();
+    let half = [SIZE[0] / 2, SIZE[1]];
+    for (run, state, from) in [(shown.folder.path(), 9.5, 0), (beside.path(), state, half[0])] {
+        let alone = picture(run, &View { state, ..view.clone() }, half).unwrap();
+        let alone = image::load_from_memory(&alone).unwrap().into_rgb8();
+        let part = image::imageops::crop_imm(&whole, from, 0, half[0], half[1]).to_image();
+        let differing = part.pixels().zip(alone.pixels()).filter(|(a, b)| a != b).count();
+        assert_eq!(differing, 0, "pixels of the part from {from} px");
+    }
+    // What is in the middle of a part is picked in its own run.
+    for (at, other) in [(0.25, false), (0.75, true)] {
+        say(&mut socket, json!({ "pick": { "number": 1, "size": SIZE, "at": [at, 0.5], "view": view } }));
+        assert_eq!(next_words(&mut socket, "picked")["other"], other);
+    }
 }
 
 #[test]

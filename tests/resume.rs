@@ -168,7 +168,7 @@ fn what_was_changed_or_is_not_there_is_refused() {
     let identity = run::checkpoint::Identity::new(resolved);
     fs::write(out.join("trajectory.bin.partial"), "").unwrap();
     let mut keeper = run::checkpoint::Keeper::new(&out, loaded.spec.output.checkpoint, identity, outputs, None);
-    let now = run::checkpoint::Now {
+    let now = run::checkpoint::LoopPosition {
         step: 150,
         driver: Vec::new(),
         engine: Vec::new(),

@@ -24,6 +24,13 @@ let chosen = null;       // what the server told of the selected wire
 let particle = null;     // the particle that was clicked
 let playing = false;
 
+// With a second run, each has half of the picture.
+const panes = run.other ? 2 : 1;
+const pane = () => {
+  const { width, height } = stage.getBoundingClientRect();
+  return { width: width / panes, height };
+};
+
 // ---- The socket: one view is asked for at a time, always the newest. -----------------------------------------------
 let socket, number = 0, dirty = true, retry = 500;
 const asked = new Map();
@@ -124,12 +131,12 @@ const spread = ([x, y, z]) => {
   const [ax, ay] = run.body.axis, apart = 1 + view.explode;
   return [ax + (x - ax) * apart, ay + (y - ay) * apart, z];
 };
-function projector(of) {
-  const rotate = turned(of), { width, height } = stage.getBoundingClientRect(), scale = height / of.height;
-  const centre = [of.centre[0], of.centre[1], of.centre[2] + (of.follow !== undefined ? now?.follow_offset ?? 0 : 0)];
+function projector(of, told, left) {
+  const rotate = turned(of), { width, height } = pane(), scale = height / of.height;
+  const centre = [of.centre[0], of.centre[1], of.centre[2] + (of.follow !== undefined ? told?.follow_offset ?? 0 : 0)];
   return p => {
     const [x, y, z] = rotate(p.map((v, k) => v - centre[k]));
-    return [width / 2 + x * scale, height / 2 - y * scale, z];
+    return [left + width / 2 + x * scale, height / 2 - y * scale, z];
   };
 }
 function move([dx, dy]) {
@@ -137,12 +144,12 @@ function move([dx, dy]) {
   const by = untwisted(view, [-dx * scale, dy * scale, 0]);
   view.centre = view.centre.map((c, k) => c + by[k]);
 }
-function zoom(factor, [x, y] = [0.5, 0.5]) {
-  const { width, height } = stage.getBoundingClientRect();
+function zoom(factor, [x, y] = [0.5 / panes, 0.5]) {
+  const { width, height } = pane();
   const before = view.height;
   view.height = clamp(before * factor, 0.02 * run.body.radius, 20 * Math.max(run.body.high[2] - run.body.low[2], run.body.radius));
   const scale = (before - view.height) / height;
-  const by = untwisted(view, [(x - 0.5) * width * scale, (0.5 - y) * height * scale, 0]);
+  const by = untwisted(view, [(x * panes % 1 - 0.5) * width * scale, (0.5 - y) * height * scale, 0]);
   view.centre = view.centre.map((c, k) => c + by[k]);
 }
 function orbit(dx, dy) {
@@ -154,7 +161,7 @@ function fit() {
   delete view.follow;
   const reach = now?.reach ?? [0, 1, 2].map(k => [run.body.low[k], run.body.high[k]]);
   view.centre = reach.map(([low, high]) => (low + high) / 2);
-  const rotate = turned(view), { width, height } = stage.getBoundingClientRect();
+  const rotate = turned(view), { width, height } = pane();
   const apart = 1 + view.explode;
   let [w, h] = [0, 0];
   for (let k = 0; k < 8; k++) {
@@ -285,15 +292,18 @@ function picked(which, found) {
   }
   if (why === "click") {
     particle = found;
-    select(found?.wire ?? null);
+    const wire = found?.wire ?? null;
+    // The second run may have more wires than the first.
+    select(wire !== null && wire < run.wires.length ? wire : null);
   }
 }
-const wireName = k => `Wire ${run.wires[k].number}, ${run.layers[run.wires[k].layer]} layer`;
+const wireName = (k, of = run) => `Wire ${of.wires[k].number}, ${of.layers[of.wires[k].layer]} layer`;
 function showTip([x, y], found) {
   const tip = $("tip");
   tip.hidden = !found;
   if (!found) return;
-  const lines = [found.wire === null ? `Free sphere ${found.particle}` : wireName(found.wire)];
+  const of = found.other ? run.other : run;
+  const lines = [found.wire === null ? `Free sphere ${found.particle}` : wireName(found.wire, of)];
   if (found.stress !== null) lines.push(`true axial stress ${fixed(found.stress, 0)} MPa`, `plastic strain ${fixed(found.plastic_strain, 1)} %`);
   lines.push(`z ${fixed(found.position[2], 2)} mm, before loading ${fixed(found.rest_z, 2)} mm`);
   tip.textContent = lines.join("\n");
@@ -403,24 +413,37 @@ function drawOverlay() {
   overlay.replaceChildren();
   const { width, height } = stage.getBoundingClientRect();
   overlay.setAttribute("viewBox", `0 0 ${width} ${height}`);
-  const project = projector(shown.view);
+  const part = pane().width;
+  drawBreaks(run, now, 0, part);
+  if (run.other && now.other) {
+    drawBreaks(run.other, now.other, part, width);
+    element(overlay, "line", { class: "axis", x1: part, x2: part, y1: 0, y2: height });
+    [[run, now, 0], [run.other, now.other, part]].forEach(([of, told, left]) => {
+      element(overlay, "text", { class: "caption", x: left + 10, y: 18 }, `${of.name}, ${told.when}`);
+    });
+  }
+  drawTriad(height);
+  drawScale(part, height);
+}
+// The breaks of a run in its part of the picture.
+function drawBreaks(of, told, left, right) {
+  const { height } = pane(), project = projector(shown.view, told, left), firsts = firstsOf(of);
   const taken = [];
-  for (const { order, at } of now.breaks) {
-    const r = run.ruptures[order - 1];
+  for (const { order, at } of told.breaks) {
+    const r = of.ruptures[order - 1];
     if (view.hidden_layers.includes(r.layer) || view.hidden_wires.includes(r.wire) || (view.cut !== undefined && at[2] > view.cut)) continue;
     const [x, y] = project(spread(at));
-    if (x < 0 || y < 0 || x > width || y > height) continue;
+    if (x < left || y < 0 || x > right || y > height) continue;
     element(overlay, "circle", { class: "mark", cx: x, cy: y, r: r.wire === view.selected ? 9 : 5 });
     if (r.first_of_wire && taken.every(p => Math.hypot(p[0] - x, p[1] - y) > 20)) {
       taken.push([x, y]);
       element(overlay, "circle", { class: "badge", cx: x, cy: y - 16, r: 8 });
-      element(overlay, "text", { class: "number", x, y: y - 16 }, run.wires[r.wire].order === order ? firsts.indexOf(r.wire) + 1 : order);
+      element(overlay, "text", { class: "number", x, y: y - 16 }, of.wires[r.wire].order === order ? firsts.indexOf(r.wire) + 1 : order);
     }
   }
-  drawTriad(height);
-  drawScale(width, height);
 }
-const firsts = run.ruptures.filter(r => r.first_of_wire).map(r => r.wire);
+const firstsOf = of => of.ruptures.filter(r => r.first_of_wire).map(r => r.wire);
+const firsts = firstsOf(run);
 function drawTriad(height) {
   const rotate = turned(shown.view), [x, y] = [40, height - 40];
   [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]].forEach(([name, axis]) => {
@@ -439,9 +462,12 @@ function drawScale(width, height) {
 }
 
 function drawNow() {
-  const layers = now.layers.map((l, k) => `${run.layers[k]} ${l.whole} of ${l.of}`).join(", ");
-  const stress = run.pulled ? `, nominal stress ${fixed(now.stress, 1)} MPa` : "";
-  $("now").textContent = `${now.when}${stress}, ${fixed(now.time_ms, 3)} ms. Whole wires: ${layers || "none"}. Broken bonds: ${now.bonds_broken}.`;
+  const words = (of, told) => {
+    const layers = told.layers.map((l, k) => `${of.layers[k]} ${l.whole} of ${l.of}`).join(", ");
+    const stress = of.pulled ? `, nominal stress ${fixed(told.stress, 1)} MPa` : "";
+    return `${told.when}${stress}, ${fixed(told.time_ms, 3)} ms. Whole wires: ${layers || "none"}. Broken bonds: ${told.bonds_broken}.`;
+  };
+  $("now").textContent = now.other ? `${words(run, now)} Right: ${words(run.other, now.other)}` : words(run, now);
   $("cut").min = now.reach[2][0];
   $("cut").max = now.reach[2][1];
   if (view.cut === undefined) $("cut").value = now.reach[2][1];
@@ -454,9 +480,11 @@ function drawCurve() {
   const svg = $("curve");
   if (!run.pulled) return;
   const history = view.selected === undefined ? [] : run.wires[view.selected].history;
-  const [low, high] = extent([...run.curve.y, ...history, 0]);
-  curve = frame(svg, { x: extent(run.curve.x), y: [low, 1.05 * high], xTitle: run.abscissa, yTitle: "nominal stress (MPa)" });
+  const beside = run.other?.curve ?? { x: [], y: [] };
+  const [low, high] = extent([...run.curve.y, ...beside.y, ...history, 0]);
+  curve = frame(svg, { x: extent([...run.curve.x, ...beside.x]), y: [low, 1.05 * high], xTitle: run.abscissa, yTitle: "nominal stress (MPa)" });
   line(svg, curve, run.curve.x, run.curve.y, "line");
+  if (run.other) line(svg, curve, beside.x, beside.y, "line beside");
   if (history.length) line(svg, curve, run.curve.x, history, "wire");
   const at = now ? now.x : run.states[0].x;
   element(svg, "line", { class: "now", x1: curve.px(at), x2: curve.px(at), y1: curve.top, y2: curve.bottom });
@@ -467,7 +495,7 @@ function drawCurve() {
     element(dot, "title", {}, `break ${r.order}: wire ${run.wires[r.wire].number}, ${r.when}`);
   }
   const selected = view.selected === undefined ? "" : `; blue: ${wireName(view.selected).toLowerCase()} at mid-gauge`;
-  svg.setAttribute("aria-label", `Nominal stress over strain, ${run.ruptures.length} breaks${selected}`);
+  svg.setAttribute("aria-label", `Nominal stress over strain, ${run.ruptures.length} breaks${selected}${run.other ? `; dashed: ${run.other.name}, right` : ""}`);
 }
 $("curve").onclick = event => {
   if (!curve) return;
@@ -538,8 +566,9 @@ function drawParticle() {
     [dt.textContent, dd.textContent] = [name, value];
     list.append(dt, dd);
   };
-  const p = particle;
-  add("particle", p.wire === null ? `free sphere ${p.particle}` : `${p.number_in_wire} of ${p.of} in wire ${run.wires[p.wire].number}`);
+  const p = particle, of = p.other ? run.other : run;
+  if (run.other) add("run", of.name);
+  add("particle", p.wire === null ? `free sphere ${p.particle}` : `${p.number_in_wire} of ${p.of} in wire ${of.wires[p.wire].number}`);
   add("position", `${p.position.map(v => fixed(v, 3)).join(", ")} mm (z ${fixed(p.rest_z, 3)} mm before loading)`);
   add("radius", `${fixed(p.radius, 4)} mm`);
   add("speed", `${fixed(p.speed, 3)} m/s`);

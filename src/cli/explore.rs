@@ -9,6 +9,9 @@ use std::path::PathBuf;
 pub struct Args {
     /// Folder of a run, such as out/ka4; one that was stopped will do
     run: PathBuf,
+    /// A second run, side by side with the first one: the same camera, strain and colours
+    #[arg(long, value_name = "RUN")]
+    with: Option<PathBuf>,
     /// Address to listen at; any but a loopback one lets others in who know the token
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1")]
     bind: IpAddr,
@@ -34,7 +37,7 @@ pub fn explore(args: Args) -> Result<Ended> {
     use crate::explore::{Options, Server};
 
     let command = format!("strandsnap render {}", quoted(&args.run.to_string_lossy()));
-    let options = Options { bind: args.bind, port: args.port, keep: args.keep, command };
+    let options = Options { bind: args.bind, port: args.port, keep: args.keep, with: args.with, command };
     if !args.bind.is_loopback() {
         eprintln!(
             "WARNING: {} can be reached from other machines, and what is sent is not encrypted: whoever reads the address \

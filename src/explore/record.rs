@@ -93,6 +93,33 @@ impl Record {
         }
     }
 
+    /// Strain (%) or, in a run that is not pulled, time (ms) at a state.
+    pub fn moment_of(&self, state: f64) -> f64 {
+        let abscissa = Abscissa::of(&self.source);
+        let at = |number: usize| abscissa.value(&self.snapshots[number.min(self.states() - 1)].sample);
+        let before = state as usize;
+        at(before) + (at(before + 1) - at(before)) * state.fract()
+    }
+
+    /// The first state at which strain (%) or time (ms) is that of `moment`; the first or the last one where it never is.
+    pub fn state_at(&self, moment: f64) -> f64 {
+        let abscissa = Abscissa::of(&self.source);
+        let at = |number: usize| abscissa.value(&self.snapshots[number].sample);
+        match (0..self.states()).find(|number| at(*number) >= moment) {
+            None => (self.states() - 1) as f64,
+            Some(0) => 0.0,
+            Some(after) => {
+                let [low, high] = [at(after - 1), at(after)];
+                (after - 1) as f64 + (moment - low) / (high - low)
+            }
+        }
+    }
+
+    /// Ends of the run's own colour scale; `None` where colours are no numbers.
+    pub fn range(&self, by: ColourBy) -> Option<[f64; 2]> {
+        ColourScale::new(self.info(), by).shown_range()
+    }
+
     /// Name of the scene.
     pub fn name(&self) -> &str {
         &self.source.info.name

@@ -1,15 +1,13 @@
 //! The address at which a run can be looked at: who may come in, how many, and when it ends.
 
-use super::draw::Artist;
 use super::http::{self, Refusal, Request};
-use super::record::Record;
 use super::session;
-use super::shared::Shared;
+use super::shared::{Pane, Shared};
 use crate::base::error::{Error, Result};
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Write};
 use std::net::{IpAddr, Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -46,13 +44,15 @@ pub struct Options {
     pub port: u16,
     /// Stay when the last page has been closed.
     pub keep: bool,
+    /// Folder of a second run, shown beside the first one.
+    pub with: Option<PathBuf>,
     /// Command that the page shows in front of a view: `strandsnap render out/ka4`.
     pub command: String,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { bind: Ipv4Addr::LOCALHOST.into(), port: 0, keep: false, command: String::new() }
+        Self { bind: Ipv4Addr::LOCALHOST.into(), port: 0, keep: false, with: None, command: String::new() }
     }
 }
 
@@ -81,10 +81,10 @@ impl Server {
     /// Reads the run in a folder, opens the graphics adapter and listens.
     ///
     /// # Errors
-    /// When the run cannot be read, there is no adapter, or the address is taken.
+    /// When a run cannot be read, there is no adapter, or the address is taken.
     pub fn open(run: &Path, options: Options) -> Result<Self> {
-        let record = Record::read(run)?;
-        let artist = Artist::new(&record)?;
+        let other = options.with.as_deref().map(Pane::open).transpose()?;
+        let shared = Shared::new(Pane::open(run)?, other)?;
         let lost = |e: std::io::Error| Error::Missing {
             what: format!("cannot listen at {} port {}: {e}", options.bind, options.port),
             help: Some("choose another address or port with --bind and --port; port 0 is a free one".into()),
@@ -92,13 +92,12 @@ impl Server {
         let listener = TcpListener::bind((options.bind, options.port)).map_err(lost)?;
         listener.set_nonblocking(true).map_err(lost)?;
         let bound = listener.local_addr().map_err(lost)?;
-        let mut facts = record.facts();
-        facts["adapter"] = artist.adapter().into();
+        let mut facts = shared.facts();
         facts["command"] = options.command.as_str().into();
         let service = Service {
             facts: facts.to_string().into_bytes(),
             token: token()?,
-            shared: Shared::new(record, artist),
+            shared,
             bound,
             connections: AtomicUsize::new(0),
             browsers: AtomicUsize::new(0),
@@ -120,12 +119,12 @@ impl Server {
 
     /// Name of the graphics adapter that draws.
     pub fn adapter(&self) -> String {
-        self.service.shared.artist().adapter().to_owned()
+        self.service.shared.run.artist().adapter().to_owned()
     }
 
-    /// What is wrong with the run's folder, in sentences.
-    pub fn notes(&self) -> &[String] {
-        self.service.shared.record.notes()
+    /// What is wrong with the runs' folders, in sentences.
+    pub fn notes(&self) -> impl Iterator<Item = &String> {
+        self.service.shared.notes()
     }
 
     /// Answers until `stop` is set, or until a while after the last page has been closed.
@@ -294,8 +293,20 @@ impl Service {
             self.token,
             request.host,
         );
-        let name = maud::html! { (self.shared.record.name()) }.into_string();
-        let body = PAGE.replace("{{name}}", &name).replace("{{headline}}", &self.shared.record.headline());
+        let headlines = self.shared.headlines();
+        let compared = headlines.len() > 1;
+        let names: Vec<&str> = headlines.iter().map(|(name, _)| *name).collect();
+        let name = maud::html! { (names.join(" and ")) }.into_string();
+        let headline: String = headlines
+            .iter()
+            .enumerate()
+            .map(|(number, (name, headline))| {
+                let side = ["left", "right"][number];
+                maud::html! { @if compared { b { (name) ", " (side) ": " } } (maud::PreEscaped(headline)) " " }
+                    .into_string()
+            })
+            .collect();
+        let body = PAGE.replace("{{name}}", &name).replace("{{headline}}", headline.trim_end());
         http::respond(stream, "200 OK", "text/html; charset=utf-8", &headers, body.as_bytes())
     }
 

@@ -220,15 +220,13 @@ impl Session<'_> {
                 Ok(())
             }
             Ask::Pick { number, size, at, view } => {
-                let picked = self.shared.check(&view).map(|()| {
-                    let picked = self.shared.artist().pick(&self.shared.record, &view, size, at);
-                    picked.map(|picked| self.shared.record.particle(picked, view.state))
-                });
+                let picked = self.shared.check(&view).map(|()| self.shared.pick(&view, size, at));
                 self.answer(picked.map(|picked| json!({ "picked": picked, "number": number })))
             }
             Ask::Wire { wire, state } => {
-                let last = (self.shared.record.states() - 1) as f64;
-                let told = self.shared.record.wire(wire, state.clamp(0.0, last));
+                let record = &self.shared.run.record;
+                let last = (record.states() - 1) as f64;
+                let told = record.wire(wire, state.clamp(0.0, last));
                 self.say(&json!({ "wire": told }))
             }
             Ask::Picture { size, view } => {
@@ -257,7 +255,7 @@ impl Session<'_> {
 
     fn drawn(&self, view: &View, size: [u32; 2]) -> Result<Picture> {
         self.shared.check(view)?;
-        self.shared.artist().draw(&self.shared.record, view, size)
+        self.shared.draw(view, size)
     }
 
     fn draw_moving(&mut self, look: Look) -> std::result::Result<(), End> {
@@ -301,11 +299,12 @@ impl Session<'_> {
         let colour = |view: &View| (view.colour, view.range);
         let state = told.as_ref().is_none_or(|told| place(told) != place(&look.view));
         if state {
-            let state = self.shared.record.state(&look.view);
+            let state = self.shared.state(&look.view);
             self.say(&json!({ "state": state }))?;
         }
         if state || told.is_none_or(|told| colour(&told) != colour(&look.view)) {
-            let ready = self.shared.artist().ready(&self.shared.record, &look.view, look.size);
+            let run = &self.shared.run;
+            let ready = run.artist().ready(&run.record, &look.view, self.shared.part(look.size));
             self.send_picture(Kind::Colours, look.number, look.size, Duration::ZERO, ready.colours.as_flattened())?;
         }
         Ok(())

@@ -1,22 +1,30 @@
-//! What all sessions share: the run, and the one who draws it.
+//! What all sessions share: the run, a second one beside it, and those who draw them.
 
-use super::draw::Artist;
+use super::draw::{Artist, Picture};
 use super::record::Record;
 use super::view::View;
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
+use image::{RgbImage, imageops};
+use serde_json::{Value, json};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The run, the one who draws it, and whether the server ends.
-pub(super) struct Shared {
+/// A run and the one who draws it.
+pub(super) struct Pane {
     pub record: Record,
     artist: Mutex<Artist>,
-    pub ended: AtomicBool,
 }
 
-impl Shared {
-    pub fn new(record: Record, artist: Artist) -> Self {
-        Self { record, artist: Mutex::new(artist), ended: AtomicBool::new(false) }
+impl Pane {
+    /// Reads the run in a folder and opens the graphics adapter.
+    ///
+    /// # Errors
+    /// When the run cannot be read, or there is no adapter.
+    pub fn open(run: &Path) -> Result<Self> {
+        let record = Record::read(run)?;
+        let artist = Mutex::new(Artist::new(&record)?);
+        Ok(Self { record, artist })
     }
 
     /// The one who draws, when it is free. A picture that failed in the middle leaves nothing half done.
@@ -24,8 +32,132 @@ impl Shared {
         self.artist.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    fn draw(&self, view: &View, size: [u32; 2]) -> Result<Picture> {
+        self.artist().draw(&self.record, view, size)
+    }
+}
+
+/// The run, the one that it is compared with, and whether the server ends.
+pub(super) struct Shared {
+    pub run: Pane,
+    other: Option<Pane>,
+    pub ended: AtomicBool,
+}
+
+impl Shared {
+    /// # Errors
+    /// [`Error::Input`] when one of the two is pulled and the other is not: their moments cannot be told from each other.
+    pub fn new(run: Pane, other: Option<Pane>) -> Result<Self> {
+        if let Some(other) = &other
+            && other.record.info().is_pulled() != run.record.info().is_pulled()
+        {
+            return Err(Error::input(
+                format!(
+                    "{} and {} cannot be compared: only one of them is pulled",
+                    run.record.name(),
+                    other.record.name()
+                ),
+                "give two runs that are pulled, or two that are not",
+            ));
+        }
+        Ok(Self { run, other, ended: AtomicBool::new(false) })
+    }
+
     /// Checks that the run has what a view names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the key.
     pub fn check(&self, view: &View) -> Result<()> {
-        view.check(self.record.info(), self.record.states())
+        view.check(self.run.record.info(), self.run.record.states())
+    }
+
+    /// Size of a run's part of a picture (px).
+    pub fn part(&self, [width, height]: [u32; 2]) -> [u32; 2] {
+        [if self.other.is_some() { width / 2 } else { width }, height]
+    }
+
+    /// The run that is drawn at a place of the picture, given in shares of its width, and the place in its own part.
+    pub fn pane_at(&self, right: f64) -> (&Pane, f64) {
+        match &self.other {
+            None => (&self.run, right),
+            Some(_) if right < 0.5 => (&self.run, 2.0 * right),
+            Some(other) => (other, 2.0 * right - 1.0),
+        }
+    }
+
+    /// A view as it is of the run or of the other one.
+    pub fn view_of(&self, pane: &Pane, view: &View) -> View {
+        match &self.other {
+            Some(other) if std::ptr::eq(other, pane) => self.other_view(&other.record, view),
+            _ => view.clone(),
+        }
+    }
+
+    /// The same view of the other run: the same camera, layers, wires and colours, at the same strain or time.
+    fn other_view(&self, other: &Record, view: &View) -> View {
+        let info = other.info();
+        let there = |of: &[usize], count: usize| of.iter().copied().filter(|number| *number < count).collect();
+        View {
+            state: other.state_at(self.run.record.moment_of(view.state)),
+            range: view.range.or_else(|| self.run.record.range(view.colour)),
+            hidden_layers: there(&view.hidden_layers, info.layers.len()),
+            hidden_wires: there(&view.hidden_wires, info.wires.len()),
+            selected: view.selected.filter(|wire| *wire < info.wires.len()),
+            ..view.clone()
+        }
+    }
+
+    /// Draws a view that [`Self::check`] has let through: both runs side by side, where there are two.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a size that cannot be drawn, [`Error::Missing`] when the adapter is lost.
+    pub fn draw(&self, view: &View, size: [u32; 2]) -> Result<Picture> {
+        let Some(other) = &self.other else { return self.run.draw(view, size) };
+        let part = self.part(size);
+        let [left, right] = [self.run.draw(view, part)?, other.draw(&self.other_view(&other.record, view), part)?];
+        let mut image = RgbImage::new(size[0], size[1]);
+        imageops::replace(&mut image, &left.image, 0, 0);
+        imageops::replace(&mut image, &right.image, i64::from(size[0] - part[0]), 0);
+        Ok(Picture { image, took: left.took + right.took })
+    }
+
+    /// What does not depend on what is looked at, of both runs.
+    pub fn facts(&self) -> Value {
+        let mut facts = self.run.record.facts();
+        facts["adapter"] = self.run.artist().adapter().into();
+        if let Some(other) = &self.other {
+            facts["other"] = other.record.facts();
+        }
+        facts
+    }
+
+    /// What changes with the state, of both runs.
+    pub fn state(&self, view: &View) -> Value {
+        let mut state = self.run.record.state(view);
+        if let Some(other) = &self.other {
+            state["other"] = other.record.state(&self.other_view(&other.record, view));
+        }
+        state
+    }
+
+    /// What broke first, as markup, of each run.
+    pub fn headlines(&self) -> Vec<(&str, String)> {
+        let all = [Some(&self.run), self.other.as_ref()];
+        all.into_iter().flatten().map(|pane| (pane.record.name(), pane.record.headline())).collect()
+    }
+
+    /// What is wrong with the runs' folders, in sentences.
+    pub fn notes(&self) -> impl Iterator<Item = &String> {
+        self.run.record.notes().iter().chain(self.other.iter().flat_map(|other| other.record.notes()))
+    }
+
+    /// A picked particle's numbers, and whether it is one of the other run.
+    pub fn pick(&self, view: &View, size: [u32; 2], [right, down]: [f64; 2]) -> Option<Value> {
+        let (pane, right) = self.pane_at(right);
+        let view = self.view_of(pane, view);
+        let picked = pane.artist().pick(&pane.record, &view, self.part(size), [right, down])?;
+        let mut told = pane.record.particle(picked, view.state);
+        told["other"] = json!(!std::ptr::eq(pane, &self.run));
+        Some(told)
     }
 }
