@@ -12,9 +12,11 @@ use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use strandsnap::base::error::{Error, Result};
 use strandsnap::observe::animation::Animation;
-use strandsnap::render::animation::{Still, write};
+use strandsnap::render::animation::{self, Still};
 
 const SIZE: [u32; 2] = [96, 54];
 const GROUND: Rgb<u8> = Rgb([22, 26, 34]);
@@ -30,6 +32,11 @@ fn picture(number: u32) -> RgbImage {
     let left = 10 + 7 * number;
     (0..25).for_each(|i| picture.put_pixel(left + i % 5, 30 + i / 5, MARK));
     picture
+}
+
+/// Makes it without being stopped.
+fn write(animation: &Animation, stills: &[Still]) -> Result<u64> {
+    animation::write(animation, stills, &AtomicBool::new(false))
 }
 
 fn stills(folder: &Path, count: u32) -> Vec<Still> {
@@ -210,5 +217,17 @@ fn a_lost_picture_is_named_and_leaves_no_animation() {
         let error = write(&Animation { file: file.clone(), width: None }, &stills).unwrap_err();
         assert!(error.to_string().contains("frame_0001.png"), "{error}");
         assert!(!file.exists(), "{name}");
+    }
+}
+
+#[test]
+fn an_animation_that_is_stopped_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let stills = stills(folder.path(), 3);
+    for name in ["a.gif", "a.png", "a.mp4"] {
+        let file = folder.path().join(name);
+        let stopped = animation::write(&Animation { file, width: None }, &stills, &AtomicBool::new(true));
+        assert!(matches!(stopped, Err(Error::Interrupted)), "{name}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "{name}");
     }
 }

@@ -12,14 +12,18 @@ use proptest::test_runner::{Config, FileFailurePersistence, RngAlgorithm, TestRn
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use strandsnap::base::error::Error;
 use strandsnap::engine::Engine;
+use strandsnap::engine::view::{RunInfo, Sample};
+use strandsnap::observe::Observer;
 use strandsnap::observe::origin::Origin;
 use strandsnap::observe::trajectory::{Trajectory, TrajectoryWriter};
 use strandsnap::page::{self, Source};
-use strandsnap::run::{assemble, cautions};
+use strandsnap::run::folder::SLOTS;
+use strandsnap::run::{Resumable, RunOptions, assemble, cautions, run_watched};
 use strandsnap::scene::plan::Plan;
 use strandsnap::scene::{self, builtin, centreline_text, write};
 use strandsnap::study::sweep::{Changes, Definition, definition};
@@ -28,7 +32,8 @@ use strandsnap::study::sweep::{Changes, Definition, definition};
 const SCENES: u32 = 1200;
 const POINTS: u32 = 300;
 const STUDIES: u32 = 150;
-const TRAJECTORIES: u32 = 250;
+const TRAJECTORIES: u32 = 150;
+const CHECKPOINTS: u32 = 100;
 const COMMANDS: u32 = 100;
 /// How many times as many are looked at when asked for.
 const MORE: u32 = 50;
@@ -310,7 +315,45 @@ fn studies(count: u32) {
     });
 }
 
-/// A trajectory whose records were changed before they were packed: checksums of the packing do not help.
+/// Bytes that are changed before they are packed behind a head, so that checksums of the packing do not help, or after that.
+#[derive(Debug, Clone)]
+struct Damage {
+    edits: Vec<(usize, u8, u8)>,
+    packed: bool,
+}
+
+fn damage() -> impl Strategy<Value = Damage> {
+    // Lengths and counts stand at the beginning of records.
+    let place = prop_oneof![3 => (0_usize..400).boxed(), 1 => any::<Index>().prop_map(|at| at.index(1 << 20)).boxed()];
+    (prop::collection::vec((place, any::<u8>(), 0..3_u8), 1..5), any::<bool>())
+        .prop_map(|(edits, packed)| Damage { edits, packed })
+}
+
+impl Damage {
+    /// What becomes of a file with a head of so many bytes.
+    fn of(&self, bytes: &[u8], head: usize) -> Vec<u8> {
+        let mut changed = bytes.to_vec();
+        if !self.packed {
+            changed.clear();
+            FrameDecoder::new(&bytes[head..]).read_to_end(&mut changed).unwrap();
+        }
+        for (at, byte, kind) in &self.edits {
+            let at = at % changed.len();
+            match kind {
+                0 => changed[at] = *byte,
+                1 => changed.insert(at, *byte),
+                _ => changed.truncate(at + 1),
+            }
+        }
+        if self.packed {
+            return changed;
+        }
+        let mut encoder = FrameEncoder::with_frame_info(FrameInfo::new(), bytes[..head].to_vec());
+        encoder.write_all(&changed).unwrap();
+        encoder.finish().unwrap()
+    }
+}
+
 fn trajectories(count: u32) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("trajectory.bin");
@@ -318,33 +361,12 @@ fn trajectories(count: u32) {
     synthetic::Run::new(2).show(&mut TrajectoryWriter::new(&file, Origin::of(&spec)).unwrap()).unwrap();
     std::fs::write(folder.path().join("scene.toml"), write::to_toml(&spec)).unwrap();
     let bytes = std::fs::read(&file).unwrap();
-    let head = 16 + Origin::LEN;
-    let mut records = Vec::new();
-    FrameDecoder::new(&bytes[head..]).read_to_end(&mut records).unwrap();
-    // Lengths and counts stand at the beginning of records.
-    let place = prop_oneof![3 => (0_usize..400).boxed(), 1 => any::<Index>().prop_map(|at| at.index(1 << 20)).boxed()];
-    let edit = (place, any::<u8>(), 0..3);
-    let strategy = (prop::collection::vec(edit, 1..5), any::<bool>());
     each(
         count,
-        strategy,
+        damage(),
         |input| format!("{input:?}"),
-        |(edits, packed)| {
-            let mut changed = if packed { bytes.clone() } else { records.clone() };
-            for (at, byte, kind) in edits {
-                let at = at % changed.len();
-                match kind {
-                    0 => changed[at] = byte,
-                    1 => changed.insert(at, byte),
-                    _ => changed.truncate(at + 1),
-                }
-            }
-            if !packed {
-                let mut encoder = FrameEncoder::with_frame_info(FrameInfo::new(), bytes[..head].to_vec());
-                encoder.write_all(&changed).unwrap();
-                changed = encoder.finish().unwrap();
-            }
-            std::fs::write(&file, &changed).unwrap();
+        |damage| {
+            std::fs::write(&file, damage.of(&bytes, 16 + Origin::LEN)).unwrap();
             if let Ok(trajectory) = Trajectory::open(&file) {
                 assert!(trajectory.count() < 1_000_000);
             }
@@ -353,6 +375,58 @@ fn trajectories(count: u32) {
             }
         },
     );
+}
+
+/// A run that was interrupted goes on from a checkpoint of its own, or says why it cannot.
+fn checkpoints(count: u32) {
+    let folder = tempfile::tempdir().unwrap();
+    let (base, out) = (folder.path().join("base"), folder.path().join("out"));
+    let set = ["strand.length=10 mm", "grip.length=2 mm", "stop.steps=60", "output.checkpoint=20", "output.samples=6"];
+    let scene = scene::load("strand-1x7", &set.map(String::from)).unwrap();
+    let stop = AtomicBool::new(false);
+    let options = RunOptions { threads: Some(1), ..RunOptions::tables(&base) };
+    run_watched(&scene, &options, vec![&mut StopsAt { step: 40, stop: &stop }], &stop).unwrap();
+    let slots = SLOTS.map(|name| base.join(name));
+    let slot = slots.iter().find(|slot| slot.is_file()).expect("an interrupted run keeps a checkpoint");
+    let bytes = std::fs::read(slot).unwrap();
+    each(
+        count,
+        damage(),
+        |input| format!("{input:?}"),
+        |damage| {
+            let _ = std::fs::remove_dir_all(&out);
+            std::fs::create_dir(&out).unwrap();
+            for file in std::fs::read_dir(&base).unwrap().map(|file| file.unwrap().path()) {
+                if !slots.contains(&file) {
+                    std::fs::copy(&file, out.join(file.file_name().unwrap())).unwrap();
+                }
+            }
+            std::fs::write(out.join(SLOTS[0]), damage.of(&bytes, 16)).unwrap();
+            let resumed = Resumable::open(&out, Some(1));
+            if let Err(error) = resumed.and_then(|run| run.go_on(&|_| {}, Vec::new(), &AtomicBool::new(true))) {
+                is_for_people(&error);
+            }
+        },
+    );
+}
+
+/// Ends a run at a step.
+struct StopsAt<'a> {
+    step: u64,
+    stop: &'a AtomicBool,
+}
+
+impl Observer for StopsAt<'_> {
+    fn start(&mut self, _info: &Arc<RunInfo>) -> Result<(), Error> {
+        Ok(())
+    }
+    fn sample(&mut self, sample: &Sample) -> Result<(), Error> {
+        self.stop.fetch_or(sample.step >= self.step, Ordering::Relaxed);
+        Ok(())
+    }
+    fn finish(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 fn commands(count: u32) {
@@ -473,6 +547,11 @@ fn trajectories_at_random() {
 }
 
 #[test]
+fn checkpoints_at_random() {
+    checkpoints(CHECKPOINTS);
+}
+
+#[test]
 fn command_lines_at_random() {
     commands(COMMANDS);
 }
@@ -484,5 +563,6 @@ fn many_more_at_random() {
     points(MORE * POINTS);
     studies(MORE * STUDIES);
     trajectories(MORE * TRAJECTORIES);
+    checkpoints(MORE * CHECKPOINTS);
     commands(MORE * COMMANDS);
 }

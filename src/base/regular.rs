@@ -129,6 +129,20 @@ pub fn check_folder(path: &Path) -> Result<()> {
     }
 }
 
+/// Checks that a file can be written at `path`: one that vanishes again is written into the nearest folder above it that is
+/// there.
+///
+/// # Errors
+/// As for [`check_folder`]; [`Error::Io`] when the file system refuses.
+pub fn check_writable(path: &Path) -> Result<()> {
+    let refuse = |cause| Error::io("cannot write", path, cause);
+    let absolute = std::path::absolute(path).map_err(refuse)?;
+    let folder = absolute.parent().unwrap_or(&absolute);
+    check_folder(folder)?;
+    let existing = folder.ancestors().find(|above| above.exists()).unwrap_or(folder);
+    tempfile::tempfile_in(existing).map(drop).map_err(refuse)
+}
+
 /// Makes a folder, and those above it, where they are not there.
 ///
 /// # Errors

@@ -21,7 +21,11 @@ pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
     if undrawn > 0 {
         say!("{} still to be drawn: the run was stopped.", counted(undrawn, "picture"));
     }
-    if run::checkpoint::latest(&options.out).is_ok() || (undrawn > 0 && summary.stopped != StopReason::Interrupted) {
+    let unfinished = summary.cost.frames.is_some_and(|frames| frames.unfinished());
+    if unfinished && undrawn == 0 {
+        say!("The animation is still to be made: the run was stopped.");
+    }
+    if run::checkpoint::latest(&options.out).is_ok() || (unfinished && summary.stopped != StopReason::Interrupted) {
         say!("Go on with: strandsnap resume {}", options.out.display());
     }
     if !quiet {
@@ -30,7 +34,7 @@ pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
         if options.frames {
             say!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
         }
-        if let (Some(animation), Some(frames)) = (&options.animation, &summary.cost.frames) {
+        if let (Some(animation), Some(frames)) = (&options.animation, summary.cost.frames.filter(|f| !f.not_animated)) {
             say!("  {}: {} of animation", animation.file.display(), outputs::megabytes(frames.animation_bytes));
         }
         say!("Make one page of all of it with: strandsnap report {}", options.out.display());

@@ -77,7 +77,7 @@ pub fn after(limit: Duration) {
 /// # Errors
 /// [`Error::Interrupted`] when it was stopped early.
 pub fn ended_run(summary: &RunSummary) -> Result<Ended> {
-    let undrawn = summary.cost.frames.is_some_and(|frames| frames.not_drawn > 0);
+    let undrawn = summary.cost.frames.is_some_and(|frames| frames.unfinished());
     if summary.stopped == StopReason::Interrupted || undrawn { Err(Error::Interrupted) } else { Ok(Ended::Well) }
 }
 

@@ -103,10 +103,10 @@ pub fn render(args: Args) -> Result<Ended> {
     let timings = writer.timings();
     let drawn = shown - timings.not_drawn as usize;
     say!("{} in {}", counted(drawn, "picture"), out.display());
-    if drawn == run.count() {
+    if drawn == run.count() && !timings.unfinished() {
         pictures.complete()?;
     } else {
-        say!("{} of {} are left; --resume goes on with them", run.count() - drawn, run.count());
+        say!("stopped: {} of {} pictures are left; --resume goes on", run.count() - drawn, run.count());
     }
     if let Some(animation) = animation.filter(|_| timings.animation_bytes > 0) {
         say!("{} of animation are in {}", outputs::megabytes(timings.animation_bytes), animation.file.display());

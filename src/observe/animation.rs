@@ -1,7 +1,7 @@
 //! An animation of the frames, as it is asked for.
 
 use crate::base::error::{Error, Result};
-use crate::base::regular::check_target;
+use crate::base::regular::{check_target, check_writable};
 use std::path::PathBuf;
 
 /// Where it goes.
@@ -48,10 +48,12 @@ impl Animation {
     /// Checks that it can be written without replacing anything.
     ///
     /// # Errors
-    /// [`Error::Input`] for a file name with another ending, or one that is taken while `overwrite` is not set.
+    /// [`Error::Input`] for a file name with another ending, or one that is taken while `overwrite` is not set; [`Error::Io`]
+    /// where no file can be written.
     pub fn check(&self, overwrite: bool) -> Result<()> {
         self.format()?;
-        check_target(&self.file, overwrite, "--animation")
+        check_target(&self.file, overwrite, "--animation")?;
+        check_writable(&self.file)
     }
 }
 

@@ -53,6 +53,8 @@ pub trait Observer {
     fn peaks(&mut self, _peaks: &Peaks) -> Result<()> {
         Ok(())
     }
+    /// The run is being stopped: what takes long and has not been begun need not be done.
+    fn stopping(&mut self) {}
     /// After the last step, also of a run that was stopped: everything written so far must be made whole.
     fn finish(&mut self) -> Result<()>;
     /// [`Self::finish`] that leaves out what takes long once `stop` is set: what is not done then is not there, and does not

@@ -12,6 +12,8 @@ pub struct Timings {
     pub frames: u32,
     /// Frames that were left out because the run was stopped.
     pub not_drawn: u32,
+    /// An animation that was asked for is not made, because the run was stopped.
+    pub not_animated: bool,
     /// Preparing instances and drawing on the adapter.
     pub draw: Duration,
     /// Copying the picture back.
@@ -35,6 +37,7 @@ impl Timings {
     pub fn merge(&mut self, other: &Timings) {
         self.frames += other.frames;
         self.not_drawn += other.not_drawn;
+        self.not_animated |= other.not_animated;
         self.draw += other.draw;
         self.read_back += other.read_back;
         self.overlay += other.overlay;
@@ -43,6 +46,19 @@ impl Timings {
         self.drained += other.drained;
         self.animation += other.animation;
         self.animation_bytes += other.animation_bytes;
+    }
+
+    /// Whether something that was asked for is not there, because the run was stopped.
+    pub fn unfinished(&self) -> bool {
+        self.not_drawn > 0 || self.not_animated
+    }
+
+    /// The same means for so many frames: what an earlier process drew and could not tell took as long as the others.
+    pub fn for_frames(self, frames: u32) -> Self {
+        let factor = f64::from(frames) / f64::from(self.frames.max(1));
+        let [draw, read_back, overlay, encode] =
+            [self.draw, self.read_back, self.overlay, self.encode].map(|time| time.mul_f64(factor));
+        Self { frames, draw, read_back, overlay, encode, ..self }
     }
 
     /// Mean per frame (ms): draw, read-back, overlay, encode.
@@ -71,6 +87,8 @@ struct Report {
     count: u32,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     not_drawn: Option<u32>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    not_animated: bool,
     draw_ms: f64,
     read_back_ms: f64,
     charts_and_text_ms: f64,
@@ -89,6 +107,7 @@ impl From<Timings> for Report {
         let animated = timings.animation_bytes > 0;
         Self {
             count: timings.frames,
+            not_animated: timings.not_animated,
             not_drawn: (timings.not_drawn > 0).then_some(timings.not_drawn),
             draw_ms,
             read_back_ms,
@@ -108,6 +127,7 @@ impl From<Report> for Timings {
         Self {
             frames: report.count,
             not_drawn: report.not_drawn.unwrap_or(0),
+            not_animated: report.not_animated,
             draw: total(report.draw_ms),
             read_back: total(report.read_back_ms),
             overlay: total(report.charts_and_text_ms),
@@ -132,6 +152,7 @@ mod tests {
         assert_eq!((&json["count"], &json["draw_ms"], &json["png_ms"]), (&4.into(), &25.0.into(), &10.0.into()));
         assert_eq!((&json["read_back_ms"], json.get("animation_s")), (&2.0.into(), None));
         assert_eq!(serde_json::from_value::<Timings>(json).unwrap(), timings);
+        assert_eq!(timings.for_frames(8).draw, ms(200));
         assert!(timings.to_string().starts_with("4, 27.0 ms each (draw 25.0,"), "{timings}");
     }
 }

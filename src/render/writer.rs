@@ -137,7 +137,7 @@ impl FrameWriter {
         while !draw.is_finished() && !stop.load(Ordering::Relaxed) {
             std::thread::sleep(LOOK);
         }
-        cut.store(stop.load(Ordering::Relaxed), Ordering::Relaxed);
+        cut.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
         let results = [draw.join(), encode.join()];
         self.add(&Timings { drained: begin.elapsed(), ..Timings::default() });
         // An encoder that failed (disk full) is why the drawing stopped, so its error comes first.
@@ -148,12 +148,20 @@ impl FrameWriter {
         Ok(())
     }
 
-    fn animate(&mut self) -> Result<()> {
-        // One that ends too early would look whole.
-        let Some(animation) = self.animation.take().filter(|_| self.timings().not_drawn == 0) else { return Ok(()) };
+    fn animate(&mut self, stop: &AtomicBool) -> Result<()> {
+        let Some(animation) = self.animation.take() else { return Ok(()) };
         let begin = Instant::now();
-        let animation_bytes = animation::write(&animation, &self.stills)?;
-        self.add(&Timings { animation: begin.elapsed(), animation_bytes, ..Timings::default() });
+        // One that ends too early would look whole.
+        let written = match self.timings().not_drawn {
+            0 => animation::write(&animation, &self.stills, stop),
+            _ => Err(Error::Interrupted),
+        };
+        let (animation_bytes, not_animated) = match written {
+            Ok(bytes) => (bytes, false),
+            Err(Error::Interrupted) => (0, true),
+            Err(error) => return Err(error),
+        };
+        self.add(&Timings { animation: begin.elapsed(), animation_bytes, not_animated, ..Timings::default() });
         Ok(())
     }
 }
@@ -217,7 +225,13 @@ impl Observer for FrameWriter {
 
     fn finish_unless(&mut self, stop: &AtomicBool) -> Result<()> {
         self.join(stop)?;
-        self.animate()
+        self.animate(stop)
+    }
+
+    fn stopping(&mut self) {
+        if let Some(workers) = &self.workers {
+            workers.cut.store(true, Ordering::Relaxed);
+        }
     }
 }
 

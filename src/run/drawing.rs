@@ -6,6 +6,7 @@ use super::options::RunOptions;
 use super::replay::{Replay, Selection};
 use super::{RunSummary, identity, outputs};
 use crate::base::error::{Error, Result};
+use crate::base::finding::StopReason;
 use crate::base::regular;
 use crate::observe::Observer;
 use crate::observe::origin::Origin;
@@ -32,13 +33,17 @@ impl Undrawn {
     pub fn find(run: &Path) -> Result<Option<Self>> {
         let whole = [SCENE, SUMMARY, TRAJECTORY].iter().all(|name| run.join(name).is_file());
         let Some(wanted) = outputs_undrawn(run).filter(|_| whole && !has_checkpoint(run)) else { return Ok(None) };
-        identity::check(run, false)?;
         let summary = run.join(SUMMARY);
         let text = regular::text(&summary, regular::LONGEST_TABLE)?;
-        let summary = serde_json::from_str(&text).map_err(|e| {
+        let summary: RunSummary = serde_json::from_str(&text).map_err(|e| {
             let what = format!("{} is damaged or of another version of strandsnap: {e}", summary.display());
             Error::input(what, "draw the pictures with `strandsnap render`")
         })?;
+        // An error that is no failure of the simulation is a warning without a finding.
+        if summary.stopped == StopReason::Interrupted || summary.warnings.len() > summary.findings.len() {
+            return Ok(None);
+        }
+        identity::check(run, false)?;
         let options = RunOptions::of_resumed(run, &wanted, None);
         outputs::check(&options)?;
         Ok(Some(Self {
@@ -88,16 +93,17 @@ impl Drawing {
     pub fn end(self) -> Result<RunSummary> {
         let Self { replay, frames, scene, mut summary, folder, .. } = self;
         let mut timings = frames.timings();
-        // Those that the writer was never told of, too.
-        let left = replay.count().saturating_sub(frames.kept() + timings.frames as usize);
-        timings.not_drawn = left as u32;
+        let drawn = frames.kept() + timings.frames as usize;
         // Of those that were drawn again, the first time counts no more.
-        if let Some(before) = summary.cost.frames.filter(|before| before.frames as usize == frames.kept()) {
-            timings.merge(&Timings { not_drawn: 0, ..before });
+        if let Some(before) = summary.cost.frames.filter(|_| frames.kept() > 0) {
+            timings.merge(&Timings { not_animated: false, ..before });
         }
+        // Those that the writer was never told of, too.
+        let left = replay.count().saturating_sub(drawn);
+        timings = Timings { not_drawn: left as u32, ..timings.for_frames(drawn as u32) };
         summary.cost.frames = Some(timings);
         super::write_summary(&folder, &scene.spec, &summary)?;
-        if left == 0 {
+        if !timings.unfinished() {
             frames.complete()?;
         }
         Ok(summary)

@@ -217,7 +217,7 @@ impl Driver<'_, '_> {
     ) -> Result<StopReason> {
         self.audience.start(info)?;
         match told {
-            Some((checkpoint, trajectory)) => self.tell_again(&checkpoint, trajectory)?,
+            Some((checkpoint, trajectory)) => self.tell_again(&checkpoint, trajectory, stop)?,
             None => {
                 self.monitor_step();
                 self.show()?;
@@ -240,6 +240,7 @@ impl Driver<'_, '_> {
     fn run(&mut self, stop: &AtomicBool) -> Result<StopReason> {
         let reason = loop {
             if stop.load(Ordering::Relaxed) {
+                self.audience.stopping();
                 // Before anything is told that a run which goes on would not tell.
                 self.keep()?;
                 break StopReason::Interrupted;
@@ -282,8 +283,11 @@ impl Driver<'_, '_> {
     }
 
     /// Tells again what was told up to a checkpoint.
-    fn tell_again(&mut self, checkpoint: &Checkpoint, trajectory: Trajectory) -> Result<()> {
+    fn tell_again(&mut self, checkpoint: &Checkpoint, trajectory: Trajectory, stop: &AtomicBool) -> Result<()> {
         for record in trajectory.take(checkpoint.records as usize) {
+            if stop.load(Ordering::Relaxed) {
+                self.audience.stopping();
+            }
             self.audience.tell(&record?)?;
         }
         checkpoint.tail.iter().try_for_each(|record| self.audience.tell(record))
@@ -416,6 +420,10 @@ impl Audience<'_, '_> {
     fn notice(&mut self, notice: &Notice) -> Result<()> {
         self.remember(|| Record::Notice(notice.clone()));
         self.each(|observer| observer.notice(notice))
+    }
+
+    fn stopping(&mut self) {
+        self.observers.iter_mut().take(self.started).for_each(|observer| observer.stopping());
     }
 
     fn peaks(&mut self, peaks: &Peaks) -> Result<()> {

@@ -70,7 +70,10 @@ pub fn has_checkpoint(run: &Path) -> bool {
 
 /// Whether a run was ended in `run` before it came to its end.
 pub fn is_unfinished(run: &Path) -> bool {
-    has_checkpoint(run) || partial::name(&run.join(TRAJECTORY)).is_file()
+    let is_there = |name: &str| run.join(name).is_file();
+    // Its summary is the last that a run writes.
+    let cut_off = is_there(SCENE) && is_there(TRAJECTORY) && !is_there(SUMMARY);
+    has_checkpoint(run) || partial::name(&run.join(TRAJECTORY)).is_file() || cut_off
 }
 
 /// Every file that a run writes into its folder.

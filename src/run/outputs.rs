@@ -81,12 +81,12 @@ impl Frames {
         self.pictures.whole().len()
     }
 
-    /// Takes the mark off, if the writer has drawn all that it was told of.
+    /// Takes the mark off, if the writer has made all that it was told of.
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be removed.
     pub fn complete(self) -> Result<()> {
-        if self.timings().not_drawn > 0 { Ok(()) } else { self.pictures.complete() }
+        if self.timings().unfinished() { Ok(()) } else { self.pictures.complete() }
     }
 }
 

@@ -22,7 +22,7 @@ pub struct StopRule {
     /// Their sums.
     sum: [f64; 2],
     time: f64,
-    /// Greatest mean over the window.
+    /// The mean over the window whose magnitude was greatest: below zero where the body is pushed (Pa).
     peak: f64,
     ruptured: bool,
     /// Mean stress over its peak, where it has fallen to `stop.stress_fraction` (-).
@@ -96,8 +96,10 @@ impl StopRule {
             return;
         }
         let mean = self.sum[1] / self.sum[0];
-        self.peak = self.peak.max(mean);
-        let below = |share: f64| self.ruptured && mean < share * self.peak;
+        if mean.abs() > self.peak.abs() {
+            self.peak = mean;
+        }
+        let below = |share: f64| self.ruptured && mean * self.peak.signum() < share * self.peak.abs();
         self.fallen = self.stop.stress_fraction.filter(|share| below(*share)).map(|_| mean / self.peak);
         self.dropped_at = if below(1.0 - DROP) { self.dropped_at.or(Some(strain)) } else { None };
         let beyond = self.dropped_at.zip(self.stop.strain_after_drop);
@@ -148,6 +150,18 @@ mod tests {
             panic!("it goes on")
         };
         assert_eq!(limit, 0.5);
+        assert!((reached - 0.2).abs() < 1e-12, "{reached}");
+    }
+
+    #[test]
+    fn so_does_a_fall_of_what_is_pushed() {
+        let mut rule = at_half();
+        steps(&mut rule, -100.0, 30);
+        rule.rupture();
+        steps(&mut rule, -80.0, 30);
+        assert_eq!(rule.reached(0.0, 0.0, 0), None);
+        steps(&mut rule, -20.0, 20);
+        let Some(StopReason::StressFraction { reached, .. }) = rule.reached(0.0, 0.0, 0) else { panic!("it goes on") };
         assert!((reached - 0.2).abs() < 1e-12, "{reached}");
     }
 

@@ -25,8 +25,10 @@ const QUANTISER: u8 = 20;
 const MILLISECONDS: NonZeroU32 = NonZeroU32::new(1000).unwrap();
 /// Bits per second that are never reached, so that the quantiser alone decides.
 const NO_BOUND: u32 = 50_000_000;
-/// Pixels of a picture that every decoder of H.264's level 5.2 takes (4096 × 2304); larger ones are made smaller.
-const MOST_PIXELS: f64 = 4096.0 * 2304.0;
+/// Longer and shorter side of a picture that the encoder takes at most (px); larger ones are made smaller.
+const LARGEST: [f64; 2] = [3840.0, 2160.0];
+/// Shortest side that it takes (px); smaller pictures are made larger.
+const LEAST: f64 = 16.0;
 
 /// Writes every picture once, with the time for which it is shown; what a player needs to know stands at the beginning of
 /// the file.
@@ -90,13 +92,14 @@ fn settings() -> EncoderConfig {
         .vui(VuiConfig::bt601())
 }
 
-/// A picture with an even width and height, as 4:2:0 needs it, and not larger than decoders take.
+/// A picture with an even width and height, as 4:2:0 needs it, within what the encoder takes.
 fn encodable(picture: RgbImage) -> RgbImage {
     let [width, height] = [picture.width(), picture.height()].map(f64::from);
-    let factor = (MOST_PIXELS / (width * height)).sqrt().min(1.0);
-    let even = |side: f64| ((side * factor) as u32 & !1).max(2);
+    let [longer, shorter] = [width.max(height), width.min(height)];
+    let factor = (LEAST / shorter).max(1.0).min(LARGEST[0] / longer).min(LARGEST[1] / shorter);
+    let even = |side: f64| ((side * factor).round() as u32 & !1).max(LEAST as u32);
     let [w, h] = [even(width), even(height)];
-    match (factor < 1.0, [w, h] == [picture.width(), picture.height()]) {
+    match (factor != 1.0, [w, h] == [picture.width(), picture.height()]) {
         (true, _) => imageops::resize(&picture, w, h, imageops::FilterType::Triangle),
         (false, true) => picture,
         (false, false) => imageops::crop_imm(&picture, 0, 0, w, h).to_image(),
@@ -109,7 +112,14 @@ mod tests {
 
     #[test]
     fn sides_are_even_and_no_picture_is_too_large() {
-        for (size, right) in [([96, 54], [96, 54]), ([97, 55], [96, 54]), ([8192, 4608], [4096, 2304])] {
+        for (size, right) in [
+            ([96, 54], [96, 54]),
+            ([97, 55], [96, 54]),
+            ([8192, 4608], [3840, 2160]),
+            ([2000, 4000], [1920, 3840]),
+            ([24, 15], [26, 16]),
+            ([8192, 120], [3840, 56]),
+        ] {
             let film = encodable(RgbImage::new(size[0], size[1]));
             assert_eq!([film.width(), film.height()], right);
         }

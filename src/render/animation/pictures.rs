@@ -4,6 +4,7 @@ use crate::base::error::{Error, Result};
 use image::RgbImage;
 use image::imageops::{FilterType, resize};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How long a picture is shown (ms). The pictures lie denser around ruptures, so that there the same pace is slow
 /// motion.
@@ -30,6 +31,8 @@ pub(super) struct Pictures<'a> {
     pub stills: &'a [Still],
     /// Width that they are made smaller to (px), where one is asked for.
     pub width: Option<u32>,
+    /// Ends it.
+    pub stop: &'a AtomicBool,
 }
 
 impl Pictures<'_> {
@@ -37,7 +40,8 @@ impl Pictures<'_> {
         self.stills.len()
     }
 
-    /// Each picture, made smaller where that is asked for, and how long it is shown (ms).
+    /// Each picture, made smaller where that is asked for, and how long it is shown (ms); [`Error::Interrupted`] where it was
+    /// stopped.
     pub fn iter(&self) -> impl Iterator<Item = Result<(RgbImage, u32)>> + '_ {
         let last = self.stills.len() - 1;
         self.stills.iter().enumerate().map(move |(i, still)| {
@@ -46,6 +50,9 @@ impl Pictures<'_> {
                 (false, true) => PAUSE,
                 (false, false) => SHOWN,
             };
+            if self.stop.load(Ordering::Relaxed) {
+                return Err(Error::Interrupted);
+            }
             Ok((self.read(&still.picture)?, shown))
         })
     }

@@ -42,6 +42,9 @@ const SETTLED: f64 = 2.0;
 /// Rows from which on forces are compared over all of them together: more than one wave makes of one row.
 const MANY: usize = 50;
 
+/// Rows that show how a cycle goes (-).
+const ROWS_OF_A_CYCLE: f64 = 8.0;
+
 /// A little more than forces are smoothed over, in passages of an elastic wave (-).
 const SMOOTHED: f64 = 0.3;
 
@@ -134,6 +137,12 @@ fn work(run: &Folder) -> InvariantOutcome {
         return not("other holds and loads do work too");
     }
     let Some(free) = run.free_length else { return not("there is no gauge") };
+    if let DriveSpec::Cyclic { frequency, .. } = grip.drive
+        && (run.curve.rows.len() as f64)
+            < ROWS_OF_A_CYCLE * frequency * run.trajectory.samples.last().map_or(0.0, |row| row.time)
+    {
+        return not("there are too few rows in a cycle");
+    }
     let number = |row: usize, head: &str| run.curve.number(row, head);
     let piece = |a: usize, b: usize| {
         let mean = |head: &str| 0.5 * (number(a, head) + number(b, head));

@@ -82,10 +82,13 @@ fn pictures(run: &Folder) -> InvariantOutcome {
     if own {
         let left_out = run.summary.cost.frames.map_or(0, |frames| frames.not_drawn as usize);
         let snapshots = run.trajectory.snapshots.len().saturating_sub(left_out);
+        // Whoever draws the rest may have been killed before he told.
+        let drawing = is_undrawn(&run.path.join(FRAMES)) && drawn.len() > snapshots;
+        let snapshots = if drawing { drawn.len().min(run.trajectory.snapshots.len()) } else { snapshots };
         search.same(drawn.len(), snapshots, || format!("pictures in {FRAMES}"));
         let last = drawn.last_key_value().map_or(0, |(number, _)| number + 1);
         search.same(last, snapshots, || format!("number of the last picture in {FRAMES}, from 1"));
-        if let Some(timings) = &run.summary.cost.frames {
+        if let Some(timings) = run.summary.cost.frames.filter(|_| !drawing) {
             search.same(timings.frames as usize, snapshots, || "frames, count in summary.json".into());
         }
     }
@@ -103,7 +106,7 @@ fn pictures(run: &Folder) -> InvariantOutcome {
         };
         let (any_named, any_dated) = (says(|seen| &seen.run), says(|seen| &seen.step));
         if any_dated && own && folder == FRAMES {
-            let left_out = run.summary.cost.frames.is_some_and(|frames| frames.not_drawn > 0);
+            let left_out = run.summary.cost.frames.is_some_and(|frames| frames.unfinished());
             let unfinished = left_out || run.summary.stopped == StopReason::Interrupted;
             search
                 .same(is_undrawn(&run.path.join(FRAMES)), unfinished, || format!("{FRAMES} are marked as unfinished"));
@@ -144,7 +147,7 @@ fn animation(run: &Folder) -> InvariantOutcome {
     let Some(name) = run.summary.written.as_ref().and_then(|written| written.animation.as_ref()) else {
         return not("the run made no animation".into());
     };
-    if run.summary.cost.frames.is_some_and(|frames| frames.not_drawn > 0) {
+    if run.summary.cost.frames.is_some_and(|frames| frames.unfinished()) {
         return not("the run was stopped while it drew".into());
     }
     let file = run.path.join(name);
