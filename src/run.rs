@@ -326,7 +326,9 @@ fn write_summary(folder: &OutFolder, spec: &Spec, summary: &RunSummary) -> Resul
         .map_err(|e| Error::io("cannot write", &path, std::io::Error::other(e)))?;
     // An animation elsewhere is no file of this folder.
     let animation = summary.written.as_ref().and_then(|written| written.animation.as_deref());
-    let own: Vec<&str> = animation.into_iter().filter(|name| !Path::new(name).is_absolute()).collect();
+    let own = animation.into_iter().filter(|name| !Path::new(name).is_absolute());
+    let frames = summary.written.as_ref().is_some_and(|written| written.frames).then_some(folder::FRAMES);
+    let own: Vec<&str> = own.chain(frames).collect();
     write_whole(&path, &identity::seal(&text, Origin::of(spec), folder.path(), &own)?)
 }
 

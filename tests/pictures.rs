@@ -8,7 +8,7 @@
 
 mod common;
 
-use common::{curve, ka4_like, snapped, two_spheres};
+use common::{curve, ka4_like, snapped, told, two_spheres};
 use image::{RgbImage, imageops};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -54,7 +54,9 @@ fn reduced(picture: &RgbImage) -> RgbImage {
 
 fn draw(info: &RunInfo, view: View, snapshot: &Snapshot, points: &[(f64, f64)], ruptures: &[Rupture]) -> RgbImage {
     let mut renderer = Renderer::new(info, &options(view)).expect("the adapter opens");
-    reduced(&renderer.draw(snapshot, points, ruptures).expect("the frame is drawn"))
+    let mut history = told(points, ruptures);
+    renderer.follow(&mut history, snapshot);
+    reduced(&renderer.draw(snapshot, &history).expect("the frame is drawn"))
 }
 
 /// The picture of a view that its reference shows.

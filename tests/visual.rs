@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{bond_at, curve, ka4_like, snapped, stretched, two_spheres};
+use common::{bond_at, curve, ka4_like, snapped, stretched, told, two_spheres};
 use image::RgbImage;
 use std::io::Write;
 use std::sync::Arc;
@@ -26,8 +26,9 @@ fn adapter(test: &str) -> bool {
 
 fn draw(info: &RunInfo, options: &OutputSpec, snapshot: &Snapshot, ruptures: &[Rupture]) -> RgbImage {
     let mut renderer = Renderer::new(info, options).expect("the adapter opens");
-    let points = curve(snapshot.sample.strain as f32);
-    renderer.draw(snapshot, &points, ruptures).expect("the frame is drawn")
+    let mut history = told(&curve(snapshot.sample.strain as f32), ruptures);
+    renderer.follow(&mut history, snapshot);
+    renderer.draw(snapshot, &history).expect("the frame is drawn")
 }
 
 /// Keeps a picture for looking at, in the folder named by STRANDSNAP_KEEP_PICTURES.
@@ -98,10 +99,12 @@ fn two_draws_of_one_snapshot_are_identical() {
     let (snapshot, ruptures) = snapped(&info, 0.27, 7);
     let mut renderer = Renderer::new(&info, &options).expect("the adapter opens");
     let points = curve(0.27);
-    let first = renderer.draw(&snapshot, &points, &ruptures).expect("drawn");
+    let mut history = told(&points, &ruptures);
+    renderer.follow(&mut history, &snapshot);
+    let first = renderer.draw(&snapshot, &history).expect("drawn");
     // Another snapshot in between must leave no trace.
-    renderer.draw(&stretched(&info, 0.1), &points[..100], &[]).expect("drawn");
-    let again = renderer.draw(&snapshot, &points, &ruptures).expect("drawn");
+    renderer.draw(&stretched(&info, 0.1), &told(&points[..100], &[])).expect("drawn");
+    let again = renderer.draw(&snapshot, &history).expect("drawn");
     keep("all-light", &first);
     assert!(first == again, "the same data gave different pictures");
     println!("{} on {}", renderer.timings(), renderer.adapter().unwrap_or("no adapter"));
@@ -141,6 +144,16 @@ fn a_broken_wire_shows_a_gap_between_two_marked_ends() {
     assert!(signal_pixels(&after, left) > 200, "left end marked");
     assert!(signal_pixels(&after, right) > 200, "right end marked");
     assert_eq!(signal_pixels(&after, [cx - 3, cy - 3, 7, 7]), 0, "nothing of the wire in the gap");
+    // A light collar and a dark one beside the red: who sees no red sees the end.
+    let collars = |picture: &RgbImage, [x, y, w, h]: [u32; 4]| {
+        let all = (y..y + h).flat_map(|y| (x..x + w).map(move |x| picture.get_pixel(x, y).0));
+        let [light, dark] = [|c: &[u8; 3]| c.iter().all(|v| *v > 150), |c: &[u8; 3]| c.iter().all(|v| *v < 40)];
+        [all.clone().filter(light).count(), all.filter(dark).count()]
+    };
+    let near = [cx - 130, cy - 40, 260, 80];
+    assert_eq!(collars(&before, near), [0, 0]);
+    let [light, dark] = collars(&after, near);
+    assert!(light > 60 && dark > 30, "{light} light and {dark} dark pixels");
     assert_eq!(ruptures[0].bond, bond);
 }
 
@@ -424,4 +437,143 @@ fn a_single_wire_and_a_bent_one_are_drawn() {
     let curved = draw(&bent, &OutputSpec::default(), &snapshot, &[]);
     keep("bent", &curved);
     assert!(straight != curved);
+}
+
+/// Pixels in a rectangle that differ from the ground of panels.
+fn drawn(picture: &RgbImage, [x, y, w, h]: [u32; 4]) -> usize {
+    let ground = Theme::Dark.style().panel;
+    (y..y + h)
+        .flat_map(|y| (x..x + w).map(move |x| (x, y)))
+        .filter(|&(x, y)| picture.get_pixel(x, y).0 != ground)
+        .count()
+}
+
+#[test]
+fn a_wire_that_springs_out_of_its_layer_stays_out_of_the_strips_of_others() {
+    if !adapter("a_wire_that_springs_out_of_its_layer_stays_out_of_the_strips_of_others") {
+        return;
+    }
+    let info = ka4_like();
+    let mut snapshot = stretched(&info, 0.1);
+    let options = OutputSpec { views: vec![View::Exploded], colour: ColourBy::Layer, ..Default::default() };
+    let whole = draw(&info, &options, &snapshot, &[]);
+    // An outer wire hangs down by two radii of the strand: over the middle layer, were it not in a strip of its own.
+    let wire = &info.wires[20];
+    for i in wire.particles() {
+        snapshot.position[i][1] -= 2.8e-3;
+    }
+    let sprung = draw(&info, &options, &snapshot, &[]);
+    keep("exploded-sprung", &sprung);
+    let [x, y, w, h] = panel(&info, &options, View::Exploded);
+    let differs = |y: u32, h: u32| {
+        let pixels = (y..y + h).flat_map(|y| (x..x + w).map(move |x| (x, y)));
+        pixels.filter(|&(x, y)| whole.get_pixel(x, y) != sprung.get_pixel(x, y)).count()
+    };
+    assert!(differs(y, h / 3) > 100, "the outer layer lacks it");
+    // The upper half is the view from the front, whose lower half holds the two other layers.
+    assert_eq!(differs(y + h / 4 + 10, h / 4 - 20), 0, "the layers below are as they were");
+}
+
+#[test]
+fn wires_that_left_the_section_stand_below_it() {
+    let info = ka4_like();
+    let options = OutputSpec { views: vec![View::CrossSection], ..Default::default() };
+    let (mut snapshot, ruptures) = snapped(&info, 0.27, 1);
+    let [x, y, w, h] = panel(&info, &options, View::CrossSection);
+    let below = [x, y + h - h / 6, w, h / 6];
+    let before = draw(&info, &options, &stretched(&info, 0.27), &[]);
+    // Its ends spring apart by ten millimetres each.
+    let (first, bond) = (&info.wires[24], ruptures[0].bond);
+    for i in first.particles() {
+        snapshot.position[i][2] += if i <= bond { -10e-3 } else { 10e-3 };
+    }
+    let after = draw(&info, &options, &snapshot, &ruptures);
+    keep("section-left", &after);
+    assert_eq!(signal_pixels(&before, below), 0);
+    assert!(signal_pixels(&after, below) > 40, "a hollow disc below the section");
+    let above = [x, y, w, h - h / 4];
+    assert_eq!(signal_pixels(&after, above), 0, "and none in it");
+}
+
+#[test]
+fn an_overview_alone_fills_its_panel() {
+    if !adapter("an_overview_alone_fills_its_panel") {
+        return;
+    }
+    let info = ka4_like();
+    for view in [View::Overview, View::Scene] {
+        let options = OutputSpec { views: vec![view], ..Default::default() };
+        let picture = draw(&info, &options, &stretched(&info, 0.28), &[]);
+        keep(&format!("alone-{}", view.word()), &picture);
+        let [x, y, w, h] = panel(&info, &options, view);
+        let third = h / 3;
+        for k in 0..3 {
+            let share = drawn(&picture, [x, y + k * third, w, third]) as f64 / f64::from(w * third);
+            assert!(share > 0.015, "{}: {share} of part {k}", view.word());
+        }
+    }
+}
+
+#[test]
+fn a_scene_that_is_not_pulled_has_a_chart_of_its_own() {
+    let bent = common::bent_wire();
+    let twisted = (RunInfo { strain_end: None, ..common::single_wire() }, {
+        let mut snapshot = stretched(&common::single_wire(), 0.0);
+        snapshot.sample.torque = 1e-3;
+        snapshot.sample.time = 1e-3;
+        snapshot
+    });
+    for (name, (info, last)) in [("bent", bent), ("twisted", twisted), ("spheres", two_spheres())] {
+        let options = OutputSpec { views: vec![View::Curve], ..Default::default() };
+        let mut renderer = Renderer::new(&info, &options).expect("no adapter is needed");
+        let mut history = strandsnap::render::History::default();
+        let mut first = last.clone();
+        first.position.clone_from(&info.rest_position);
+        first.sample = Sample::default();
+        let mut pictures = Vec::new();
+        for (k, snapshot) in [&first, &last].into_iter().enumerate() {
+            let mut snapshot = snapshot.clone();
+            snapshot.sample.time = 1e-3 * k as f64;
+            if name == "spheres" && k == 1 {
+                snapshot.position[1][2] += 0.1e-3;
+            }
+            history.rows.push((&snapshot.sample).into());
+            renderer.follow(&mut history, &snapshot);
+            pictures.push(renderer.draw(&snapshot, &history).expect("drawn"));
+        }
+        keep(&format!("chart-{name}"), &pictures[1]);
+        let [x, y, w, h] = panel(&info, &options, View::Curve);
+        let accent = Theme::Dark.style().accent;
+        let curve = |p: &RgbImage| {
+            let inside = (y + 40..y + h - 50).flat_map(|y| (x + 60..x + w - 20).map(move |x| (x, y)));
+            inside.filter(|&(x, y)| near(p.get_pixel(x, y).0, accent, 10)).count()
+        };
+        assert!(curve(&pictures[1]) > curve(&pictures[0]) + 300, "{name}: a curve has grown");
+    }
+}
+
+#[test]
+fn close_ups_go_on_to_the_main_fracture_and_look_there_from_the_start_of_a_run_that_is_known() {
+    const NAME: &str = "close_ups_go_on_to_the_main_fracture_and_look_there_from_the_start_of_a_run_that_is_known";
+    if !adapter(NAME) {
+        return;
+    }
+    let info = ka4_like();
+    let options = OutputSpec { views: vec![View::Midsection], frame_size: [640, 360], ..Default::default() };
+    let (snapshot, ruptures) = snapped(&info, 0.27, 7);
+    let mut renderer = Renderer::new(&info, &options).expect("the adapter opens");
+    let mut seen = |mut history: strandsnap::render::History, frames: usize| {
+        renderer.follow(&mut history, &stretched(&info, 0.2));
+        history.ruptures.extend_from_slice(&ruptures);
+        for _ in 0..frames {
+            renderer.follow(&mut history, &snapshot);
+        }
+        renderer.draw(&snapshot, &history).expect("drawn")
+    };
+    let known = seen(strandsnap::render::History::knowing(ruptures.clone()), 1);
+    let on_the_way = seen(Default::default(), 2);
+    let arrived = seen(Default::default(), 10);
+    keep("gaze", &arrived);
+    assert!(known == arrived, "both look at the same place");
+    assert!(on_the_way != arrived, "it takes some frames");
 }

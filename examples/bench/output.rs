@@ -51,7 +51,7 @@ fn cost(scene: &strandsnap::scene::Scene) -> Result<Cost> {
     use strandsnap::engine::Engine;
     use strandsnap::observe::Observer;
     use strandsnap::observe::recording::{Recording, RecordingOptions};
-    use strandsnap::render::{Renderer, check, png};
+    use strandsnap::render::{History, Renderer, check, png};
     use strandsnap::run::assemble;
     use strandsnap::scene::spec::OutputSpec;
 
@@ -70,6 +70,7 @@ fn cost(scene: &strandsnap::scene::Scene) -> Result<Cost> {
         }
     };
     recording.start(&info)?;
+    let mut history = History::default();
     let (mut record, mut draw, mut encode) = (0.0, 0.0, 0.0);
     for shown in 0..=SHOWN {
         (0..50).try_for_each(|_| engine.step())?;
@@ -85,7 +86,8 @@ fn cost(scene: &strandsnap::scene::Scene) -> Result<Cost> {
         }
         if let Some(renderer) = &mut renderer {
             let clock = Instant::now();
-            let image = renderer.draw(&snapshot, &[], &[])?;
+            renderer.follow(&mut history, &snapshot);
+            let image = renderer.draw(&snapshot, &history)?;
             let drawn = clock.elapsed().as_secs_f64();
             png::write(&folder.path().join("frame.png"), &image)?;
             if !first {

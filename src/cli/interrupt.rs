@@ -52,9 +52,32 @@ pub fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
             std::process::exit(i32::from(Error::Interrupted.exit_code()));
         }
     };
-    ctrlc::set_handler(handler)
-        .map_err(|e| Error::Missing { what: format!("cannot listen for Ctrl-C: {e}"), help: None })?;
+    listen(handler).map_err(|e| Error::Missing { what: format!("cannot listen for Ctrl-C: {e}"), help: None })?;
     Ok(&STOP)
+}
+
+/// Calls `handler` at INT, TERM and HUP, but for those that this process was started to ignore, such as HUP by `nohup`.
+#[cfg(unix)]
+fn listen(handler: impl Fn() + Send + 'static) -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let ignored = ignored();
+    let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let mut signals = signal_hook::iterator::Signals::new(heard.collect::<Vec<_>>())?;
+    std::thread::spawn(move || signals.forever().for_each(|_| handler()));
+    Ok(())
+}
+
+/// The signals that this process ignores, a bit for each; none where the system does not tell.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+#[cfg(windows)]
+fn listen(handler: impl Fn() + Send + 'static) -> std::result::Result<(), ctrlc::Error> {
+    ctrlc::set_handler(handler)
 }
 
 /// Sets the flag of [`install`] when `limit` has passed, and says so: a batch system that ends jobs at their time then finds

@@ -64,8 +64,6 @@ pub fn render(args: Args) -> Result<Ended> {
     let run = Replay::open(&args.run, &args.select.into())?.doubting(&doubts);
     let mut output = look_of(&args.run);
     args.look.apply(&mut output);
-    // The run is over: close-ups can look at the place of the first break from the start, and need not jump to it.
-    output.camera.focus_z = output.camera.focus_z.or(run.first_break());
     let out = args.out.unwrap_or_else(|| args.run.join("render"));
     let animation = args.animation.resolve(&out.join(folder::ANIMATION));
     let begun = args.resume && folder::drawn_before(&out).is_some();
@@ -93,8 +91,9 @@ pub fn render(args: Args) -> Result<Ended> {
         }
     }
     let whole = pictures.whole().clone();
-    let mut writer =
-        FrameWriter::new(&out, &output)?.with_origin(run.origin()).with_animation(animation.clone()).without(whole);
+    // The run is over: close-ups can look at its main fracture from the start, and need not go there.
+    let writer = FrameWriter::new(&out, &output)?.knowing(run.ruptures().to_vec());
+    let mut writer = writer.with_origin(run.origin()).with_animation(animation.clone()).without(whole);
     if let Some(why) = run.cut_off() {
         eprintln!("note: {why}; what there is will be drawn");
     }

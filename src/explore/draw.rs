@@ -176,7 +176,7 @@ impl Artist {
             position: position.clone(),
             removed: removed.clone(),
         };
-        let segments = wires::segments(info, &snapshot, &looks, *stride);
+        let segments = wires::segments(info, &snapshot, &looks, *stride, None);
         Ready { snapshot, position, removed, segments, colours }
     }
 

@@ -3,6 +3,7 @@
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::run::folder::{FRAMES, is_undrawn};
+use crate::run::identity;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::codecs::jpeg::JpegEncoder;
@@ -41,9 +42,9 @@ impl Pictures {
     /// # Errors
     /// [`Error::Io`] when a folder cannot be read.
     pub fn find(run: &Path, snapshots: usize) -> Result<Self> {
-        let drawn = numbered(&run.join(FRAMES))?;
+        let drawn = identity::pictures(&run.join(FRAMES))?;
         // Number n is snapshot n for what the run drew; for what was drawn again only when nothing was left out.
-        let again = numbered(&run.join(RENDER))?;
+        let again = identity::pictures(&run.join(RENDER))?;
         let complete = again.len() == snapshots;
         let unfinished = is_undrawn(&run.join(FRAMES));
         let by_number = if complete && (drawn.is_empty() || unfinished) { again } else { drawn };
@@ -54,20 +55,6 @@ impl Pictures {
     pub fn of(&self, snapshot: usize) -> Option<PathBuf> {
         self.by_number.get(&snapshot).cloned()
     }
-}
-
-/// `frame_0012.png` and the like, by number.
-fn numbered(folder: &Path) -> Result<BTreeMap<usize, PathBuf>> {
-    let entries = match std::fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(BTreeMap::new()),
-        Err(e) => return Err(Error::io("cannot read the folder", folder, e)),
-    };
-    let number = |path: &Path| -> Option<usize> {
-        let name = path.file_name()?.to_str()?;
-        name.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok()
-    };
-    Ok(entries.flatten().filter_map(|entry| Some((number(&entry.path())?, entry.path()))).collect())
 }
 
 /// Reads a picture and makes it small enough for a page.

@@ -8,7 +8,7 @@ use super::camera::Camera;
 use super::canvas::{Canvas, Rect, Weight};
 use super::data::Data;
 use super::labels::{self, Mark};
-use super::midsection::{around, section};
+use super::midsection::section;
 use super::panel::{Panel, Shot};
 use super::wires::Looks;
 use crate::engine::view::{RunInfo, Rupture};
@@ -36,7 +36,8 @@ impl Panel for Cutaway {
     fn shots(&self, data: &Data, panel: Rect, _unit: f32) -> Vec<Shot> {
         let camera = camera(data, panel);
         let fade = 2.0 * data.body.radius;
-        vec![Shot { view: View::Cutaway, camera, caption: "cut open", remark: around(data), fade }]
+        let (caption, remark) = ("cut open".to_owned(), data.focus.words());
+        vec![Shot { view: View::Cutaway, camera, layer: None, caption, remark, fade, measures: true }]
     }
 
     fn looks(&self, data: &Data, camera: &Camera) -> Option<Looks> {
@@ -52,7 +53,7 @@ impl Panel for Cutaway {
 fn camera(data: &Data, panel: Rect) -> Camera {
     let (info, body, look) = (data.info, data.body, data.camera);
     let azimuth = look.azimuth + TURN[0];
-    let mut camera = section(data, [azimuth, look.elevation + TURN[1]], panel, data.current_z(data.focus()));
+    let mut camera = section(data, [azimuth, look.elevation + TURN[1]], panel, data.current_z(data.focus.z));
     let stretch = info.strain_end.unwrap_or(UNKNOWN_STRAIN) as f32;
     let longest = half_length(info.layers.len().saturating_sub(1), body) * (1.0 + stretch);
     let needed = 2.0 * 1.25 * (longest * azimuth.cos().abs() as f32 + body.radius);
@@ -62,8 +63,10 @@ fn camera(data: &Data, panel: Rect) -> Camera {
 
 /// The opening of a frame, around the section in view and towards the eye.
 fn opening<'a>(data: &Data<'a>, camera: &Camera) -> Opening<'a> {
-    let first = data.ruptures.first().map(|r| r.layer);
-    Opening::new(data.info, data.body, first, camera.to_eye(), data.focus())
+    // The first break in view.
+    let near = |r: &&Rupture| (r.rest_z as f32 - data.focus.z).abs() < 2.0 * data.body.radius;
+    let first = data.ruptures.iter().find(near).map(|r| r.layer);
+    Opening::new(data.info, data.body, first, camera.to_eye(), data.focus.z)
 }
 
 /// Half the length of the opening in a layer (m); 0 for the innermost, which stays whole.
@@ -145,19 +148,20 @@ fn annotate(canvas: &mut Canvas, camera: &Camera, data: &Data, opening: &Opening
     let panel = camera.panel;
     let marks: Vec<Mark> = data
         .first_breaks()
-        .map(|(number, rupture)| (number, rupture, data.place(rupture)))
-        .filter(|(_, rupture, place)| opening.shows(rupture, camera, *place))
-        .map(|(number, _, place)| Mark { number, at: camera.project(place) })
-        .filter(|m| m.at[0] > panel.x && m.at[0] < panel.right())
+        .filter(|(_, rupture)| opening.shows(rupture, camera, data.place(rupture)))
+        .filter_map(|(number, rupture)| {
+            let at = data.seen_end(rupture, camera, Vec3::ZERO)?;
+            Some(Mark { number, words: [true, false].map(|layer| data.words(number, rupture, layer)), at })
+        })
         .collect();
-    labels::badges(canvas, panel.inset(4.0 * u, 26.0 * u, 4.0 * u, panel.h - 48.0 * u), data, &marks);
+    labels::breaks(canvas, panel.inset(4.0 * u, 26.0 * u, 4.0 * u, panel.h - 62.0 * u), data, &marks);
     let names: Vec<([f32; 2], &str)> = ledges(data, camera, opening).into_iter().zip(names(data)).collect();
     let level = panel.bottom() - 20.0 * u;
     let wanted: Vec<f32> = names.iter().map(|(at, _)| at[0]).collect();
     let widest = names.iter().map(|(_, n)| canvas.fonts.width(n, 11.0 * u, Weight::Bold)).fold(0.0, f32::max);
     let pitch = widest + 16.0 * u;
-    // The scale bar lies in the right corner.
-    let places = labels::spread(&wanted, pitch, panel.x + 0.6 * pitch, panel.right() - 190.0 * u);
+    // The scale bar lies in the right corner, the axes in the left one.
+    let places = labels::spread(&wanted, pitch, panel.x + 0.6 * pitch + 40.0 * u, panel.right() - 190.0 * u);
     for ((at, name), x) in names.into_iter().zip(places) {
         canvas.line([x, level], at, 1.2 * u, data.style.text, 0.8);
         canvas.disc(at[0], at[1], 2.2 * u, data.style.text, 1.0);

@@ -1,10 +1,14 @@
 //! What the panels of one frame are drawn from.
 
 use super::body::Body;
+use super::camera::Camera;
+use super::close_up::Focus;
 use super::colour::ColourScale;
+use super::history::Row;
 use super::style::{Rgb, Style};
 use super::wires::Looks;
 use crate::engine::view::{RunInfo, Rupture, Snapshot};
+use crate::observe::wording::wire_number;
 use crate::scene::spec::CameraSpec;
 use glam::Vec3;
 
@@ -16,8 +20,10 @@ pub struct Data<'a> {
     pub body: &'a Body,
     /// The instant.
     pub snapshot: &'a Snapshot,
-    /// Strain (-) and nominal stress (Pa) so far.
-    pub curve: &'a [(f64, f64)],
+    /// Rows of the curve so far.
+    pub rows: &'a [Row],
+    /// Time (s) and what is measured of bodies without grips, so far: [`super::kind::Kind::measure`].
+    pub measured: &'a [[f64; 2]],
     /// Ruptures so far, in order.
     pub ruptures: &'a [Rupture],
     /// Colour scale.
@@ -28,6 +34,8 @@ pub struct Data<'a> {
     pub style: &'a Style,
     /// Viewpoint.
     pub camera: &'a CameraSpec,
+    /// Where close-ups look.
+    pub focus: Focus,
 }
 
 impl Data<'_> {
@@ -38,8 +46,37 @@ impl Data<'_> {
 
     /// Where the broken bond is now, between its two particles (m).
     pub fn place(&self, rupture: &Rupture) -> Vec3 {
-        let at = |i: usize| Vec3::from(self.snapshot.position[i]);
-        0.5 * (at(rupture.bond) + at(rupture.bond + 1))
+        let [a, b] = self.broken_ends(rupture);
+        0.5 * (a + b)
+    }
+
+    /// Where the two ends of a broken bond are now (m).
+    fn broken_ends(&self, rupture: &Rupture) -> [Vec3; 2] {
+        [rupture.bond, rupture.bond + 1].map(|i| Vec3::from(self.snapshot.position[i]))
+    }
+
+    /// The pixel of an end of a broken bond on the side that the camera sees, moved by `shift` (m): of the one nearer to the
+    /// body's axis; `None` where neither lies in the panel.
+    pub fn seen_end(&self, rupture: &Rupture, camera: &Camera, shift: Vec3) -> Option<[f32; 2]> {
+        let faces = |p: &Vec3| camera.to_view(*p).z > 0.0;
+        let inside = |[x, y]: &[f32; 2]| {
+            let panel = camera.panel;
+            (panel.x..panel.right()).contains(x) && (panel.y..panel.bottom()).contains(y)
+        };
+        let ends = self.broken_ends(rupture);
+        let [a, b] = ends.map(|p| (p.x - self.body.axis.x).hypot(p.y - self.body.axis.y));
+        let ends = if b < a { [ends[1], ends[0]] } else { ends };
+        ends.map(|p| p + shift).iter().filter(|p| faces(p)).map(|p| camera.project(*p)).find(inside)
+    }
+
+    /// What tells of a break, such as `2: wire 30 (outer)`, with the layer or without.
+    pub fn words(&self, number: usize, rupture: &Rupture, layer: bool) -> String {
+        let wire = wire_number(rupture.wire);
+        match self.info.layers.get(rupture.layer).filter(|name| layer && self.info.layers.len() > 1 && !name.is_empty())
+        {
+            Some(name) => format!("{number}: wire {wire} ({name})"),
+            None => format!("{number}: wire {wire}"),
+        }
     }
 
     /// Wires with their particles at `position` (m), all equally bright, without the `removed` ones.
@@ -58,11 +95,11 @@ impl Data<'_> {
         [self.body.low.z, self.body.high.z].map(|z| self.current_z(z))
     }
 
-    /// z before loading (m) of the section that close-ups follow.
-    pub fn focus(&self) -> f32 {
-        let [low, high] = self.info.gauge.unwrap_or([self.body.low.z.into(), self.body.high.z.into()]);
-        let first = self.ruptures.first().map(|r| r.rest_z);
-        self.camera.focus_z.or(first).unwrap_or(0.5 * (low + high)) as f32
+    /// How much longer the body is expected to become (m), or was at most where that is not known.
+    pub fn stretch(&self) -> f32 {
+        let Some([low, high]) = self.info.gauge else { return 0.0 };
+        let so_far = || self.rows.iter().map(|row| row.strain).fold(0.0, f64::max);
+        ((high - low) * self.info.strain_end.map_or_else(so_far, |end| end.max(0.0))) as f32
     }
 
     /// [`current_z`] of this state.

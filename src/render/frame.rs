@@ -4,6 +4,7 @@ use super::body::Body;
 use super::canvas::{Canvas, Fonts, Rect};
 use super::colour::ColourScale;
 use super::data::Data;
+use super::history::History;
 use super::layout::{Layout, layout};
 use super::painter::{Drawing, Painter};
 use super::panel::Shot;
@@ -12,7 +13,7 @@ use super::style::Style;
 use super::wires::{self, Looks, Segment};
 use super::{header, marks};
 use crate::base::error::{Error, Result};
-use crate::engine::view::{RunInfo, Rupture, Snapshot};
+use crate::engine::view::{RunInfo, Snapshot};
 use crate::observe::timings::Timings;
 use crate::scene::look::FRAME_SIDE;
 use crate::scene::spec::{OutputSpec, View};
@@ -83,24 +84,31 @@ impl Renderer {
         self.layout.panels.iter().map(|(v, r)| (*v, [r.x, r.y, r.w, r.h].map(|c| c as u32))).collect()
     }
 
-    /// Draws one frame. `curve` holds strain (-) and nominal stress (Pa) up to the snapshot, `ruptures` what broke
-    /// up to it, in order.
+    /// Tells a history of its next snapshot, after rows and ruptures up to it were added: to be called for every snapshot of
+    /// a run, also for those that are not drawn.
+    pub fn follow(&self, history: &mut History, snapshot: &Snapshot) {
+        history.follow(&self.info, &self.body, &self.look.camera, snapshot);
+    }
+
+    /// Draws one frame of the snapshot that a history was told last.
     ///
     /// # Errors
     /// When the adapter is lost.
-    pub fn draw(&mut self, snapshot: &Snapshot, curve: &[(f64, f64)], ruptures: &[Rupture]) -> Result<RgbImage> {
+    pub fn draw(&mut self, snapshot: &Snapshot, history: &History) -> Result<RgbImage> {
         let start = Instant::now();
         let colours = self.scale.particles(&self.info, snapshot);
         let data = Data {
             info: &self.info,
             body: &self.body,
             snapshot,
-            curve,
-            ruptures,
+            rows: &history.rows,
+            measured: &history.measured,
+            ruptures: &history.ruptures,
             scale: &self.scale,
             colours: &colours,
             style: &self.style,
             camera: &self.look.camera,
+            focus: history.focus(&self.info, &self.body),
         };
         let [w, h] = self.look.frame_size;
         let mut picture = RgbImage::from_pixel(w, h, Pixel(self.style.page));
@@ -148,11 +156,15 @@ impl Solid {
         let whole = Looks::new(data.info, data.snapshot, position, data.colours, data.body.shade(), Vec::new());
         let mut all: Vec<Segment> = Vec::new();
         let mut drawings = Vec::new();
+        let mut own: Option<(View, Option<Looks>)> = None;
         for shot in shots {
             let start = all.len() as u32;
-            let own = of(shot.view).panel.looks(data, &shot.camera);
+            if own.as_ref().is_none_or(|(view, _)| *view != shot.view) {
+                own = Some((shot.view, of(shot.view).panel.looks(data, &shot.camera)));
+            }
+            let looks = own.as_ref().and_then(|(_, looks)| looks.as_ref()).unwrap_or(&whole);
             let stride = stride(data, &shot.camera);
-            let segments = wires::segments(data.info, data.snapshot, own.as_ref().unwrap_or(&whole), stride);
+            let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer);
             all.extend(segments.into_iter().filter(|s| shot.camera.sees(s.a, s.b)));
             drawings.push(Drawing { camera: shot.camera, instances: start..all.len() as u32, fade: shot.fade });
         }
@@ -191,8 +203,11 @@ fn overlay(canvas: &mut Canvas, data: &Data, layout: &Layout, shots: &[Shot]) {
         of(*view).panel.draw(canvas, *area, data);
     }
     for shot in shots {
-        marks::scale_bar(canvas, &shot.camera, data);
+        if shot.measures {
+            marks::scale_bar(canvas, &shot.camera, data);
+            marks::axes(canvas, &shot.camera, data);
+        }
         of(shot.view).panel.annotate(canvas, shot, data, shots);
-        marks::title_over(canvas, shot.camera.panel, data, shot.caption, &shot.remark);
+        marks::title_over(canvas, shot.camera.panel, data, &shot.caption, &shot.remark);
     }
 }

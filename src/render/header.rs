@@ -3,18 +3,20 @@
 use super::canvas::{Align, Canvas, Rect, Type, Weight};
 use super::colour::ColourScale;
 use super::data::Data;
+use super::kind::{Kind, approach, contact_force, most_deflected};
+use super::marks;
 use crate::base::ticks::{label, ticks};
-use crate::base::units::{mm, mpa, ms, percent};
+use crate::base::units::{mm, mpa, ms, newton_mm, percent};
 use crate::base::wording::counted;
 use crate::engine::view::RunInfo;
-use crate::observe::wording::FIRST_BREAK;
+use crate::observe::wording::{FIRST_BREAK, wire_number};
 use crate::scene::spec::ColourBy;
 
 /// Draws the header into `area`.
 pub fn draw(canvas: &mut Canvas, area: Rect, data: &Data) {
     let u = canvas.unit;
     let x = name(canvas, area, data);
-    let mut x = x.max(area.x + 190.0 * u);
+    let mut x = x.max(area.x + 176.0 * u);
     let bar = Rect::new(area.right() - 292.0 * u, area.y, 272.0 * u, area.h);
     for block in caption(data) {
         let width = block_width(canvas, &block);
@@ -23,7 +25,7 @@ pub fn draw(canvas: &mut Canvas, area: Rect, data: &Data) {
             break;
         }
         draw_block(canvas, x, area.y, data, &block);
-        x += width + 26.0 * u;
+        x += width + 20.0 * u;
     }
     match data.scale.shown_range() {
         Some(_) if data.info.wires.is_empty() && data.scale.by() != ColourBy::Velocity => (),
@@ -34,42 +36,98 @@ pub fn draw(canvas: &mut Canvas, area: Rect, data: &Data) {
 
 /// A block of the caption.
 struct Block {
-    what: &'static str,
+    what: String,
     value: String,
     detail: String,
     /// Size of the value in units.
     size: f32,
+    /// It tells of the first break.
+    signal: bool,
 }
 
 impl Block {
-    fn new(what: &'static str, value: String, detail: String) -> Self {
-        Self { what, value, detail, size: 17.0 }
+    fn new(what: &str, value: String, detail: String) -> Self {
+        Self { what: what.to_owned(), value, detail, size: 17.0, signal: false }
     }
 }
 
 fn caption(data: &Data) -> Vec<Block> {
     let sample = &data.snapshot.sample;
-    if data.info.gauge.is_none() {
-        return vec![Block::new("time", time_text(sample.time), format!("step {}", sample.step))];
+    let time = time_text(sample.time);
+    let clock = Block::new("time", time.clone(), format!("step {}", sample.step));
+    match Kind::of(data.info) {
+        Kind::Pulled => {
+            let strain = format!("{} %", label(percent(sample.strain), 2));
+            let mut blocks = vec![
+                Block::new("strain", strain, format!("at {time}")),
+                Block::new("nominal stress", format!("{} MPa", label(mpa(sample.stress), 1)), String::new()),
+            ];
+            blocks.extend(broken(data));
+            blocks
+        }
+        Kind::Held => {
+            let mut blocks = vec![
+                clock,
+                Block::new("torque", format!("{} N mm", label(newton_mm(sample.torque), 2)), String::new()),
+            ];
+            if data.rows.iter().any(|row| row.strain != 0.0) {
+                blocks.push(Block::new("strain", format!("{} %", label(percent(sample.strain), 2)), String::new()));
+                let stress = format!("{} MPa", label(mpa(sample.stress), 1));
+                blocks.push(Block::new("nominal stress", stress, String::new()));
+            }
+            blocks.extend(broken(data).into_iter().filter(|_| !data.ruptures.is_empty()));
+            blocks
+        }
+        Kind::Bent => {
+            let deflection = most_deflected(data.info, data.snapshot).map_or(0.0, |(_, by)| mm(by));
+            let most = Block::new("greatest deflection", format!("{} mm", label(deflection, 3)), String::new());
+            let mut blocks = vec![clock, most];
+            blocks.extend(broken(data).into_iter().filter(|_| !data.ruptures.is_empty()));
+            blocks
+        }
+        Kind::Collision => {
+            let [a, b] = [0, 1].map(|i| data.snapshot.speed[i]);
+            let approach = 1e6 * approach(data.snapshot);
+            let how = if approach > 0.0 { "pressed together" } else { "apart" };
+            let force = label(contact_force(data.snapshot), 1);
+            vec![
+                clock,
+                Block::new("approach", format!("{} µm", label(approach, 2)), how.to_owned()),
+                Block::new("contact force", format!("{force} N"), String::new()),
+                Block::new("speeds", format!("{a:.3} and {b:.3} m/s"), String::new()),
+            ]
+        }
+        Kind::Free => {
+            let fastest = data.snapshot.speed.iter().copied().fold(0.0, f32::max);
+            vec![clock, Block::new("greatest speed", format!("{fastest:.3} m/s"), String::new())]
+        }
     }
-    let bonds: usize = data.info.wires.iter().map(|w| w.len.saturating_sub(1)).sum();
-    let none = String::new;
-    let mut blocks = vec![
-        Block::new("strain", format!("{} %", label(percent(sample.strain), 2)), none()),
-        Block::new("nominal stress", format!("{} MPa", label(mpa(sample.stress), 1)), none()),
-        Block::new("wires broken", format!("{} / {}", sample.wires_broken, data.info.wires.len()), none()),
-        Block::new("bonds broken", sample.bonds_broken.to_string(), format!("of {bonds}")),
-    ];
-    if let Some(first) = data.ruptures.first() {
-        let layer = match &data.info.layers[..] {
-            [_, _, ..] => format!("{} layer · ", data.info.layers[first.layer]),
-            _ => String::new(),
-        };
-        let value = format!("wire {} · {layer}z {:.1} mm before loading", first.wire + 1, mm(first.rest_z));
+}
+
+/// How many wires are broken, in all and of each layer, with the first break of each.
+fn broken(data: &Data) -> Vec<Block> {
+    let sample = &data.snapshot.sample;
+    let wires = format!("{} / {}", sample.wires_broken, data.info.wires.len());
+    let mut blocks = vec![Block::new("wires broken", wires, counted(sample.bonds_broken, "bond"))];
+    let layers = &data.info.layers;
+    if layers.len() > 1 {
+        for (layer, name) in layers.iter().enumerate() {
+            let of = data.info.wires_of(layer).count();
+            let firsts = || data.first_breaks().filter(|(_, rupture)| rupture.layer == layer);
+            let count = firsts().count();
+            let detail = match firsts().next() {
+                Some((_, first)) => format!("first: wire {}, {:.2} %", wire_number(first.wire), percent(first.strain)),
+                None => String::new(),
+            };
+            // The layer of the first break of all is marked.
+            let signal = data.ruptures.first().is_some_and(|first| first.layer == layer);
+            blocks.push(Block { signal, ..Block::new(&format!("{name} broken"), format!("{count} / {of}"), detail) });
+        }
+    } else if let Some(first) = data.ruptures.first() {
+        let value = format!("wire {} · z {:.1} mm before loading", wire_number(first.wire), mm(first.rest_z));
         let [strand, wire] = [first.body_stress, first.stress].map(mpa);
-        let detail =
-            format!("strand at {:.2} % and {strand:.1} MPa, wire at {wire:.0} MPa true", percent(first.strain));
-        blocks.push(Block { size: 14.0, ..Block::new(FIRST_BREAK, value, detail) });
+        let detail = format!("at {:.2} % and {strand:.1} MPa, wire at {wire:.0} MPa true", percent(first.strain));
+        blocks.push(Block { size: 14.0, signal: true, ..Block::new(FIRST_BREAK, value, detail) });
     }
     blocks
 }
@@ -89,7 +147,7 @@ fn name(canvas: &mut Canvas, area: Rect, data: &Data) -> f32 {
     let title = canvas.text(x, area.y + 29.0 * u, kind, &data.info.name);
     let kind = Type { size: 11.0 * u, weight: Weight::Regular, colour: data.style.muted, align: Align::Left };
     let size = canvas.text(x, area.y + 46.0 * u, kind, &size_text(data.info));
-    x + title.max(size) + 30.0 * u
+    x + title.max(size) + 22.0 * u
 }
 
 fn size_text(info: &RunInfo) -> String {
@@ -105,15 +163,15 @@ fn block_width(canvas: &Canvas, block: &Block) -> f32 {
     let u = canvas.unit;
     let small = |t: &str| canvas.fonts.width(t, 11.0 * u, Weight::Regular);
     let value = canvas.fonts.width(&block.value, block.size * u, Weight::Bold);
-    small(block.what).max(value).max(small(&block.detail)).max(74.0 * u)
+    small(&block.what).max(value).max(small(&block.detail)).max(66.0 * u)
 }
 
 fn draw_block(canvas: &mut Canvas, x: f32, y: f32, data: &Data, block: &Block) {
     let u = canvas.unit;
-    let colour = if block.what == FIRST_BREAK { data.style.signal } else { data.style.muted };
+    let colour = if block.signal { data.style.signal } else { data.style.muted };
     let small = Type { size: 11.0 * u, weight: Weight::Regular, colour, align: Align::Left };
     let big = Type { size: block.size * u, weight: Weight::Bold, colour: data.style.text, align: Align::Left };
-    canvas.text(x, y + 18.0 * u, small, block.what);
+    canvas.text(x, y + 18.0 * u, small, &block.what);
     canvas.text(x, y + 37.0 * u, big, &block.value);
     canvas.text(x, y + 51.0 * u, Type { colour: data.style.muted, ..small }, &block.detail);
 }
@@ -158,7 +216,7 @@ fn colour_bar(canvas: &mut Canvas, area: Rect, data: &Data, range: [f64; 2]) {
     let x = area.right();
     let kind = Type { align: Align::Right, colour: data.style.signal, ..small };
     let width = canvas.text(x, area.y + 18.0 * u, kind, "broken");
-    canvas.fill(Rect::new(x - width - 15.0 * u, area.y + 9.0 * u, 10.0 * u, 10.0 * u), data.style.signal, 1.0);
+    marks::broken(canvas, Rect::new(x - width - 15.0 * u, area.y + 9.0 * u, 10.0 * u, 10.0 * u), data);
 }
 
 fn legend(canvas: &mut Canvas, area: Rect, data: &Data) {
@@ -175,7 +233,12 @@ fn legend(canvas: &mut Canvas, area: Rect, data: &Data) {
     }
     let (mut x, y) = (area.x, area.y + 0.5 * area.h);
     for (text, colour) in entries {
-        canvas.fill(Rect::new(x, y - 5.0 * u, 10.0 * u, 10.0 * u), colour, 1.0);
+        let field = Rect::new(x, y - 5.0 * u, 10.0 * u, 10.0 * u);
+        if colour == data.style.signal {
+            marks::broken(canvas, field, data)
+        } else {
+            canvas.fill(field, colour, 1.0)
+        }
         x += 15.0 * u;
         x += canvas.text(x, y + 4.5 * u, kind, &text) + 16.0 * u;
     }

@@ -3,8 +3,9 @@
 use super::canvas::{Align, Canvas, Rect, Type, Weight};
 use super::data::Data;
 
-/// Radius of a numbered disc in units.
-const BADGE: f32 = 8.5;
+/// Size of the text about a break, and height of its ground, in units.
+const TEXT: f32 = 10.5;
+const HEIGHT: f32 = 15.0;
 
 /// Places at least `pitch` apart within `[low, high]`, in the order of `wanted` (ascending), with the least sum of
 /// squared shifts before the ends are taken into account: `x_i − i·pitch` must not fall, which is isotonic
@@ -29,54 +30,66 @@ pub fn spread(wanted: &[f32], pitch: f32, low: f32, high: f32) -> Vec<f32> {
     starts.enumerate().map(|(i, start)| start + i as f32 * pitch).collect()
 }
 
-/// A number and the place in the picture that it belongs to (px).
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A break that is told of, and the place in the picture that it belongs to (px).
+#[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// The number.
+    /// Its number in the order in which wires broke, from 1.
     pub number: usize,
+    /// What is written, such as `2: wire 30 (outer)`; shorter where there is no room for that.
+    pub words: [String; 2],
     /// The place.
     pub at: [f32; 2],
 }
 
-/// Numbers in discs inside `band`, each joined by a line to its place. When one row is too short there are more, as
-/// many as the band holds; numbers beyond that are left out, the last ones first.
-pub fn badges(canvas: &mut Canvas, band: Rect, data: &Data, marks: &[Mark]) {
+/// Words on grounds of their own inside `band`, each joined by a line to its place. Where the band is full they become
+/// shorter, at last the number alone; numbers for which there is no room at all are left out, the last ones first.
+pub fn breaks(canvas: &mut Canvas, band: Rect, data: &Data, marks: &[Mark]) {
     let u = canvas.unit;
-    let radius = BADGE * u;
-    let pitch = 2.0 * radius + 1.5 * u;
-    let per_row = ((band.w / pitch) as usize).max(1);
-    let possible = ((band.h / pitch).round() as usize).max(1);
-    let mut marks: Vec<Mark> = marks.iter().copied().take(per_row * possible).collect();
+    let pitch_down = HEIGHT * u + 2.0 * u;
+    let possible = ((band.h / pitch_down).round() as usize).max(1);
+    let choices = |m: &Mark| [m.words[0].clone(), m.words[1].clone(), m.number.to_string()];
+    let widest = |canvas: &Canvas, k: usize| {
+        let widths = marks.iter().map(|m| canvas.fonts.width(&choices(m)[k], TEXT * u, Weight::Bold));
+        widths.fold(0.0, f32::max) + 10.0 * u
+    };
+    let per_row = |width: f32| ((band.w / (width + 2.0 * u)) as usize).max(1);
+    let fits = |canvas: &Canvas, k: &usize| per_row(widest(canvas, *k)) * possible >= marks.len();
+    let choice = (0..2).find(|k| fits(canvas, k)).unwrap_or(2);
+    let width = widest(canvas, choice);
+    let (pitch, per_row) = (width + 2.0 * u, per_row(width));
+    let mut marks: Vec<&Mark> = marks.iter().take(per_row * possible).collect();
     marks.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
     let rows = marks.len().div_ceil(per_row).max(1);
-    let mut placed: Vec<(Mark, [f32; 2])> = Vec::new();
+    let mut placed: Vec<(&Mark, [f32; 2])> = Vec::new();
     for row in 0..rows {
         // Neighbours go to different rows, so that every row keeps to its places.
-        let members: Vec<Mark> = marks.iter().copied().skip(row).step_by(rows).collect();
+        let members: Vec<&Mark> = marks.iter().copied().skip(row).step_by(rows).collect();
         let wanted: Vec<f32> = members.iter().map(|m| m.at[0]).collect();
-        let y = band.y + 0.5 * band.h + (row as f32 - 0.5 * (rows as f32 - 1.0)) * pitch;
-        let places = spread(&wanted, pitch, band.x + radius, band.right() - radius);
+        let y = band.y + 0.5 * band.h + (row as f32 - 0.5 * (rows as f32 - 1.0)) * pitch_down;
+        let places = spread(&wanted, pitch, band.x + 0.5 * width, band.right() - 0.5 * width);
         placed.extend(members.into_iter().zip(places.into_iter().map(|x| [x, y])));
     }
     for (mark, from) in &placed {
-        canvas.line(*from, mark.at, 1.2 * u, data.style.text, 0.8);
+        canvas.line(*from, mark.at, 2.6 * u, data.style.page, 0.6);
+        canvas.line(*from, mark.at, 1.2 * u, data.style.text, 0.9);
         canvas.disc(mark.at[0], mark.at[1], 2.2 * u, data.style.text, 1.0);
     }
-    for (mark, [x, y]) in placed {
-        badge(canvas, x, y, radius, data, mark.number);
+    for (mark, at) in placed {
+        pill(canvas, at, data, &choices(mark)[choice], mark.number == 1);
     }
 }
 
-/// A number in a disc of the signal colour.
-fn badge(canvas: &mut Canvas, x: f32, y: f32, radius: f32, data: &Data, number: usize) {
-    let text = number.to_string();
-    let size = radius * if text.len() > 1 { 1.15 } else { 1.35 };
-    // The first break is what people look for.
-    let ground = if number == 1 { data.style.text } else { data.style.panel };
-    canvas.disc(x, y, radius + 1.5 * canvas.unit, ground, 1.0);
-    canvas.disc(x, y, radius, data.style.signal, 1.0);
-    let kind = Type { size, weight: Weight::Bold, colour: [255; 3], align: Align::Centre };
-    canvas.text(x, y + 0.36 * size, kind, &text);
+/// Words about a break, centred at (x, y) (px): white on the signal colour for the `first`, which people look for.
+pub fn pill(canvas: &mut Canvas, [x, y]: [f32; 2], data: &Data, text: &str, first: bool) {
+    let u = canvas.unit;
+    let width = canvas.fonts.width(text, TEXT * u, Weight::Bold) + 8.0 * u;
+    let (ground, ink) = if first { (data.style.signal, [255; 3]) } else { (data.style.page, data.style.text) };
+    let ground_at = Rect::new(x - 0.5 * width, y - 0.5 * HEIGHT * u, width, HEIGHT * u);
+    let edge = if first { data.style.text } else { data.style.signal };
+    canvas.fill_rounded(ground_at.inset(-u, -u, -u, -u), 4.0 * u, edge, 1.0);
+    canvas.fill_rounded(ground_at, 3.5 * u, ground, 1.0);
+    let kind = Type { size: TEXT * u, weight: Weight::Bold, colour: ink, align: Align::Centre };
+    canvas.text(x, y + 0.36 * TEXT * u, kind, text);
 }
 
 /// A word on a ground of its own, centred at (x, y).

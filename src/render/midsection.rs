@@ -4,8 +4,9 @@ use super::camera::Camera;
 use super::canvas::{Canvas, Rect};
 use super::data::Data;
 use super::labels::{self, Mark};
+use super::marks;
 use super::panel::{Panel, Shot};
-use super::sides::{FRONT, Side, facing, sides};
+use super::sides::sides;
 use crate::base::units::mm;
 use crate::engine::view::Rupture;
 use crate::scene::spec::View;
@@ -16,24 +17,20 @@ pub struct Midsection;
 
 impl Panel for Midsection {
     fn shots(&self, data: &Data, panel: Rect, unit: f32) -> Vec<Shot> {
-        let z = data.current_z(data.focus());
-        // Only the outermost layer is seen.
-        let first = data.ruptures.first().filter(|first| outermost(data, first));
-        let sides = sides(panel, unit, first.map_or(FRONT, |first| facing(data, first)));
-        let alone = sides.len() == 1;
+        let z = data.current_z(data.focus.z);
         let slant = data.camera.azimuth.sin().abs() as f32;
-        let shot = |(panel, side): (Rect, Side)| {
+        let shots = sides(panel, unit, &data.focus).into_iter().map(|(panel, side)| {
             let camera = section(data, [data.camera.azimuth, data.camera.elevation + side.turn], panel, z);
-            let caption = if alone { "midsection" } else { side.name };
-            let remark = if alone { format!("{}, {}", side.name, around(data)) } else { around(data) };
             let fade = data.body.radius + slant * panel.w / camera.scale;
-            Shot { view: View::Midsection, camera, caption, remark, fade }
-        };
-        sides.into_iter().map(shot).collect()
+            let (caption, remark) = (data.focus.words(), side.name.to_owned());
+            Shot { view: View::Midsection, camera, layer: None, caption, remark, fade, measures: true }
+        });
+        shots.collect()
     }
 
     fn annotate(&self, canvas: &mut Canvas, shot: &Shot, data: &Data, _frame: &[Shot]) {
-        break_numbers(canvas, &shot.camera, data);
+        breaks(canvas, &shot.camera, data);
+        first_break(canvas, &shot.camera, data);
     }
 }
 
@@ -52,26 +49,36 @@ pub fn section(data: &Data, [azimuth, elevation]: [f64; 2], panel: Rect, z: f32)
     }
 }
 
-/// Which section that is, in words.
-pub fn around(data: &Data) -> String {
-    format!("around z {:.1} mm before loading", mm(data.focus().into()))
-}
-
-/// Numbers, in order of break, of the wires that broke on the side that this camera sees, with a line to the place.
-fn break_numbers(canvas: &mut Canvas, camera: &Camera, data: &Data) {
+/// Order and number of the wires that broke on the side that this camera sees, with a line to an end.
+fn breaks(canvas: &mut Canvas, camera: &Camera, data: &Data) {
     let u = canvas.unit;
     let panel = camera.panel;
     let seen: Vec<Mark> = data
         .first_breaks()
-        .filter(|(_, r)| outermost(data, r) && camera.to_view(data.place(r)).z > 0.0)
-        .map(|(number, r)| Mark { number, at: camera.project(data.place(r)) })
-        .filter(|m| m.at[0] > panel.x && m.at[0] < panel.right())
+        .filter(|(_, r)| outermost(data, r))
+        .filter_map(|(number, r)| {
+            let at = data.seen_end(r, camera, Vec3::ZERO)?;
+            Some(Mark { number, words: [true, false].map(|layer| data.words(number, r, layer)), at })
+        })
         .collect();
     // Above the strand for breaks in its upper half, below it for the others.
-    let (upper, lower): (Vec<Mark>, Vec<Mark>) = seen.iter().partition(|m| m.at[1] < panel.y + 0.5 * panel.h);
-    let band = |y: f32| Rect::new(panel.x + 4.0 * u, y, panel.w - 8.0 * u, 20.0 * u);
-    labels::badges(canvas, band(panel.y + 28.0 * u), data, &upper);
-    labels::badges(canvas, band(panel.bottom() - 46.0 * u), data, &lower);
+    let (upper, lower): (Vec<Mark>, Vec<Mark>) = seen.into_iter().partition(|m| m.at[1] < panel.y + 0.5 * panel.h);
+    let band = |y: f32| Rect::new(panel.x + 4.0 * u, y, panel.w - 8.0 * u, 36.0 * u);
+    labels::breaks(canvas, band(panel.y + 26.0 * u), data, &upper);
+    labels::breaks(canvas, band(panel.bottom() - 62.0 * u), data, &lower);
+}
+
+/// Where the first break is, when it lies outside the picture.
+fn first_break(canvas: &mut Canvas, camera: &Camera, data: &Data) {
+    let u = canvas.unit;
+    let panel = camera.panel;
+    let Some((number, first)) = data.first_breaks().next() else { return };
+    let [x, _] = camera.project(data.place(first));
+    if (panel.x..panel.right()).contains(&x) {
+        return;
+    }
+    let words = format!("first break, {}, {:.0} mm", data.words(number, first, true), mm(first.rest_z));
+    marks::aside(canvas, panel, data, &words, x < panel.x, 73.0 * u);
 }
 
 fn outermost(data: &Data, rupture: &Rupture) -> bool {

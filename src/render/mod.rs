@@ -2,7 +2,7 @@
 //!
 //! | for | call |
 //! | --- | --- |
-//! | frames of a run, with all panels, titles and charts | [`Renderer`], one snapshot to one picture |
+//! | frames of a run, with all panels, titles and charts | [`Renderer`], one snapshot and the [`History`] up to it to one picture |
 //! | a numbered PNG sequence, and an animation of it, while a run goes on | [`FrameWriter`] |
 //! | wires alone, through any camera, into memory, and what lies under a pixel | `explore::draw::Artist` (feature `explore`), with `painter::Painter` and `wires::segments` |
 //!
@@ -15,6 +15,8 @@ pub mod animation;
 pub(crate) mod body;
 pub(crate) mod camera;
 pub(crate) mod canvas;
+mod chart;
+mod close_up;
 pub mod colour;
 mod cross_section;
 mod curve;
@@ -24,6 +26,8 @@ mod everything;
 mod exploded;
 mod frame;
 mod header;
+mod history;
+mod kind;
 mod labels;
 mod layout;
 mod marks;
@@ -43,6 +47,7 @@ mod writer;
 
 pub use adapter::check;
 pub use frame::Renderer;
+pub use history::{History, Row};
 pub use painter::SHADER;
 pub use style::{Rgb, SIGNAL, Style};
 pub use writer::FrameWriter;

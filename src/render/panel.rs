@@ -16,7 +16,7 @@ pub trait Panel: Sync {
         Vec::new()
     }
 
-    /// How wires look in its shots, where that is not as they are.
+    /// How wires look in its shots, where that is not as they are: alike in all shots of a frame.
     fn looks(&self, _data: &Data, _camera: &Camera) -> Option<Looks> {
         None
     }
@@ -34,10 +34,14 @@ pub struct Shot {
     pub view: View,
     /// The camera.
     pub camera: Camera,
+    /// The one layer that it shows; `None` for all.
+    pub layer: Option<usize>,
     /// Title; empty for none.
-    pub caption: &'static str,
+    pub caption: String,
     /// Remark after the title.
     pub remark: String,
     /// Depth over which things darken (m).
     pub fade: f32,
+    /// Whether a scale bar and the axes are drawn over it.
+    pub measures: bool,
 }

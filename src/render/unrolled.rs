@@ -15,7 +15,7 @@ use crate::observe::unrolled;
 
 /// Breaks nearer together than this, in units, are numbered as one group: beside it there must be room for the
 /// columns of the next.
-const GROUP: f32 = 110.0;
+const GROUP: f32 = 240.0;
 
 /// The panel.
 pub struct Unrolled;
@@ -25,7 +25,7 @@ impl Panel for Unrolled {
         let u = canvas.unit;
         canvas.fill(panel, data.style.panel, 1.0);
         let x = marks::title(canvas, panel, data, "wires unrolled");
-        marks::subtitle(canvas, x, panel, data, "numbers: order of break");
+        marks::subtitle(canvas, x, panel, data, "breaks, in their order");
         let rows = rows(panel.inset(76.0 * u, 42.0 * u, 18.0 * u, 38.0 * u), data, u);
         for (number, wire) in data.info.wires.iter().enumerate() {
             row(canvas, &rows, rows.top(number), wire, data);
@@ -135,9 +135,7 @@ fn breaks(canvas: &mut Canvas, rows: &Rows, data: &Data) {
                 let x = 0.5 * (rows.x_of(data, i) + rows.x_of(data, i + 1));
                 let reach = 0.5 * rows.height.max(9.0 * u);
                 let middle = rows.top(number) + 0.45 * rows.height;
-                let mark = Rect::new(x - 2.5 * u, middle - reach, 5.0 * u, 2.0 * reach);
-                canvas.fill(mark.inset(-u, -u, -u, -u), data.style.panel, 1.0);
-                canvas.fill(mark, data.style.signal, 1.0);
+                marks::broken(canvas, Rect::new(x - 2.5 * u, middle - reach, 5.0 * u, 2.0 * reach), data);
             }
         }
     }
@@ -151,7 +149,7 @@ fn numbers(canvas: &mut Canvas, rows: &Rows, data: &Data) {
         .first_breaks()
         .map(|(number, r)| {
             let at = [rows.x(mm(r.rest_z)), rows.top(r.wire) + 0.45 * rows.height];
-            Mark { number, at }
+            Mark { number, words: [data.words(number, r, true), String::new()], at }
         })
         .collect();
     places.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
@@ -165,14 +163,16 @@ fn numbers(canvas: &mut Canvas, rows: &Rows, data: &Data) {
 /// A column of numbers beside a group of breaks.
 fn column(canvas: &mut Canvas, rows: &Rows, data: &Data, marks: &[Mark], right: bool) {
     let u = canvas.unit;
-    let (size, w, h) = (11.0 * u, 20.0 * u, 13.0 * u);
+    let (size, h) = (10.5 * u, 13.0 * u);
+    let width = |m: &Mark| canvas.fonts.width(&m.words[0], size, Weight::Bold);
+    let w = marks.iter().map(width).fold(0.0, f32::max) + 8.0 * u;
     let reach = marks.iter().map(|m| if right { m.at[0] } else { -m.at[0] }).fold(f32::MIN, f32::max);
     let distance = reach + 14.0 * u;
     // Against the ends of the map, numbers rather cover a break than leave it.
     let left = if right { distance } else { -distance - w }.clamp(rows.area.x, rows.area.right() - w);
     // As many as can be read, the first ones, closer together the more they are.
     let [low, high] = [rows.area.y - 0.3 * h, rows.area.bottom() + 0.3 * h];
-    let mut marks = marks.to_vec();
+    let mut marks: Vec<&Mark> = marks.iter().collect();
     marks.sort_by_key(|m| m.number);
     marks.truncate(((high - low) / (0.8 * h)) as usize + 1);
     marks.sort_by(|a, b| a.at[1].total_cmp(&b.at[1]));
@@ -185,10 +185,12 @@ fn column(canvas: &mut Canvas, rows: &Rows, data: &Data, marks: &[Mark], right: 
         canvas.line([near, *y], mark.at, 1.1 * u, data.style.text, 0.85);
     }
     for (mark, y) in marks.iter().zip(levels) {
-        let first = mark.number == 1;
-        let (ground, ink) = if first { (data.style.signal, [255; 3]) } else { (data.style.page, data.style.text) };
-        canvas.fill_rounded(Rect::new(left, y - 0.5 * h, w, h), 3.0 * u, ground, if first { 1.0 } else { 0.88 });
-        let kind = Type { size, weight: Weight::Bold, colour: ink, align: Align::Centre };
-        canvas.text(left + 0.5 * w, y + 0.36 * size, kind, &mark.number.to_string());
+        canvas.fill_rounded(Rect::new(left, y - 0.5 * h, w, h), 3.0 * u, data.style.page, 0.88);
+        // The first break is what people look for; filled with the signal colour its label would look like a break itself.
+        if mark.number == 1 {
+            canvas.fill(Rect::new(left, y - 0.5 * h, 3.0 * u, h), data.style.signal, 1.0);
+        }
+        let kind = Type { size, weight: Weight::Bold, colour: data.style.text, align: Align::Centre };
+        canvas.text(left + 0.5 * w, y + 0.36 * size, kind, &mark.words[0]);
     }
 }

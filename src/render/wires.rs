@@ -79,14 +79,21 @@ impl Looks {
 }
 
 /// The segments of every wire and sphere. Where a wire is straight, up to `stride` bonds share a segment: small
-/// pictures need no more.
-pub fn segments(info: &RunInfo, snapshot: &Snapshot, looks: &Looks, stride: usize) -> Vec<Segment> {
+/// pictures need no more. Of one layer alone where `layer` names it.
+pub fn segments(
+    info: &RunInfo,
+    snapshot: &Snapshot,
+    looks: &Looks,
+    stride: usize,
+    layer: Option<usize>,
+) -> Vec<Segment> {
     let mut all = Vec::with_capacity(snapshot.position.len());
-    for (wire, shade) in info.wires.iter().zip(&looks.shade) {
+    let shown = |wire: &WireInfo| layer.is_none_or(|layer| layer == wire.layer);
+    for (wire, shade) in info.wires.iter().zip(&looks.shade).filter(|(wire, _)| shown(wire)) {
         let chain = Chain { info, snapshot, looks, wire, shade: *shade };
         chain.segments(stride, &mut all);
     }
-    let spheres = (info.wire_particles..snapshot.position.len()).filter(|i| looks.shows(*i));
+    let spheres = (info.wire_particles..snapshot.position.len()).filter(|i| layer.is_none() && looks.shows(*i));
     all.extend(spheres.map(|i| sphere(snapshot, looks, i)));
     all
 }

@@ -201,7 +201,14 @@ fn shade(p: vec2<f32>, in: Varying, pixel: vec2<f32>) -> Lit {
   if (in.ta.w == 3.0) { broken = max(broken, 1.0 - smoothstep(band - soft, band + soft, s * l)); }
   if (in.tb.w == 3.0) { broken = max(broken, 1.0 - smoothstep(band - soft, band + soft, (1.0 - s) * l)); }
   if (in.ta.w == 4.0 || in.tb.w == 4.0) { broken = 1.0; }
+  // A light collar and a dark one follow, so that eyes which see no red find the end by its brightness.
+  let from_a = select(1e9, s * l, in.ta.w == 3.0);
+  let from_b = select(1e9, (1.0 - s) * l, in.tb.w == 3.0);
+  let from_end = min(from_a, from_b);
+  let light_collar = (1.0 - broken) * (1.0 - smoothstep(1.7 * band - soft, 1.7 * band + soft, from_end));
+  let dark_collar = (1.0 - broken - light_collar) * (1.0 - smoothstep(2.2 * band - soft, 2.2 * band + soft, from_end));
   var base = mix(mix(in.ca.rgb, in.cb.rgb, s), view.signal.rgb, broken);
+  base = mix(mix(base, vec3<f32>(0.85), light_collar), vec3<f32>(0.01), dark_collar);
   if (face) { base = face_colour(select(in.tb.w, in.ta.w, hit.face < 0.0)); }
 
   let o = mix(in.oa, in.ob, s);
@@ -227,7 +234,7 @@ fn shade(p: vec2<f32>, in: Varying, pixel: vec2<f32>) -> Lit {
   let edged = select(slant, 0.0, face);
   colour = colour * (1.0 - view.rim.w * edged) + view.rim.rgb * (0.35 + 3.0 * base) * edged * open * open;
   // Broken ends and cut faces keep their colour also in the shade.
-  colour = mix(colour, max(colour, base * 0.5), select(broken, 1.0, face));
+  colour = mix(colour, max(colour, base * 0.5), select(max(broken, light_collar), 1.0, face));
 
   var lit: Lit;
   lit.colour = vec4<f32>(dithered(colour, pixel), 1.0);

@@ -2,6 +2,7 @@
 
 use super::animation::{self, Still};
 use super::frame::Renderer;
+use super::history::{History, Row};
 use super::{adapter, png};
 use crate::base::error::{Error, Result};
 use crate::base::regular;
@@ -41,8 +42,10 @@ pub struct FrameWriter {
     origin: Option<Origin>,
     /// Memory for snapshots that wait to be drawn (bytes).
     memory: usize,
-    curve: Vec<(f64, f64)>,
+    rows: Vec<Row>,
     ruptures: Vec<Rupture>,
+    /// All ruptures of a run that is over.
+    known: Option<Vec<Rupture>>,
     workers: Option<Workers>,
     timings: Arc<Mutex<Timings>>,
     stills: Vec<Still>,
@@ -61,7 +64,7 @@ struct Job {
     snapshot: Arc<Snapshot>,
     /// Whether a picture of it is missing.
     missing: bool,
-    curve: Vec<(f64, f64)>,
+    rows: Vec<Row>,
     ruptures: Vec<Rupture>,
 }
 
@@ -80,8 +83,9 @@ impl FrameWriter {
             whole: HashSet::new(),
             origin: None,
             memory: 0,
-            curve: Vec::new(),
+            rows: Vec::new(),
             ruptures: Vec::new(),
+            known: None,
             workers: None,
             timings: Arc::default(),
             stills: Vec::new(),
@@ -97,6 +101,12 @@ impl FrameWriter {
     /// Leaves out pictures that are there already, from an earlier process that drew the same.
     pub fn without(mut self, whole: HashSet<PathBuf>) -> Self {
         self.whole = whole;
+        self
+    }
+
+    /// Lets close-ups look at the main fracture from the first picture: `ruptures` are all of a run that is over.
+    pub fn knowing(mut self, ruptures: Vec<Rupture>) -> Self {
+        self.known = Some(ruptures);
         self
     }
 
@@ -178,17 +188,18 @@ impl Observer for FrameWriter {
         let (pictures, drawn) = sync_channel(DRAWN);
         let (folder, origin) = (self.folder.clone(), self.origin);
         let cut = Arc::new(AtomicBool::new(false));
+        let history = self.known.take().map_or_else(History::default, History::knowing);
         self.workers = Some(Workers {
             jobs,
             cut: cut.clone(),
-            draw: std::thread::spawn(move || draw_all(renderer, &waiting, &pictures, &cut)),
+            draw: std::thread::spawn(move || draw_all(renderer, history, &waiting, &pictures, &cut)),
             encode: std::thread::spawn(move || encode_all(&folder, origin, &drawn)),
         });
         Ok(())
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
-        self.curve.push((sample.strain, sample.stress));
+        self.rows.push(sample.into());
         Ok(())
     }
 
@@ -197,7 +208,7 @@ impl Observer for FrameWriter {
         let job = Job {
             snapshot: snapshot.clone(),
             missing: !self.whole.contains(&file),
-            curve: std::mem::take(&mut self.curve),
+            rows: std::mem::take(&mut self.rows),
             ruptures: std::mem::take(&mut self.ruptures),
         };
         let Some(workers) = &self.workers else {
@@ -253,14 +264,16 @@ struct Drawn {
 
 fn draw_all(
     mut renderer: Renderer,
+    mut history: History,
     jobs: &Receiver<Job>,
     pictures: &SyncSender<Drawn>,
     cut: &AtomicBool,
 ) -> Result<Timings> {
-    let (mut curve, mut ruptures, mut not_drawn) = (Vec::new(), Vec::new(), 0);
+    let mut not_drawn = 0;
     for (number, job) in jobs.iter().enumerate() {
-        curve.extend(job.curve);
-        ruptures.extend(job.ruptures);
+        history.rows.extend(job.rows);
+        history.ruptures.extend(job.ruptures);
+        renderer.follow(&mut history, &job.snapshot);
         if !job.missing {
             continue;
         }
@@ -268,7 +281,7 @@ fn draw_all(
             not_drawn += 1;
             continue;
         }
-        let picture = renderer.draw(&job.snapshot, &curve, &ruptures)?;
+        let picture = renderer.draw(&job.snapshot, &history)?;
         if pictures.send(Drawn { number, step: job.snapshot.sample.step, picture }).is_err() {
             // The encoder has ended with an error of its own, which `join` reports.
             break;

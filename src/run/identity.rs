@@ -14,7 +14,7 @@ use crate::scene;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The last key of `summary.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -56,12 +56,40 @@ impl fmt::Display for Doubt {
 /// [`Error::Io`] when a file cannot be read.
 pub fn seal(summary: &str, origin: Origin, run: &Path, more: &[&str]) -> Result<String> {
     let names = tables::FILES.into_iter().chain([SCENE, TRAJECTORY]).chain(more.iter().copied());
-    let files = names
-        .filter(|name| run.join(name).is_file())
-        .map(|name| Ok((name.to_owned(), Digest::of_file(&run.join(name))?)));
+    let files =
+        names.filter(|name| run.join(name).exists()).map(|name| Ok((name.to_owned(), digest(&run.join(name))?)));
     let seal = Seal { origin, files: files.collect::<Result<_>>()?, summary: Digest::of(summary) };
     let open = summary.trim_end().trim_end_matches('}').trim_end();
     Ok(format!("{open}{SEAL}{}\n}}\n", serde_json::to_string(&seal).expect("a seal holds nothing that JSON lacks")))
+}
+
+/// The digest of a file, or of all numbered pictures in a folder, in their order.
+///
+/// # Errors
+/// [`Error::Io`] when one cannot be read.
+pub fn digest(path: &Path) -> Result<Digest> {
+    if !path.is_dir() {
+        return Digest::of_file(path);
+    }
+    let pictures = pictures(path)?;
+    let digests: Result<Vec<String>> = pictures.values().map(|file| Ok(Digest::of_file(file)?.to_string())).collect();
+    Ok(Digest::of(digests?.join("\n")))
+}
+
+/// `frame_0012.png` and the like in a folder, by number; none where there is no folder.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read.
+pub fn pictures(folder: &Path) -> Result<BTreeMap<usize, PathBuf>> {
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(BTreeMap::new()),
+        Err(e) => return Err(Error::io("cannot read the folder", folder, e)),
+    };
+    let number = |path: &Path| -> Option<usize> {
+        path.file_name()?.to_str()?.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok()
+    };
+    Ok(entries.flatten().filter_map(|entry| Some((number(&entry.path())?, entry.path()))).collect())
 }
 
 /// The seal of a summary, if it has one and is as it was sealed.

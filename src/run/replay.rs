@@ -4,7 +4,7 @@ use super::folder::TRAJECTORY;
 use super::identity::Doubt;
 use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
-use crate::engine::view::RunInfo;
+use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::origin::Origin;
 use crate::observe::trajectory::{Record, Trajectory};
 use crate::observe::{Observer, partial};
@@ -73,8 +73,8 @@ pub struct Replay {
     records: usize,
     /// Why the trajectory ends before its run did.
     cut_off: Option<Error>,
-    /// Where the first bond broke, as z before loading (m).
-    first_break: Option<f64>,
+    /// Every rupture, in order.
+    ruptures: Vec<Rupture>,
     /// Files of the run are not believed.
     doubted: bool,
 }
@@ -88,14 +88,14 @@ impl Replay {
     pub fn open(run: &Path, selection: &Selection) -> Result<Self> {
         let file = trajectory_of(run)?;
         let (mut moments, mut records, mut cut_off, mut broke) = (Vec::new(), 0, None, false);
-        let mut first_break = None;
+        let mut ruptures = Vec::new();
         let trajectory = Trajectory::open(&file)?;
         let origin = trajectory.origin();
         for record in trajectory {
             match record {
                 Ok(Record::Rupture(rupture)) => {
                     broke = true;
-                    first_break.get_or_insert(rupture.rest_z);
+                    ruptures.push(rupture);
                 }
                 Ok(Record::Snapshot(snapshot)) => {
                     moments.push(Moment { strain: snapshot.sample.strain, broke: std::mem::take(&mut broke) });
@@ -116,7 +116,7 @@ impl Replay {
                 ),
             });
         }
-        Ok(Self { file, origin, shown, records, cut_off, first_break, doubted: false })
+        Ok(Self { file, origin, shown, records, cut_off, ruptures, doubted: false })
     }
 
     /// Says with everything that is shown that files of the run are doubtful, if there are such `doubts`.
@@ -150,9 +150,9 @@ impl Replay {
         self.shown.iter().filter(|shown| **shown).count()
     }
 
-    /// Where the first bond of the run broke, as z before loading (m); `None` when none did.
-    pub fn first_break(&self) -> Option<f64> {
-        self.first_break
+    /// Every rupture of the run, in order, whichever of its snapshots are shown.
+    pub fn ruptures(&self) -> &[Rupture] {
+        &self.ruptures
     }
 
     /// Why the trajectory ends before its run did, if so.

@@ -46,10 +46,10 @@ words! {
         Overview = "overview", "The whole strand, its axis across the width";
         Midsection = "midsection", "Close-up on the section where it breaks, from the front and from the back";
         Cutaway = "cutaway", "The same section with its outer layers cut open in steps, so that inner wires are seen";
-        Exploded = "exploded", "The same section with the layers taken apart, one below the other";
-        CrossSection = "cross-section", "The cut at the same section: wires as discs, broken ones hollow";
+        Exploded = "exploded", "The same section with the layers taken apart, each in a strip of its own";
+        CrossSection = "cross-section", "The cut at the same section: wires as discs, broken ones hollow, those that left it below";
         Unrolled = "unrolled", "Wire number against axial position";
-        Curve = "curve", "Stress-strain curve";
+        Curve = "curve", "Stress-strain curve; where nothing is pulled, torque, deflection, approach or speed over time";
         Scene = "scene", "Everything in one view; what free bodies get";
     }
 }

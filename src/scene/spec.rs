@@ -457,7 +457,8 @@ pub struct CameraSpec {
     pub elevation: f64,
     /// Magnification over what fits a panel (-).
     pub zoom: f64,
-    /// Section that the close-up follows, as z before loading (m). `None`: mid-length, then the first rupture.
+    /// Section that the close-up follows, as z before loading (m). `None`: mid-length, then the first break,
+    /// then the main fracture.
     pub focus_z: Option<f64>,
 }
 

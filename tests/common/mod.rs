@@ -5,6 +5,7 @@
 
 use std::f32::consts::TAU;
 use strandsnap::engine::view::{BondState, RunInfo, Rupture, RuptureCause, Snapshot, WireInfo};
+use strandsnap::render::{History, Row};
 
 /// Wire diameter (m).
 pub const DIAMETER: f32 = 0.39e-3;
@@ -169,6 +170,15 @@ fn spring_back(info: &RunInfo, s: &mut Snapshot, w: usize, bond: usize) {
 /// A curve up to `strain` (-).
 pub fn curve(strain: f32) -> Vec<(f64, f64)> {
     (0..=400).map(|k| strain * k as f32 / 400.0).map(|e| (f64::from(e), f64::from(hardening(e) / (1.0 + e)))).collect()
+}
+
+/// A history with points of the stress-strain curve (-, Pa) and ruptures.
+pub fn told(points: &[(f64, f64)], ruptures: &[Rupture]) -> History {
+    let mut history = History::default();
+    let row = |(strain, stress): &(f64, f64)| Row { strain: *strain, stress: *stress, ..Row::default() };
+    history.rows.extend(points.iter().map(row));
+    history.ruptures.extend_from_slice(ruptures);
+    history
 }
 
 /// Two free spheres.

@@ -11,7 +11,7 @@ const COLD: [(&str, &[&str]); 9] = [
     ),
     ("is generic: compiled with our own code", &["nalgebra", "levenberg-marquardt", "postcard", "serde", "uom"]),
     ("describes a table once", &["arrow-schema"]),
-    ("calls the system", &["ctrlc", "pollster", "rustix", "tempfile"]),
+    ("calls the system", &["ctrlc", "pollster", "rustix", "signal-hook", "tempfile"]),
     ("talks to people", &["clap", "clap_complete", "clap_mangen", "indicatif", "textwrap"]),
     ("makes a page or a plot in a second at most", &["base64", "colorous", "maud", "plotters"]),
     ("is called a few times per study", &["statrs"]),

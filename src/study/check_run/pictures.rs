@@ -9,9 +9,9 @@ use crate::base::regular;
 use crate::observe::animation::{Animation, Format};
 use crate::observe::origin::{RUN_KEYWORD, STEP_KEYWORD};
 use crate::run::folder::{FRAMES, is_undrawn};
+use crate::run::identity;
 use rayon::prelude::*;
 use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
-use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -66,24 +66,21 @@ fn picture(path: &Path) -> Result<Picture, String> {
     Ok(Picture { size: [info.width, info.height], frames, run: says(RUN_KEYWORD), step: says(STEP_KEYWORD) })
 }
 
-/// The pictures in a folder, by number; none without it.
-fn numbered(folder: &Path) -> BTreeMap<usize, PathBuf> {
-    let number = |path: &Path| -> Option<usize> {
-        path.file_name()?.to_str()?.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok()
-    };
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    entries.filter_map(|path| Some((number(&path)?, path))).collect()
-}
-
 fn pictures(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
-    let drawn = numbered(&run.path.join(FRAMES));
+    let frames = run.path.join(FRAMES);
+    let numbered = |folder: &str| identity::pictures(&run.path.join(folder)).unwrap_or_default();
+    let drawn = numbered(FRAMES);
     let own = run.drew_frames();
     if own {
         let left_out = run.summary.cost.frames.map_or(0, |frames| frames.not_drawn as usize);
         let snapshots = run.trajectory.snapshots.len().saturating_sub(left_out);
         // Whoever draws the rest may have been killed before he told.
-        let drawing = is_undrawn(&run.path.join(FRAMES)) && drawn.len() > snapshots;
+        let drawing = is_undrawn(&frames) && drawn.len() > snapshots;
+        let sealed = run.seal.as_ref().and_then(|seal| seal.files.get(FRAMES)).filter(|_| !drawing);
+        if let (Some(right), Ok(found)) = (sealed, identity::digest(&frames)) {
+            search.same(found.to_string(), right.to_string(), || format!("digest of the pictures in {FRAMES}"));
+        }
         let snapshots = if drawing { drawn.len().min(run.trajectory.snapshots.len()) } else { snapshots };
         search.same(drawn.len(), snapshots, || format!("pictures in {FRAMES}"));
         let last = drawn.last_key_value().map_or(0, |(number, _)| number + 1);
@@ -92,7 +89,7 @@ fn pictures(run: &Folder) -> InvariantOutcome {
             search.same(timings.frames as usize, snapshots, || "frames, count in summary.json".into());
         }
     }
-    let again = numbered(&run.path.join(AGAIN));
+    let again = numbered(AGAIN);
     let all: Vec<(&str, usize, &PathBuf)> = [(FRAMES, &drawn), (AGAIN, &again)]
         .into_iter()
         .flat_map(|(folder, pictures)| pictures.iter().map(move |(number, path)| (folder, *number, path)))
@@ -108,8 +105,7 @@ fn pictures(run: &Folder) -> InvariantOutcome {
         if any_dated && own && folder == FRAMES {
             let left_out = run.summary.cost.frames.is_some_and(|frames| frames.unfinished());
             let unfinished = left_out || run.summary.stopped == StopReason::Interrupted;
-            search
-                .same(is_undrawn(&run.path.join(FRAMES)), unfinished, || format!("{FRAMES} are marked as unfinished"));
+            search.same(is_undrawn(&frames), unfinished, || format!("{FRAMES} are marked as unfinished"));
         }
         let mut steps = run.trajectory.snapshots.iter();
         for ((_, number, _), seen) in of() {
