@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 use strandsnap::base::error::Result;
-use strandsnap::engine::view::RunInfo;
+use strandsnap::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use strandsnap::observe::Observer;
 use strandsnap::observe::animation::Animation;
 use strandsnap::observe::peaks::Peaks;
@@ -115,6 +115,34 @@ impl Observer for StopAtTheEnd<'_> {
     }
 }
 
+/// Passes on the first snapshots alone.
+struct FirstOnes<'a> {
+    inner: &'a mut dyn Observer,
+    left: usize,
+}
+
+impl Observer for FirstOnes<'_> {
+    fn start(&mut self, info: &Arc<RunInfo>) -> Result<()> {
+        self.inner.start(info)
+    }
+    fn sample(&mut self, sample: &Sample) -> Result<()> {
+        self.inner.sample(sample)
+    }
+    fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
+        self.inner.rupture(rupture)
+    }
+    fn snapshot(&mut self, snapshot: &Arc<Snapshot>) -> Result<()> {
+        if self.left == 0 {
+            return Ok(());
+        }
+        self.left -= 1;
+        self.inner.snapshot(snapshot)
+    }
+    fn finish(&mut self) -> Result<()> {
+        self.inner.finish()
+    }
+}
+
 /// A batch system gives seconds between the first signal and the last.
 #[test]
 fn a_run_that_is_stopped_while_it_draws_keeps_its_results_and_is_drawn_later() {
@@ -145,6 +173,7 @@ fn a_run_that_is_stopped_while_it_draws_keeps_its_results_and_is_drawn_later() {
     let drawn = pictures(&at("cut/frames"));
     assert_eq!(drawn.len() + left, whole.len());
     assert!(at("cut/frames/UNFINISHED.txt").is_file() && !at("cut/frames.gif").exists());
+    let stopped = AtomicBool::new;
     let agrees = |name: &str| {
         let checks = check_run::check(&at(name)).unwrap();
         let wrong = checks.iter().filter(|check| check.failed()).map(|check| &check.outcome).collect::<Vec<_>>();
@@ -162,14 +191,25 @@ fn a_run_that_is_stopped_while_it_draws_keeps_its_results_and_is_drawn_later() {
     }
     let resumed = strandsnap(folder.path(), &["resume", "copy", "--quiet"]);
     assert!(resumed.status.success(), "{}", text(&resumed.stderr));
+    // The power goes when all is drawn and nothing is told.
+    let mut drawing = Undrawn::find(&at("cut")).unwrap().expect("pictures are missing").begin().unwrap();
+    let snapshots = drawing.replay.count();
+    drawing
+        .replay
+        .show(&mut FirstOnes { inner: &mut *drawing.writer, left: drawn.len() + 3 }, &stopped(false))
+        .unwrap();
+    drop(drawing);
+    assert_eq!(pictures(&at("cut/frames")).len(), drawn.len() + 3);
+    agrees("cut");
     // Stopped once more, and then not.
-    for stopped in [true, false] {
+    for stop in [true, false] {
         let undrawn = Undrawn::find(&at("cut")).unwrap().expect("pictures are missing");
         let mut drawing = undrawn.begin().unwrap();
-        drawing.replay.show(&mut *drawing.writer, &AtomicBool::new(stopped)).unwrap();
+        drawing.replay.show(&mut *drawing.writer, &stopped(stop)).unwrap();
         let frames = drawing.end().unwrap().cost.frames.unwrap();
-        assert_eq!(frames.not_drawn > 0, stopped);
-        assert_eq!((frames.frames + frames.not_drawn) as usize, whole.len());
+        assert_eq!((frames.not_drawn > 0, frames.not_animated), (stop, stop));
+        assert_eq!((frames.frames + frames.not_drawn) as usize, snapshots);
+        agrees("cut");
     }
     assert!(Undrawn::find(&at("cut")).unwrap().is_none());
     for name in ["cut", "copy"] {
@@ -181,4 +221,24 @@ fn a_run_that_is_stopped_while_it_draws_keeps_its_results_and_is_drawn_later() {
         assert!(!at(name).join("frames/UNFINISHED.txt").exists());
         agrees(name);
     }
+}
+
+/// Nothing but its simulation can go on.
+#[test]
+fn a_run_that_was_interrupted_before_its_end_is_not_only_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene::load("single-wire", &["output.checkpoint=none".into()]).unwrap();
+    let out = folder.path().join("out");
+    if strandsnap::render::check().is_err() {
+        let _ = writeln!(
+            std::io::stderr(),
+            "SKIPPED (no graphics adapter): a_run_that_was_interrupted_before_its_end_is_not_only_drawn"
+        );
+        return;
+    }
+    let options = RunOptions { frames: true, threads: Some(1), ..RunOptions::tables(&out) };
+    let summary = run::run(&scene, &options, &AtomicBool::new(true)).unwrap();
+    assert_eq!(summary.stopped, StopReason::Interrupted);
+    assert!(out.join("frames/UNFINISHED.txt").is_file());
+    assert!(Undrawn::find(&out).unwrap().is_none());
 }

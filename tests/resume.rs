@@ -321,13 +321,39 @@ fn one_command_starts_a_run_and_starts_it_again() {
         assert!(fs::read(whole.join(table)).unwrap() == fs::read(out.join(table)).unwrap(), "{table} differs");
     }
 
-    // Killed before its first checkpoint: it begins anew.
+    // Killed before its first checkpoint, and when all was written but the summary: it begins anew.
+    fs::remove_file(out.join("summary.json")).unwrap();
+    assert_eq!(run(&out, &[]).status.code(), Some(2));
+    assert!(run(&out, &["--resume"]).status.success());
+    assert_same(&whole, &out, "without a summary");
     fs::remove_dir_all(&out).unwrap();
     fs::create_dir(&out).unwrap();
     fs::write(out.join("trajectory.bin.partial"), "").unwrap();
     assert_eq!(run(&out, &[]).status.code(), Some(2));
     assert!(run(&out, &["--resume"]).status.success());
     assert_same(&whole, &out, "anew");
+}
+
+/// What `nohup` starts goes on when its terminal is closed.
+#[cfg(unix)]
+#[test]
+fn a_signal_that_was_ignored_from_the_start_stays_ignored() {
+    use rustix::process::{Pid, Signal, kill_process};
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), STRAND);
+    let out = folder.path().join("out");
+    let mut child = Command::new("sh")
+        .args(["-c", r#"trap "" HUP; exec "$0" "$@""#, env!("CARGO_BIN_EXE_strandsnap"), "run", text(&scene)])
+        .args(["--out", text(&out), "--quiet", "--no-frames", "--no-recording"])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !out.join("curve.csv.partial").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it could be signalled");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    kill_process(Pid::from_child(&child), Signal::HUP).unwrap();
+    assert!(child.wait().unwrap().success());
 }
 
 #[test]

@@ -334,6 +334,11 @@ const CYCLIC: &[Honest] = &[
 ];
 
 const PUSHED: &[Honest] = &[
+    (
+        "until it breaks, and its stress falls",
+        WIRE,
+        "grip.speed=-5 m/s; grip.length=0.1 mm; bond.rupture.strain=2 %; stop.strain=30 %; stop.stress_fraction=50 %; output.samples=400",
+    ),
     ("pushed", STRAND, "grip.speed=-8 m/s; stop.strain=4 %"),
     ("pushed wire", WIRE, "grip.speed=-8 m/s; stop.strain=4 %; wire.0.to=['0 mm', '0 mm', '5 mm']; grip.length=1 mm"),
     ("pushed hard", STRAND, "grip.speed=-20 m/s; stop.strain=12 %; bond.rupture.strain=30 %; strand.length=8 mm"),
