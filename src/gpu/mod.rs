@@ -5,6 +5,9 @@
 
 mod adapter;
 mod kernel;
+mod stage;
+mod stepper;
 
 pub use adapter::{Adapter, Device, adapters};
 pub use kernel::Kernel;
+pub use stepper::Stepper;
