@@ -36,7 +36,7 @@ fn side(input: &str) -> (&str, Side) {
 }
 
 /// Names of the columns that the functions of a step take, and of those that they put; `of_step` are not among them.
-pub fn columns<'f>(functions: &'f [Function], of_step: impl Fn(&str) -> bool) -> [Vec<&'f str>; 2] {
+pub fn columns(functions: &[Function], of_step: impl Fn(&str) -> bool) -> [Vec<&str>; 2] {
     let taken = functions.iter().flat_map(|f| f.inputs()).map(|input| side(input).0).filter(|name| !of_step(name));
     let put = functions.iter().flat_map(Function::outputs).filter(|name| !SIGNALS.contains(name));
     [taken.collect(), put.collect()]

@@ -13,8 +13,10 @@ use strandsnap::scene::plan::Plan;
 
 /// Greatest difference of a position, in diameters.
 const POSITION: f64 = 1e-11;
-/// Of an energy, over the work done.
-const ENERGY: f64 = 1e-10;
+/// Of any other number, over its scale: of energies the work done, of stresses [`STRESS`].
+const NUMBER: f64 = 1e-10;
+/// Where the metal of these scenes begins to yield (Pa): what stresses are measured by.
+const STRESS: f64 = 100e6;
 
 fn shipped(name: &str, set: &[&str]) -> Engine {
     let set: Vec<String> = set.iter().map(|option| option.to_string()).collect();
@@ -32,14 +34,14 @@ fn assert_alike(name: &str, on_adapter: &mut Engine, on_processor: &mut Engine) 
     let diameter = 2.0 * on_processor.assembly().least_radius();
     let (strain, stress) = (on_processor.strain(), on_processor.stress());
     assert_eq!(on_adapter.steps(), on_processor.steps(), "{name}");
-    assert!((on_adapter.time() / on_processor.time() - 1.0).abs() < 1e-12, "{name}");
     let close = |what: &str, found: f64, expected: f64, scale: f64| {
         let error = (found - expected).abs() / scale;
-        assert!(error <= ENERGY, "{name}: {what} is {found:e}, not {expected:e}");
+        assert!(error <= NUMBER, "{name}: {what} is {found:e}, not {expected:e}");
     };
+    // The size of a step may follow the greatest speed.
+    close("time", on_adapter.time(), on_processor.time(), on_processor.time());
     close("strain", on_adapter.strain(), strain, 1.0);
-    // A stress of 1 MPa is little in every scene.
-    close("stress", on_adapter.stress(), stress, stress.abs().max(1e6));
+    close("stress", on_adapter.stress(), stress, STRESS);
     let (found, expected) = (Outcome::of(on_adapter), Outcome::of(on_processor));
     let off = distance(&found.position, &expected.position) / diameter;
     let moved = distance(&expected.position, &on_processor.assembly().position.iter().collect::<Vec<_>>()) / diameter;
@@ -76,7 +78,7 @@ seed = 3
 [bond]
 law = "elastic"
 damping = 0.05
-rupture = { criterion = "beam-stress", tensile_strength = "300 MPa", shear_strength = "200 MPa", weibull_modulus = 10 }
+rupture = { criterion = "beam-stress", tensile = "300 MPa", shear = "200 MPa", weibull_modulus = 10 }
 [[wire]]
 diameter = "0.4 mm"
 from = ["0 mm", "0 mm", "0 mm"]
@@ -105,6 +107,7 @@ fix = ["x", "y", "z"]
 body = 1
 part = "end"
 force = ["0 N", "0 N", "30 N"]
+ramp = "50 us"
 [stop]
 time = "1 ms"
 "#;
@@ -167,26 +170,28 @@ fn the_processor_goes_on_from_the_adapter() {
 #[test]
 fn contacts_that_come_in_are_left_to_the_processor() {
     let Some(device) = device("contacts_that_come_in_are_left_to_the_processor") else { return };
+    // Steps of one size: where they follow the greatest speed, times differ by rounding, and fast particles with them.
     let set = [
+        "time.step=6e-8 s",
         "bond.rupture.strain=0.5 %",
         "grip.speed=60 m/s",
         "contact={ normal = \"thornton\", friction = 0.2, hardness_strain = \"8 %\", damping = 0.1 }",
     ];
     let mut stepper = Stepper::new(&device, shipped("single-wire", &set)).unwrap();
-    let done = stepper.advance(1500).unwrap();
+    let done = stepper.advance(1000).unwrap();
     let (mut on_adapter, mut on_processor) = (stepper.into_engine(), shipped("single-wire", &set));
-    assert!((1..1500).contains(&done) && on_adapter.steps() == done, "{done} steps");
+    assert!((1..1000).contains(&done) && on_adapter.steps() == done, "{done} steps");
     run_steps(&mut on_processor, done);
     assert_eq!(on_processor.contact_counts().0, 1, "the step that broke the wire is the last one");
-    run_steps(&mut on_adapter, 1500 - done);
-    run_steps(&mut on_processor, 1500 - done);
+    run_steps(&mut on_adapter, 1000 - done);
+    run_steps(&mut on_processor, 1000 - done);
     assert_alike("contacts after a rupture", &mut on_adapter, &mut on_processor);
 }
 
 #[test]
 fn what_runs_away_ends_the_run_where_it_does_on_the_processor() {
     let Some(device) = device("what_runs_away_ends_the_run_where_it_does_on_the_processor") else { return };
-    let engine = || shipped("single-wire", &["time.step=1.2e-7 s"]);
+    let engine = || shipped("cantilever", &["time.step=1.2e-7 s"]);
     let mut stepper = Stepper::new(&device, engine()).unwrap();
     let found = stepper.advance(100_000).unwrap_err();
     let mut on_processor = engine();
