@@ -108,7 +108,12 @@ fn side(input: &str) -> (&str, isize) {
 #[test]
 fn recorded_steps_have_the_bits_of_the_engine() {
     let jaw = ["grip.kind=jaw", "grip.clamp_pressure=20 MPa", "grip.length=2 mm", "grip.speed=2 m/s"];
+    let adaptive = [
+        "grip.adaptive={ from = \"0.01 %\", fastest = \"20 m/s\", kinetic = \"100 %\", passages = 1 }",
+        "wire.0.to=[\"0 mm\", \"0 mm\", \"60 mm\"]",
+    ];
     for (name, set) in [
+        ("single-wire", &adaptive[..]),
         ("single-wire", &["wire.0.to=[\"0 mm\", \"0 mm\", \"30 mm\"]", "grip.speed=20 m/s"][..]),
         ("cantilever", &[]),
         ("torsion", &["grip.speed=3 m/s", "grip.rotation_rate=9000 rad/s"]),
@@ -120,7 +125,10 @@ fn recorded_steps_have_the_bits_of_the_engine() {
         // Until something yields.
         run_steps(&mut engine, 128);
         let mut columns = Columns::of(&engine);
-        for step in engine.plan_block(u64::MAX).unwrap().steps {
+        let block = engine.plan_block(u64::MAX).unwrap();
+        let changes = block.steps.iter().flatten().any(|(name, number)| name == "speed_change" && *number != 0.0);
+        assert_eq!(changes, set.iter().any(|option| option.contains("adaptive")), "{name} {set:?}");
+        for step in block.steps {
             columns.step(&step.into_iter().collect());
         }
         run_steps(&mut engine, 64);

@@ -6,7 +6,7 @@
 //! that a block never goes beyond that. A block ends early where a bond has to be broken: the engine does that, books it and
 //! goes on.
 
-use super::grips::Reaction;
+use super::grips::Holds;
 use super::recorded::{Gathering, Motion};
 use super::{BOUND_INTERVAL, Engine, RUNAWAY, monitor};
 use crate::base::error::{Error, Result};
@@ -78,7 +78,8 @@ impl Engine {
         let turn = self.plan.rotations;
         let limit = RUNAWAY * self.least_radius;
         let holds = self.holds.formulas().map_err(refused)?;
-        let motion = Motion { turn, axis: self.holds.axis(), holds, limit: limit * limit };
+        let (axis, adaptive) = (self.holds.axis(), self.holds.is_adaptive());
+        let motion = Motion { turn, axis, holds, adaptive, limit: limit * limit };
         let unrecordable = |reason: Unrecordable| refused(&reason.to_string());
         Ok(vec![
             Function::record("motion", &motion).map_err(unrecordable)?,
@@ -100,6 +101,9 @@ impl Engine {
             let mut held = vec![0.0; n];
             self.holds.members().nth(hold)?.iter().for_each(|p| held[*p as usize] = 1.0);
             return Some(held);
+        }
+        if name == "free" {
+            return Some(self.state.fixed.iter().map(|fixed| f64::from(*fixed == 0)).collect());
         }
         let mut numbers = self.bonds.as_ref()?.numbers(name)?;
         numbers.truncate(n);
@@ -131,25 +135,18 @@ impl Engine {
             return Ok(block);
         }
         let count = most.min(BOUND_INTERVAL - self.state.step % BOUND_INTERVAL);
-        let (mut time, mut kicked) = (self.state.time, self.kicked());
+        let (mut time, mut kicked, mut holds) = (self.state.time, self.kicked(), self.holds.clone());
         for _ in 0..count {
-            block.steps.push(self.step_numbers(time, dt, kicked));
+            block.steps.push(step_numbers(&mut holds, time, dt, kicked));
             time += dt;
             kicked = dt;
         }
         Ok(block)
     }
 
-    /// Numbers of a step of `dt` (s) from `time` (s) on, after a kick over `kicked` (s).
-    fn step_numbers(&self, time: f64, dt: f64, kicked: f64) -> Vec<(String, f64)> {
-        let own = [("dt", dt), ("inverse_dt", 1.0 / dt), ("kicked", kicked), ("inverse_kicked", 1.0 / kicked)];
-        let own = own.map(|(name, number)| (name.to_owned(), number)).into_iter();
-        own.chain(self.holds.numbers(time, dt, kicked)).collect()
-    }
-
     /// Names of the numbers of a step ([`Block::steps`]).
     pub fn step_names(&self) -> Vec<String> {
-        self.step_numbers(0.0, 1.0, 1.0).into_iter().map(|(name, _)| name).collect()
+        step_numbers(&mut self.holds.clone(), 0.0, 1.0, 1.0).into_iter().map(|(name, _)| name).collect()
     }
 
     /// Takes up what came of a block that [`Engine::plan_block`] has planned.
@@ -158,19 +155,17 @@ impl Engine {
     /// As for [`Engine::step`].
     pub fn take_block(&mut self, block: &Block, outcome: &Outcome) -> Result<()> {
         for measured in &outcome.measured {
+            let kicked = 0.5 * (self.state.dt + block.dt);
             self.state.dt = block.dt;
             let strain = self.holds.strain();
             let bonds = self.measures.bonds().len();
             let (grips, axial) = measured.split_at(measured.len() - bonds);
-            let reaction = match grips {
-                [lower, upper, torque] => Reaction { force: [-lower, *upper], torque: *torque },
-                _ => Reaction::default(),
-            };
-            self.holds.take(self.state.time, block.dt, reaction);
+            let grips = grips.try_into().unwrap_or_default();
+            self.holds.take(grips, self.state.time, block.dt, kicked, &self.state.mass);
             self.state.step += 1;
             self.state.time += block.dt;
             let mut axial = axial.iter().copied();
-            self.measures.take(strain, &reaction, |_| axial.next().unwrap_or_default(), block.dt);
+            self.measures.take(strain, &self.holds.reaction, |_| axial.next().unwrap_or_default(), block.dt);
         }
         for (name, numbers) in &outcome.numbers {
             self.set_numbers(name, numbers);
@@ -193,4 +188,11 @@ impl Engine {
             _ => self.bonds.iter_mut().for_each(|bonds| bonds.set_numbers(name, numbers)),
         }
     }
+}
+
+/// Numbers of a step of `dt` (s) from `time` (s) on, after a kick over `kicked` (s), by name; `holds` go on by it.
+fn step_numbers(holds: &mut Holds, time: f64, dt: f64, kicked: f64) -> Vec<(String, f64)> {
+    let own = [("dt", dt), ("inverse_dt", 1.0 / dt), ("kicked", kicked), ("inverse_kicked", 1.0 / kicked)];
+    let own = own.map(|(name, number)| (name.to_owned(), number)).into_iter();
+    own.chain(holds.foretell(time, dt, kicked)).collect()
 }

@@ -3,7 +3,7 @@
 mod schedule;
 
 use super::loading_rate::{self, LoadingRate, Rule};
-use super::motion::{Kicked, Rigid, prescribed};
+use super::motion::{Kicked, Rigid, affine_share, prescribed, sped_up};
 use super::neighbours::Stretch;
 use super::saved::{Reader, Unfit, Writer};
 use super::state::State;
@@ -55,6 +55,7 @@ pub struct Reaction {
 }
 
 /// All holds of a run.
+#[derive(Clone)]
 pub struct Holds {
     groups: Vec<Group>,
     grip: Option<GripSpec>,
@@ -210,8 +211,13 @@ impl Holds {
 
     /// Share of the upper grip's speed that a place between the grips has in the affine field of the pull (-).
     fn share(&self, z: f64) -> f64 {
-        let [z0, z1] = self.stretch.gauge;
-        ((z - z0) / (z1 + self.stretch.displacement - z0)).clamp(0.0, 1.0)
+        affine_share(z, self.faces())
+    }
+
+    /// Places along z between which the pull is affine (m).
+    fn faces(&self) -> [f64; 2] {
+        let [low, high] = self.stretch.gauge;
+        [low, high + self.stretch.displacement]
     }
 
     /// Grip displacement over the length that is free between the grips (-).
@@ -285,11 +291,9 @@ impl Holds {
         let change = self.speed_change();
         for p in (0..state.len()).filter(|p| state.fixed[*p] == 0) {
             let push = self.share(state.x.z[p]) * change;
-            let kick = state.force.z[p] * kicked / state.mass[p];
-            // Mean of the speeds before the kick, forces and this push, and after it.
-            let mean = state.v.z[p] + 0.5 * (push - kick);
-            self.work += state.mass[p] * push * mean;
-            state.v.z[p] += push;
+            let [speed, work] = sped_up(state.v.z[p], push, state.force.z[p], state.mass[p], kicked);
+            self.work += work;
+            state.v.z[p] = speed;
         }
     }
 
@@ -310,6 +314,12 @@ impl Holds {
         if group.driven { rise / dt } else { 0.0 }
     }
 
+    /// Force of the driven grip on the body: what it takes to speed up the held particles themselves, of `mass` (kg), loads
+    /// the drive (N).
+    fn force_on_body(&self, force: f64, mass: f64, kicked: f64) -> f64 {
+        force - self.speed_change() / kicked * mass
+    }
+
     /// A grip that moves along z without turning; see [`Self::rigid`].
     fn straight(&mut self, group: &Group, state: &mut State, rise: f64, kicked: f64, arch: Arch) {
         let speed = Self::straight_speed(group, rise, state.dt);
@@ -317,8 +327,7 @@ impl Holds {
         let effort = arch.dispatch(StraightGrip { runs: &group.runs, state, speed, kicked, axis });
         self.work += effort.work;
         if group.driven {
-            // What it takes to speed up the held particles themselves loads the drive, not the body.
-            self.reaction.force[1] = effort.force - self.speed_change() / kicked * effort.mass;
+            self.reaction.force[1] = self.force_on_body(effort.force, effort.mass, kicked);
             self.reaction.torque = effort.torque;
         } else {
             self.reaction.force[0] = -effort.force;

@@ -45,6 +45,21 @@ pub fn thinned_radius<R: Real>(undeformed: R, kept: R, here: R, before: R) -> R 
     R::select(some, mean, kept)
 }
 
+/// Share of the upper grip's speed that a place has in the affine field of a pull between two faces (-).
+#[inline(always)]
+pub fn affine_share<R: Real>(z: R, [low, high]: [R; 2]) -> R {
+    ((z - low) / (high - low)).simd_max(z.splat(0.0)).simd_min(z.splat(1.0))
+}
+
+/// Speed along z (m/s) with a push (m/s) on top of a kick by `force` over `time` (s), and the work of that push (J).
+#[inline(always)]
+pub fn sped_up<R: Real>(speed: R, push: R, force: R, mass: R, time: R) -> [R; 2] {
+    let kick = force * time / mass;
+    // Mean of the speeds before the kick, forces and this push, and after it.
+    let mean = speed + (push - kick) * 0.5;
+    [speed + push, mass * push * mean]
+}
+
 /// A particle that a grip or a hold acts on, after a kick.
 pub struct Kicked<R> {
     /// Its place in the plane of x and y, from the axis of the grips (m).

@@ -2,9 +2,11 @@
 //! add up to. Those of bonds stand in [`bonds::formula`](super::bonds::formula).
 //!
 //! Names of numbers: of a particle by their own (`x_x`, `mass`); those of the bond that begins at it and of the one before
-//! with `here_` and `before_`; `held_0` is 1 where hold 0 acts. Others are of the step, the same for all particles.
+//! with `here_` and `before_`; `held_0` is 1 where hold 0 acts, `free` where none prescribes anything. Others are of the step, the same for all particles.
 
-use super::motion::{Kicked, Rigid, drifted, force_of_bonds, kicked, ran_away, thinned_radius, torque_of_bonds};
+use super::motion::{
+    Kicked, Rigid, affine_share, drifted, force_of_bonds, kicked, ran_away, sped_up, thinned_radius, torque_of_bonds,
+};
 use crate::base::lanes::Real;
 use crate::base::recorder::{Formula, put_vector, take_vector};
 use crate::base::triple::Triple;
@@ -37,6 +39,8 @@ pub struct Motion {
     pub axis: [f64; 2],
     /// Groups of held particles, in the order in which they act.
     pub holds: Vec<HoldFormula>,
+    /// Whether the affine field of the pull is sped up and slowed down.
+    pub adaptive: bool,
     /// Squared displacement in a step beyond which a particle has run away (m²).
     pub limit: f64,
 }
@@ -69,7 +73,7 @@ impl Formula for Motion {
                     speed: number("speed"),
                     spin: number("spin"),
                     clamp: clamped.then(|| number("clamp")),
-                    acceleration: zero,
+                    acceleration: number("acceleration"),
                 }),
                 HoldFormula::Components { fixed, motion } => {
                     let push = take_vector(take, &format!("push_{hold}"));
@@ -83,6 +87,13 @@ impl Formula for Motion {
             work += part(held.work[0] + held.work[1]);
             grip_force += part(held.force);
             grip_torque += part(held.torque[0] + held.torque[1]);
+        }
+        if self.adaptive {
+            let share = affine_share(x.z, ["low", "high"].map(&mut *take));
+            let [speed, done] = sped_up(v.z, share * take("speed_change"), force.z, mass, time);
+            let free = take("free").simd_gt(zero);
+            v.z = R::select(free, speed, v.z);
+            work += R::select(free, done, zero);
         }
         let (x, square) = drifted(x, v, dt);
         put_vector(put, "x", x);

@@ -40,6 +40,7 @@ fn assert_alike(name: &str, on_adapter: &mut Engine, on_processor: &mut Engine) 
     };
     // The size of a step may follow the greatest speed.
     close("time", on_adapter.time(), on_processor.time(), on_processor.time());
+    close("speed of the grip", on_adapter.grip_speed(), on_processor.grip_speed(), 1.0);
     close("strain", on_adapter.strain(), strain, 1.0);
     close("stress", on_adapter.stress(), stress, STRESS);
     let (found, expected) = (Outcome::of(on_adapter), Outcome::of(on_processor));
@@ -116,9 +117,11 @@ time = "1 ms"
 fn a_thousand_steps_are_those_of_the_processor() {
     let Some(device) = device("a_thousand_steps_are_those_of_the_processor") else { return };
     let jaw = ["grip.kind=jaw", "grip.clamp_pressure=20 MPa", "grip.length=2 mm", "grip.speed=2 m/s"];
-    let cases: [(&str, &dyn Fn() -> Engine, usize); 7] = [
+    let adaptive = ["grip.adaptive={ from = \"0.1 %\", fastest = \"20 m/s\", kinetic = \"100 %\", passages = 1 }"];
+    let cases: [(&str, &dyn Fn() -> Engine, usize); 8] = [
         ("a wire pulled until it yields", &|| shipped("single-wire", &[]), 0),
         ("a wire that snaps", &|| shipped("single-wire", &["bond.rupture.strain=0.5 %", "grip.speed=60 m/s"]), 1),
+        ("an adaptive pull", &|| shipped("single-wire", &adaptive), 0),
         ("a cantilever", &|| shipped("cantilever", &[]), 0),
         ("torsion", &|| shipped("torsion", &[]), 0),
         ("torsion and tension", &|| shipped("torsion", &["grip.speed=3 m/s"]), 0),
@@ -130,6 +133,8 @@ fn a_thousand_steps_are_those_of_the_processor() {
         assert_eq!(stepper.advance(1000).unwrap(), 1000, "{name}");
         let (mut on_adapter, mut on_processor) = (stepper.into_engine(), engine());
         run_steps(&mut on_processor, 1000);
+        let faster = on_processor.grip_speed() > engine().grip_speed();
+        assert_eq!(faster, name == "an adaptive pull", "{name}: {} m/s", on_processor.grip_speed());
         let whole = on_processor.state().whole.iter().filter(|whole| **whole).count();
         let bonds = (0..on_processor.state().len()).filter(|slot| on_processor.assembly().is_bond(*slot)).count();
         assert!(bonds - whole >= broken, "{name}: {} bonds broke", bonds - whole);

@@ -10,9 +10,6 @@ impl Holds {
     /// # Errors
     /// Why it cannot be told in advance.
     pub fn formulas(&self) -> Result<Vec<HoldFormula>, &'static str> {
-        if self.loading_rate.is_some() {
-            return Err("an adaptive pull changes the speed of all particles");
-        }
         if self.grip.as_ref().is_some_and(|grip| grip.free_rotation) {
             return Err("a grip that turns freely asks for its torque before it moves");
         }
@@ -45,10 +42,28 @@ impl Holds {
         })
     }
 
-    /// Numbers of the formulas in a step of `dt` (s) from `time` (s) on, by name, after a kick over `kicked` (s).
-    pub fn numbers(&self, time: f64, dt: f64, kicked: f64) -> Vec<(String, f64)> {
+    /// Whether the pull is adaptive: it changes the speed of all particles that are free.
+    pub fn is_adaptive(&self) -> bool {
+        self.loading_rate.is_some()
+    }
+
+    /// Numbers of the formulas in a step of `dt` (s) from `time` (s) on, by name, after a kick over `kicked` (s); goes on by
+    /// that step.
+    pub fn foretell(&mut self, time: f64, dt: f64, kicked: f64) -> Vec<(String, f64)> {
+        self.loading_rate.iter_mut().for_each(|rate| rate.advance(kicked));
         let rise = self.rise(time, dt);
-        let mut all = Vec::new();
+        let numbers = self.numbers(rise, time, dt, kicked);
+        self.stretch.displacement += rise;
+        numbers
+    }
+
+    fn numbers(&self, rise: f64, time: f64, dt: f64, kicked: f64) -> Vec<(String, f64)> {
+        let mut all: Vec<(String, f64)> = Vec::new();
+        if self.is_adaptive() {
+            let [low, high] = self.faces();
+            let numbers = [("speed_change", self.speed_change()), ("low", low), ("high", high)];
+            all.extend(numbers.map(|(name, number)| (name.to_owned(), number)));
+        }
         for (g, group) in self.groups.iter().enumerate() {
             let mut put = |name: &str, number| all.push((format!("{name}_{g}"), number));
             match &group.kind {
@@ -59,6 +74,7 @@ impl Holds {
                     put("sin", motion.chord[1]);
                     put("speed", motion.speed);
                     put("spin", motion.spin);
+                    put("acceleration", motion.acceleration);
                     if let Kind::Jaw { clamp } = group.kind {
                         put("clamp", smooth(time / CLAMP_RISE) * clamp);
                     }
@@ -76,9 +92,14 @@ impl Holds {
         all
     }
 
-    /// Takes in a step of `dt` (s) from `time` (s) on that was done elsewhere, with the reactions in it.
-    pub fn take(&mut self, time: f64, dt: f64, reaction: Reaction) {
+    /// Takes in a step of `dt` (s) from `time` (s) on that was done elsewhere after a kick over `kicked` (s): forces of the lower
+    /// and of the upper grip (N), and torque of the upper one (N m), as the formulas give them.
+    pub fn take(&mut self, [lower, upper, torque]: [f64; 3], time: f64, dt: f64, kicked: f64, mass: &[f64]) {
+        self.loading_rate.iter_mut().for_each(|rate| rate.advance(kicked));
+        let straight = |group: &&super::Group| matches!(group.kind, Kind::Rigid) && group.driven && !self.turns(group);
+        let held = self.groups.iter().filter(straight).flat_map(|group| &group.particles);
+        let held: f64 = held.map(|p| mass[*p as usize]).sum();
+        self.reaction = Reaction { force: [-lower, self.force_on_body(upper, held, kicked)], torque };
         self.stretch.displacement += self.rise(time, dt);
-        self.reaction = reaction;
     }
 }
