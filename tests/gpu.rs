@@ -1,11 +1,15 @@
-//! Recorded laws on the graphics adapter that there is, against the laws with `f64`.
+//! Recorded laws on the graphics adapter that there is, against the laws with `f64`; whole steps in `gpu/steps.rs`.
 //!
 //! Results may differ from the law's own by rounding: by 1e-13 of the largest result for that output among arguments of one
 //! batch, and by some times what the law's own result changes by when its arguments change in their last bits. (A steep law
 //! on a step of tens of elastic strains amplifies that much.)
 
+#[path = "common/drive.rs"]
+mod drive;
 #[path = "common/laws.rs"]
 mod laws;
+#[path = "gpu/steps.rs"]
+mod steps;
 
 use laws::Batch;
 use strandsnap::base::error::Error;

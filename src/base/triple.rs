@@ -22,6 +22,12 @@ impl<R: Real> Triple<R> {
         self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z))
     }
 
+    /// Scalar product in which every product and every sum is rounded by itself.
+    #[inline(always)]
+    pub fn plain_dot(self, o: Self) -> R {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {

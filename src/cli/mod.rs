@@ -11,7 +11,6 @@ mod calibrate;
 mod cases;
 mod centrelines;
 mod check_run;
-#[cfg(feature = "render")]
 mod counted;
 mod devices;
 mod ended;

@@ -1,15 +1,19 @@
 //! Grips, holds and applied loads: prescribed motion, the reactions to it, and the work done.
 
+mod schedule;
+
 use super::loading_rate::{self, LoadingRate, Rule};
+use super::motion::{Kicked, Rigid, affine_share, prescribed, sped_up};
 use super::neighbours::Stretch;
 use super::saved::{Reader, Unfit, Writer};
 use super::state::State;
 use super::straight::{StraightGrip, runs};
 use crate::base::error::{Error, Result};
+use crate::base::triple::Triple;
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
 use crate::strand::assembly::Assembly;
 use crate::strand::held::Gripped;
-use glam::{DMat2, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -51,6 +55,7 @@ pub struct Reaction {
 }
 
 /// All holds of a run.
+#[derive(Clone)]
 pub struct Holds {
     groups: Vec<Group>,
     grip: Option<GripSpec>,
@@ -196,18 +201,23 @@ impl Holds {
             let Kind::Components(hold) = &group.kind else { continue };
             for p in &group.particles {
                 let p = *p as usize;
-                let v = prescribed(&hold.fixed[..3], hold.velocity, state.v.get(p));
-                let w = prescribed(&hold.fixed[3..], hold.spin, state.w.get(p));
-                state.v.set(p, v);
-                state.w.set(p, w);
+                let v = prescribed(&hold.fixed[..3], hold.velocity.into(), state.v.get(p).into());
+                let w = prescribed(&hold.fixed[3..], hold.spin.into(), state.w.get(p).into());
+                state.v.set(p, v.into());
+                state.w.set(p, w.into());
             }
         }
     }
 
     /// Share of the upper grip's speed that a place between the grips has in the affine field of the pull (-).
     fn share(&self, z: f64) -> f64 {
-        let [z0, z1] = self.stretch.gauge;
-        ((z - z0) / (z1 + self.stretch.displacement - z0)).clamp(0.0, 1.0)
+        affine_share(z, self.faces())
+    }
+
+    /// Places along z between which the pull is affine (m).
+    fn faces(&self) -> [f64; 2] {
+        let [low, high] = self.stretch.gauge;
+        [low, high + self.stretch.displacement]
     }
 
     /// Grip displacement over the length that is free between the grips (-).
@@ -226,28 +236,18 @@ impl Holds {
 
     /// Overrides the kicked velocities of held particles; `kicked` is the time that the kick spanned (s).
     pub fn apply(&mut self, state: &mut State, kicked: f64, arch: Arch) {
-        let dt = state.dt;
-        let mut rise = 0.0;
         if let Some(rate) = &mut self.loading_rate {
             rate.advance(kicked);
         }
-        if let Some(grip) = &self.grip {
-            rise = match grip.drive {
-                DriveSpec::Speed(v) => self.loading_rate.as_ref().map_or(v, |rate| rate.speed) * dt,
-                DriveSpec::Cyclic { amplitude, frequency } => {
-                    let at = |t: f64| amplitude * (TAU * frequency * t).sin();
-                    at(state.time + dt) - at(state.time)
-                }
-            };
-            if grip.free_rotation {
-                self.spin += self.free_torque(state) * kicked;
-            }
+        let rise = self.rise(state.time, state.dt);
+        if self.grip.as_ref().is_some_and(|grip| grip.free_rotation) {
+            self.spin += self.free_torque(state) * kicked;
         }
         self.reaction = Reaction::default();
         let groups = std::mem::take(&mut self.groups);
         for group in &groups {
             match &group.kind {
-                Kind::Rigid if !group.driven || self.spin == 0.0 => self.straight(group, state, rise, kicked, arch),
+                Kind::Rigid if !self.turns(group) => self.straight(group, state, rise, kicked, arch),
                 Kind::Rigid => self.rigid(group, state, rise, kicked, None),
                 Kind::Jaw { clamp } => {
                     let on = smooth(state.time / CLAMP_RISE) * clamp;
@@ -263,6 +263,23 @@ impl Holds {
         self.stretch.displacement += rise;
     }
 
+    /// Way of the upper grip along z in a step of `dt` (s) from `time` (s) on (m).
+    fn rise(&self, time: f64, dt: f64) -> f64 {
+        match self.grip.as_ref().map(|grip| grip.drive) {
+            None => 0.0,
+            Some(DriveSpec::Speed(v)) => self.loading_rate.as_ref().map_or(v, |rate| rate.speed) * dt,
+            Some(DriveSpec::Cyclic { amplitude, frequency }) => {
+                let at = |t: f64| amplitude * (TAU * frequency * t).sin();
+                at(time + dt) - at(time)
+            }
+        }
+    }
+
+    /// Whether a group turns with the drive.
+    fn turns(&self, group: &Group) -> bool {
+        group.driven && self.spin != 0.0
+    }
+
     /// Change of speed of an adaptive pull in this step (m/s).
     fn speed_change(&self) -> f64 {
         self.loading_rate.as_ref().map_or(0.0, |rate| rate.change)
@@ -274,11 +291,9 @@ impl Holds {
         let change = self.speed_change();
         for p in (0..state.len()).filter(|p| state.fixed[*p] == 0) {
             let push = self.share(state.x.z[p]) * change;
-            let kick = state.force.z[p] * kicked / state.mass[p];
-            // Mean of the speeds before the kick, forces and this push, and after it.
-            let mean = state.v.z[p] + 0.5 * (push - kick);
-            self.work += state.mass[p] * push * mean;
-            state.v.z[p] += push;
+            let [speed, work] = sped_up(state.v.z[p], push, state.force.z[p], state.mass[p], kicked);
+            self.work += work;
+            state.v.z[p] = speed;
         }
     }
 
@@ -294,79 +309,86 @@ impl Holds {
         if inertia > 0.0 { torque / inertia } else { 0.0 }
     }
 
+    /// Velocity along z of a group that moves without turning (m/s).
+    fn straight_speed(group: &Group, rise: f64, dt: f64) -> f64 {
+        if group.driven { rise / dt } else { 0.0 }
+    }
+
+    /// Force of the driven grip on the body: what it takes to speed up the held particles themselves, of `mass` (kg), loads
+    /// the drive (N).
+    fn force_on_body(&self, force: f64, mass: f64, kicked: f64) -> f64 {
+        force - self.speed_change() / kicked * mass
+    }
+
     /// A grip that moves along z without turning; see [`Self::rigid`].
     fn straight(&mut self, group: &Group, state: &mut State, rise: f64, kicked: f64, arch: Arch) {
-        let speed = if group.driven { rise / state.dt } else { 0.0 };
+        let speed = Self::straight_speed(group, rise, state.dt);
         let axis = self.axis.to_array();
         let effort = arch.dispatch(StraightGrip { runs: &group.runs, state, speed, kicked, axis });
         self.work += effort.work;
         if group.driven {
-            // What it takes to speed up the held particles themselves loads the drive, not the body.
-            self.reaction.force[1] = effort.force - self.speed_change() / kicked * effort.mass;
+            self.reaction.force[1] = self.force_on_body(effort.force, effort.mass, kicked);
             self.reaction.torque = effort.torque;
         } else {
             self.reaction.force[0] = -effort.force;
         }
     }
 
+    /// How a group that moves along and about z does so in a step of `dt` (s), under a clamp force per particle (N).
+    fn rigid_motion(&self, group: &Group, rise: f64, dt: f64, kicked: f64, clamp: Option<f64>) -> Rigid<f64> {
+        let (spin, rise) = if group.driven { (self.spin, rise) } else { (0.0, 0.0) };
+        let (sin, cos) = (spin * dt).sin_cos();
+        let acceleration = if group.driven { self.speed_change() / kicked } else { 0.0 };
+        Rigid { chord: [(cos - 1.0) * (1.0 / dt), sin * (1.0 / dt)], speed: rise / dt, spin, clamp, acceleration }
+    }
+
+    /// A particle after a kick over `time` (s).
+    fn kicked(&self, state: &State, p: usize, time: f64) -> Kicked<f64> {
+        Kicked {
+            arm: [state.x.x[p] - self.axis.x, state.x.y[p] - self.axis.y],
+            v: state.v.get(p).into(),
+            w: state.w.get(p).into(),
+            force: state.force.get(p).into(),
+            torque: state.torque.get(p).into(),
+            mass: state.mass[p],
+            inertia: state.inertia[p],
+            inverse_mass: state.inverse_mass[p],
+            inverse_inertia: state.inverse_inertia[p],
+            time,
+        }
+    }
+
     /// A grip that moves along and about z; under `clamp` its particles are free along the radius.
     fn rigid(&mut self, group: &Group, state: &mut State, rise: f64, kicked: f64, clamp: Option<f64>) {
-        let dt = state.dt;
-        let (spin, rise) = if group.driven { (self.spin, rise) } else { (0.0, 0.0) };
-        // The chord of the exact rotation, so that particles stay on their circle.
-        let chord = (DMat2::from_angle(spin * dt) - DMat2::IDENTITY) * (1.0 / dt);
-        // What it takes to speed up the held particles themselves loads the drive, not the body.
-        let acceleration = if group.driven { self.speed_change() / kicked } else { 0.0 };
-        let mut sum = DVec3::ZERO;
-        let mut torque = 0.0;
-        for p in &group.particles {
-            let p = *p as usize;
-            let arm = state.x.get(p).truncate() - self.axis;
-            let kick = kicked / state.mass[p];
-            let before = state.v.get(p) - state.force.get(p) * kick;
-            let mut after = (chord * arm).extend(rise / dt);
-            let mut load = DVec3::ZERO;
-            if let Some(clamp) = clamp {
-                let outward = arm.normalize_or_zero().extend(0.0);
-                load = outward * -clamp;
-                after += outward * (state.v.get(p) + load * kick).dot(outward);
+        let grip = self.rigid_motion(group, rise, state.dt, kicked, clamp);
+        let (mut force, mut torque) = (0.0, 0.0);
+        for p in group.particles.iter().map(|p| *p as usize) {
+            let held = self.kicked(state, p, kicked).rigid(&grip);
+            for part in 0..2 {
+                self.work += held.work[part];
+                torque += held.torque[part];
             }
-            let push = (after - state.v.get(p)) * (state.mass[p] / kicked);
-            self.work += push.dot(before + after) * (0.5 * kicked);
-            let constraint = push - load;
-            sum += constraint - DVec3::Z * (acceleration * state.mass[p]);
-            torque += arm.perp_dot(constraint.truncate());
-            state.v.set(p, after);
-            let turn = DVec3::Z * spin;
-            let twist = (turn - state.w.get(p)) * (state.inertia[p] / kicked);
-            let spin_before = state.w.get(p) - state.torque.get(p) * (kicked / state.inertia[p]);
-            self.work += twist.dot(spin_before + turn) * (0.5 * kicked);
-            torque += twist.z;
-            state.w.set(p, turn);
+            force += held.force;
+            state.v.set(p, held.v.into());
+            state.w.set(p, held.w.into());
         }
         if group.driven {
-            self.reaction.force[1] = sum.z;
+            self.reaction.force[1] = force;
             self.reaction.torque = torque;
         } else {
-            self.reaction.force[0] = -sum.z;
+            self.reaction.force[0] = -force;
         }
     }
 
     /// Components held one by one, and loads.
     fn components(&mut self, group: &Group, hold: &HoldSpec, state: &mut State, kicked: f64) {
-        let [force, moment] = Self::load(hold, group.particles.len(), state.time);
-        for p in &group.particles {
-            let p = *p as usize;
-            let (kick, spin_kick) = (kicked / state.mass[p], kicked / state.inertia[p]);
-            let before = state.v.get(p) - state.force.get(p) * kick;
-            let loaded = state.v.get(p) + force * kick;
-            let after = prescribed(&hold.fixed[..3], hold.velocity, loaded);
-            self.work += ((after - state.v.get(p)) / kick).dot(before + after) * (0.5 * kicked);
-            state.v.set(p, after);
-            let before = state.w.get(p) - state.torque.get(p) * spin_kick;
-            let after = prescribed(&hold.fixed[3..], hold.spin, state.w.get(p) + moment * spin_kick);
-            self.work += ((after - state.w.get(p)) / spin_kick).dot(before + after) * (0.5 * kicked);
-            state.w.set(p, after);
+        let load = Self::load(hold, group.particles.len(), state.time).map(Triple::from);
+        let motion = [hold.velocity, hold.spin].map(Triple::from);
+        for p in group.particles.iter().map(|p| *p as usize) {
+            let held = self.kicked(state, p, kicked).components(&hold.fixed, motion, load);
+            held.work.iter().for_each(|work| self.work += work);
+            state.v.set(p, held.v.into());
+            state.w.set(p, held.w.into());
         }
     }
 
@@ -416,15 +438,6 @@ fn nothing_to_hold(layer: &str, upper: bool) -> Error {
     Error::input(
         format!("the {which} grip holds nothing: no wire of the outermost layer \"{layer}\" reaches into it"),
         "a jaw drives the outermost layer only: make its wires as long as the body, or grip.length longer",
-    )
-}
-
-/// `free` with the fixed components replaced.
-fn prescribed(fixed: &[bool], value: DVec3, free: DVec3) -> DVec3 {
-    DVec3::new(
-        if fixed[0] { value.x } else { free.x },
-        if fixed[1] { value.y } else { free.y },
-        if fixed[2] { value.z } else { free.z },
     )
 }
 

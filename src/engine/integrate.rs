@@ -1,9 +1,11 @@
 //! Leapfrog: forces gathered per particle in a fixed order, velocities kicked, positions drifted.
 
 use super::contact::spheres::second::SecondSides;
+use super::motion::{drifted, force_of_bonds, kicked, thinned_radius, torque_of_bonds};
 use super::state::{BondActions, CHUNK, RowChunks, State};
 use super::team::Team;
 use crate::base::lanes::{BLOCK, Lanes, Real};
+use crate::base::triple::Triple;
 use crate::base::vectors::Vectors;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -91,10 +93,10 @@ impl WithSimd for Gather<'_> {
             let mut sum = [zero; 6];
             for axis in 0..3 {
                 let pull = BondActions::PULL + axis;
-                sum[axis] = rows.here(simd, pull, k) - rows.before(simd, pull, k);
+                sum[axis] = force_of_bonds(rows.here(simd, pull, k), rows.before(simd, pull, k));
                 if parts.turn {
                     let (near, far) = (BondActions::NEAR + axis, BondActions::FAR + axis);
-                    sum[3 + axis] = rows.here(simd, near, k) + rows.before(simd, far, k);
+                    sum[3 + axis] = torque_of_bonds(rows.here(simd, near, k), rows.before(simd, far, k));
                 }
             }
             if let Some([push, twist]) = first_sides {
@@ -135,19 +137,14 @@ struct Thin<'a> {
 impl WithSimd for Thin<'_> {
     type Output = ();
 
-    /// Radius as the mean over the bonds that hold; a particle without any keeps its own.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Thin { rows, radius, thinned, radius0 } = self;
-        let (zero, half, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 0.5), Lanes::splat(simd, 1.0));
         for k in (0..radius.len()).step_by(Lanes::<S>::LEN) {
             let here = rows.here(simd, BondActions::THINNING, k);
             let before = rows.before(simd, BondActions::THINNING, k);
-            let (some, both) = (here.simd_gt(zero) | before.simd_gt(zero), here.simd_gt(zero) & before.simd_gt(zero));
-            let undeformed = Lanes::load_up_to_end(simd, radius0, k);
             let kept = Lanes::load_up_to_end(simd, radius, k);
-            let mean = undeformed * ((here + before) * Lanes::select(both, half, one));
-            let now = Lanes::select(some, mean, kept);
+            let now = thinned_radius(Lanes::load_up_to_end(simd, radius0, k), kept, here, before);
             now.store_up_to_end(radius, k);
             (kept - now).store_up_to_end(thinned, k);
         }
@@ -182,16 +179,32 @@ impl WithSimd for Kick<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Kick { v, force, inverse_mass, first, dt } = self;
-        let force = force.rows();
+        let Kick { mut v, force, inverse_mass, first, dt } = self;
+        let (force, time) = (force.rows(), Lanes::splat(simd, dt));
         for k in (0..v[0].len()).step_by(Lanes::<S>::LEN) {
-            let per_force = Lanes::load_up_to_end(simd, inverse_mass, first + k) * dt;
-            for axis in 0..3 {
-                let change = Lanes::load_up_to_end(simd, force[axis], first + k) * per_force;
-                (Lanes::load_up_to_end(simd, v[axis], k) + change).store_up_to_end(v[axis], k);
-            }
+            let inverse_mass = Lanes::load_up_to_end(simd, inverse_mass, first + k);
+            let before = load(simd, v.each_ref().map(|row| &**row), k);
+            store(kicked(before, load(simd, force, first + k), inverse_mass, time), &mut v, k);
         }
     }
+}
+
+/// The vectors from `at` on.
+#[inline(always)]
+fn load<S: Simd>(simd: S, [x, y, z]: [&[f64]; 3], at: usize) -> Triple<Lanes<S>> {
+    Triple {
+        x: Lanes::load_up_to_end(simd, x, at),
+        y: Lanes::load_up_to_end(simd, y, at),
+        z: Lanes::load_up_to_end(simd, z, at),
+    }
+}
+
+/// Writes the vectors from `at` on.
+#[inline(always)]
+fn store<S: Simd>(vectors: Triple<Lanes<S>>, [x, y, z]: &mut [&mut [f64]; 3], at: usize) {
+    vectors.x.store_up_to_end(x, at);
+    vectors.y.store_up_to_end(y, at);
+    vectors.z.store_up_to_end(z, at);
 }
 
 /// Positions over `state.dt`; returns the greatest squared displacement of the step (m²), NaN when a position is not a
@@ -219,16 +232,12 @@ impl WithSimd for Drift<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let Drift { x, v, dt } = self;
-        let zero = Lanes::splat(simd, 0.0);
-        let mut largest2 = zero;
+        let Drift { mut x, v, dt } = self;
+        let (mut largest2, dt) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, dt));
         for k in (0..x[0].len()).step_by(Lanes::<S>::LEN) {
-            let mut step2 = zero;
-            for axis in 0..3 {
-                let step = Lanes::load_up_to_end(simd, v[axis], k) * dt;
-                step2 += step * step;
-                (Lanes::load_up_to_end(simd, x[axis], k) + step).store_up_to_end(x[axis], k);
-            }
+            let before = load(simd, x.each_ref().map(|row| &**row), k);
+            let (after, step2) = drifted(before, load(simd, v, k), dt);
+            store(after, &mut x, k);
             largest2 = worse(largest2, step2);
         }
         largest(largest2)

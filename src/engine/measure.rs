@@ -1,6 +1,5 @@
 //! Running means of what is measured: strain, nominal stress, grip forces, stresses per wire.
 
-use super::bonds::Bonds;
 use super::estimates::wave_passage;
 use super::grips::{Holds, Reaction};
 use super::saved::{Reader, Unfit, Writer};
@@ -72,8 +71,14 @@ impl Measures {
         }
     }
 
-    /// Takes in a step of `dt` (s): the grips' reactions, the strain (-) and the bonds' forces, all at one instant.
-    pub fn take(&mut self, strain: f64, now: &Reaction, bonds: Option<&dyn Bonds>, dt: f64) {
+    /// Bonds whose axial forces it takes in.
+    pub fn bonds(&self) -> &[usize] {
+        &self.middle
+    }
+
+    /// Takes in a step of `dt` (s): the grips' reactions, the strain (-) and the axial forces of [`Self::bonds`] (N), asked
+    /// for in order, all at one instant.
+    pub fn take(&mut self, strain: f64, now: &Reaction, axial_force: impl FnMut(usize) -> f64, dt: f64) {
         let mut step = Step::default();
         while self.steps.front().is_some_and(|first| self.sum.length + dt - first.length >= self.window) {
             step = self.steps.pop_front().unwrap_or_default();
@@ -88,7 +93,7 @@ impl Measures {
         step.length = dt;
         step.values.clear();
         step.values.extend([strain, now.force[0], now.force[1], now.torque].map(|value| value * dt));
-        step.values.extend(self.middle.iter().map(|slot| bonds.map_or(0.0, |bonds| bonds.axial_force(*slot) * dt)));
+        step.values.extend(self.middle.iter().copied().map(axial_force).map(|force| force * dt));
         self.sum.length += dt;
         self.sum.values.iter_mut().zip(&step.values).for_each(|(sum, value)| *sum += value);
         self.steps.push_back(step);

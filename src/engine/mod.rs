@@ -7,15 +7,19 @@
 pub mod bonds;
 pub mod bytes;
 pub mod contact;
+pub mod elsewhere;
 pub mod estimates;
 pub mod grips;
 mod info;
 pub mod integrate;
+mod kept;
 pub mod loading_rate;
 pub mod measure;
 pub mod memory;
 mod monitor;
+pub mod motion;
 pub mod neighbours;
+pub mod recorded;
 pub mod rupture;
 pub mod saved;
 mod shared_rows;
@@ -43,7 +47,6 @@ use memory::StageBytes;
 use monitor::{Action, Monitor};
 use neighbours::Neighbours;
 use pulp::Arch;
-use saved::{Reader, Unfit, Writer};
 use state::{CHUNK, State};
 use std::time::Instant;
 use step_view::StepView;
@@ -202,12 +205,9 @@ impl Engine {
     }
 
     fn advance(&mut self) -> Result<()> {
-        if self.state.step.is_multiple_of(BOUND_INTERVAL) && self.state.step > 0 {
-            self.choose_step()?;
-            self.watch()?;
-        }
+        self.before_step()?;
         let began = Instant::now();
-        let kicked = 0.5 * (self.state.dt + self.next_dt);
+        let kicked = self.kicked();
         let turn = self.plan.rotations;
         integrate::kick(&mut self.state, kicked, turn, self.arch, &self.team);
         self.state.dt = self.next_dt;
@@ -217,17 +217,32 @@ impl Engine {
         let largest2 = integrate::drift(&mut self.state, self.arch, &self.team);
         self.state.step += 1;
         self.state.time += self.state.dt;
-        self.measures.take(strain, &self.holds.reaction, self.bonds.as_deref(), self.state.dt);
+        let axial = |slot| self.bonds.as_ref().map_or(0.0, |bonds| bonds.axial_force(slot));
+        self.measures.take(strain, &self.holds.reaction, axial, self.state.dt);
         self.timings.integrate += began.elapsed();
         self.state.travel += largest2.sqrt();
         let limit = RUNAWAY * self.least_radius;
-        if largest2.is_nan() || largest2 > limit * limit {
+        if motion::ran_away(largest2, limit * limit) {
             return Err(self.failed(monitor::ran_away(&self.view(), RUNAWAY)));
         }
         if let Some(c) = &mut self.contacts {
             c.stale |= c.neighbours.stale(&self.state, &self.holds.stretch, &self.team);
         }
         self.forces()
+    }
+
+    /// What is looked at now and then before a step: its size, and whether all that is needed is there.
+    fn before_step(&mut self) -> Result<()> {
+        if self.state.step.is_multiple_of(BOUND_INTERVAL) && self.state.step > 0 {
+            self.choose_step()?;
+            self.watch()?;
+        }
+        Ok(())
+    }
+
+    /// Time that the next kick spans (s).
+    fn kicked(&self) -> f64 {
+        0.5 * (self.state.dt + self.next_dt)
     }
 
     /// Forces at the present positions.
@@ -238,6 +253,13 @@ impl Engine {
             self.energy.plastic_bonds += partial.plastic;
             self.energy.damping += partial.damping;
         }
+        self.timings.bonds += began.elapsed();
+        self.forces_after_bonds()
+    }
+
+    /// Ruptures, contacts and sums, when bonds have acted.
+    fn forces_after_bonds(&mut self) -> Result<()> {
+        let began = Instant::now();
         if self.plan.rupture {
             self.break_bonds();
         }
@@ -274,11 +296,16 @@ impl Engine {
         let parts = integrate::Parts {
             turn: self.plan.rotations,
             contacts: self.contacts.as_ref().map(|c| c.stage.second_sides()),
-            thin: matches!(self.spec.bond.law, BondLawSpec::ElastoPlastic(_)),
+            thin: self.thins(),
         };
         integrate::gather(&mut self.state, parts, self.arch, &self.team);
         self.timings.integrate += before_gather.elapsed();
         Ok(())
+    }
+
+    /// Whether wires thin as they stretch.
+    fn thins(&self) -> bool {
+        matches!(self.spec.bond.law, BondLawSpec::ElastoPlastic(_))
     }
 
     /// Breaks what has reached its limit and books it.
@@ -342,65 +369,6 @@ impl Engine {
         self.next_dt = step_choice::choose(&self.view())?;
         self.show(|monitor, view| monitor.look_at_step(view));
         Ok(())
-    }
-
-    /// The state between two steps. Ruptures and notices that nobody has taken yet are part of it.
-    pub fn save(&self) -> Vec<u8> {
-        let mut out = Writer::default();
-        out.put(&self.state);
-        out.put(&(self.next_dt, self.bound, self.energy, self.rupture_count, self.least_radius));
-        out.put(&self.ruptures);
-        out.put(&self.monitor);
-        self.holds.save(&mut out);
-        self.measures.save(&mut out);
-        if let Some(bonds) = &self.bonds {
-            bonds.save(&mut out);
-        }
-        out.put(&self.contacts.as_ref().map(|contacts| contacts.stale));
-        if let Some(contacts) = &self.contacts {
-            contacts.neighbours.save(&mut out);
-            contacts.stage.save(&mut out);
-        }
-        out.into_bytes()
-    }
-
-    /// Takes up a state of the same scene: what comes after is what came after it there, to the bit, on any number of
-    /// threads.
-    ///
-    /// # Errors
-    /// [`Unfit`] when the bytes are no state, or one of another scene. The engine is of no use then.
-    pub fn restore(&mut self, bytes: &[u8]) -> std::result::Result<(), Unfit> {
-        let mut from = Reader::new(bytes);
-        let (particles, slots) = (self.state.len(), self.state.bond.data.len());
-        self.state = from.take()?;
-        if !self.state.fits(particles) || self.state.bond.data.len() != slots {
-            return Err(Unfit(format!("its particles are not the {particles} of this scene")));
-        }
-        (self.next_dt, self.bound, self.energy, self.rupture_count, self.least_radius) = from.take()?;
-        self.ruptures = from.take()?;
-        self.monitor = from.take()?;
-        self.holds.restore(&mut from)?;
-        self.measures.restore(&mut from)?;
-        if let Some(bonds) = &mut self.bonds {
-            bonds.restore(&mut from)?;
-        }
-        let stale: Option<bool> = from.take()?;
-        // Contacts may have come in later than at the start, but none goes again.
-        if stale.is_some() && self.contacts.is_none() {
-            let [force, torque] = [self.state.contact_force.clone(), self.state.contact_torque.clone()];
-            self.add_contacts();
-            (self.state.contact_force, self.state.contact_torque) = (force, torque);
-        }
-        match (stale, &mut self.contacts) {
-            (Some(stale), Some(contacts)) => {
-                contacts.stale = stale;
-                contacts.neighbours.restore(&mut from)?;
-                contacts.stage.restore(&mut from, &self.state)?;
-            }
-            (None, None) => {}
-            _ => return Err(Unfit("it has no contacts, which this scene needs".into())),
-        }
-        from.end()
     }
 
     /// Lets the monitor look at everything, and does what it answers.

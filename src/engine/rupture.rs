@@ -14,6 +14,15 @@ use glam::DVec3;
 /// Cause of a rupture as the engine books it.
 pub type Criterion = RuptureCause;
 
+/// What limits bonds, where a formula can tell that it is reached.
+#[derive(Debug, Clone, Copy)]
+pub enum Limit {
+    /// Plastic strain.
+    PlasticStrain,
+    /// Stress at the outermost fibre.
+    BeamStress(BeamStress),
+}
+
 /// Rupture limits of all bonds.
 pub struct RuptureCheck {
     criterion: RuptureCriterion,
@@ -56,6 +65,24 @@ impl RuptureCheck {
     /// any has reached it, and the pass over all of them is left out.
     pub fn plastic_limit(&self) -> Option<&[f64]> {
         (!self.plastic_limit.is_empty()).then_some(&self.plastic_limit)
+    }
+
+    /// What limits the bonds; `None` under the criterion that asks for the angles between them, which no formula that is
+    /// recorded has.
+    pub fn formula(&self) -> Option<Limit> {
+        match &self.criterion {
+            RuptureCriterion::PlasticStrain { .. } => Some(Limit::PlasticStrain),
+            RuptureCriterion::BeamStress { tensile, shear, moment_share } => {
+                let law = BeamStress { tensile: *tensile, shear: *shear, moment_share: *moment_share };
+                Some(Limit::BeamStress(law))
+            }
+            RuptureCriterion::FibreStrain { .. } => None,
+        }
+    }
+
+    /// Limit of a slot under [`Self::formula`] (-).
+    pub fn limit(&self, slot: usize) -> f64 {
+        *self.plastic_limit.get(slot).or(self.factor.get(slot)).unwrap_or(&1.0)
     }
 
     /// Slots that broke, in order, with the cause. `bond(slot)` gives (p, forces, section).

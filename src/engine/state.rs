@@ -99,6 +99,33 @@ impl BondActions {
         0.5 * (near - far)
     }
 
+    /// The field of a name, and of a part of it.
+    fn named(&self, name: &str) -> Option<usize> {
+        let of = |field: &str, first: usize| {
+            let axis = name.strip_prefix(field)?;
+            ["_x", "_y", "_z"].iter().position(|part| *part == axis).map(|part| first + part)
+        };
+        let thinning = (name == "thinning").then_some(Self::THINNING);
+        let turning = || of("moment_near", Self::NEAR).or(of("moment_far", Self::FAR)).filter(|_| self.turn);
+        thinning.or(of("pull", Self::PULL)).or_else(turning)
+    }
+
+    /// A field of all slots, by its name in formulas.
+    pub fn numbers(&self, name: &str) -> Option<impl Iterator<Item = f64> + '_> {
+        let field = self.named(name)?;
+        Some((0..self.data.len() / self.fields()).map(move |slot| self.get(slot, field)))
+    }
+
+    /// Writes a field of all slots; `false` where there is none of this name.
+    pub fn set_numbers(&mut self, name: &str, numbers: &[f64]) -> bool {
+        let Some(field) = self.named(name) else { return false };
+        for (slot, number) in numbers.iter().enumerate() {
+            let place = self.place(slot, field);
+            self.data[place] = *number;
+        }
+        true
+    }
+
     /// The bond is not there any more.
     pub fn clear(&mut self, slot: usize) {
         for field in 0..self.fields() {
@@ -210,6 +237,58 @@ impl State {
     pub fn make_room_for_contacts(&mut self) {
         self.contact_force = Vectors::zeros(self.len());
         self.contact_torque = Vectors::zeros(self.len());
+    }
+
+    /// A number of every particle, by its name in formulas.
+    pub fn row(&self, name: &str) -> Option<&[f64]> {
+        let (list, axis) = name.split_once('_').unwrap_or((name, ""));
+        let vectors = match list {
+            "x" => Some(&self.x),
+            "v" => Some(&self.v),
+            "w" => Some(&self.w),
+            "force" => Some(&self.force),
+            "torque" => Some(&self.torque),
+            _ => None,
+        };
+        match (vectors, axis) {
+            (Some(vectors), "x") => Some(&vectors.x),
+            (Some(vectors), "y") => Some(&vectors.y),
+            (Some(vectors), "z") => Some(&vectors.z),
+            _ => match name {
+                "radius" => Some(&self.radius),
+                "radius0" => Some(&self.radius0),
+                "thinned" => Some(&self.thinned),
+                "mass" => Some(&self.mass),
+                "inertia" => Some(&self.inertia),
+                "inverse_mass" => Some(&self.inverse_mass),
+                "inverse_inertia" => Some(&self.inverse_inertia),
+                _ => None,
+            },
+        }
+    }
+
+    /// Writes a number of every particle that changes in a step; `false` where there is none of this name.
+    pub fn set_row(&mut self, name: &str, numbers: &[f64]) -> bool {
+        let (list, axis) = name.split_once('_').unwrap_or((name, ""));
+        let vectors = match list {
+            "x" => &mut self.x,
+            "v" => &mut self.v,
+            "w" => &mut self.w,
+            "force" => &mut self.force,
+            "torque" => &mut self.torque,
+            _ => {
+                let row = match name {
+                    "radius" => &mut self.radius,
+                    "thinned" => &mut self.thinned,
+                    _ => return false,
+                };
+                row.copy_from_slice(numbers);
+                return true;
+            }
+        };
+        let Some(at) = ["x", "y", "z"].iter().position(|part| *part == axis) else { return false };
+        vectors.rows_mut()[at].copy_from_slice(numbers);
+        true
     }
 
     /// Whether every list is one of `n` particles.

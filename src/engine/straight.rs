@@ -1,5 +1,6 @@
 //! A grip that moves straight along z without turning: what most grips do, to a sixth of all particles, at every step.
 
+use super::motion::Kicked;
 use super::state::State;
 use crate::base::lanes::{BLOCK, Lanes, Real};
 use crate::base::triple::Triple;
@@ -78,27 +79,27 @@ impl StraightGrip<'_> {
     #[inline(always)]
     fn hold<S: Simd>(&mut self, simd: S, run: Range<usize>, lane: usize, sums: &mut Sums) {
         let s = &mut *self.state;
-        let (mass, inertia) = (load(simd, &s.mass, &run), load(simd, &s.inertia, &run));
-        let zero = mass.splat(0.0);
-        let per_kick = 1.0 / self.kicked;
-        // The speeds before the kick, the push to where the grip goes, and the work of it.
-        let v = vector(simd, &s.v, &run);
-        let after = Triple { x: zero, y: zero, z: zero.splat(self.speed) };
-        let push = (after - v) * (mass * per_kick);
-        let before = v - vector(simd, &s.force, &run) * (load(simd, &s.inverse_mass, &run) * self.kicked);
-        let w = vector(simd, &s.w, &run);
-        let twist = w * (-inertia * per_kick);
-        let spin = w - vector(simd, &s.torque, &run) * (load(simd, &s.inverse_inertia, &run) * self.kicked);
-        let work = (push.dot(before + after) + twist.dot(spin)) * (0.5 * self.kicked);
-        let (x, y) = (load(simd, &s.x.x, &run) - self.axis[0], load(simd, &s.x.y, &run) - self.axis[1]);
-        let torque = x * push.y - y * push.x + twist.z;
-
-        book(simd, &mut sums.force, lane, push.z);
-        book(simd, &mut sums.torque, lane, torque);
+        let mass = load(simd, &s.mass, &run);
+        let (zero, [x, y]) = (mass.splat(0.0), self.axis);
+        let kicked = Kicked {
+            arm: [load(simd, &s.x.x, &run) - x, load(simd, &s.x.y, &run) - y],
+            v: vector(simd, &s.v, &run),
+            w: vector(simd, &s.w, &run),
+            force: vector(simd, &s.force, &run),
+            torque: vector(simd, &s.torque, &run),
+            mass,
+            inertia: load(simd, &s.inertia, &run),
+            inverse_mass: load(simd, &s.inverse_mass, &run),
+            inverse_inertia: load(simd, &s.inverse_inertia, &run),
+            time: zero.splat(self.kicked),
+        };
+        let held = kicked.straight(zero.splat(self.speed), zero.splat(1.0 / self.kicked));
+        book(simd, &mut sums.force, lane, held.force);
+        book(simd, &mut sums.torque, lane, held.torque[0]);
         book(simd, &mut sums.mass, lane, mass);
-        book(simd, &mut sums.work, lane, work);
+        book(simd, &mut sums.work, lane, held.work[0]);
         let State { v, w, .. } = s;
-        after.z.store_up_to_end(&mut v.z[run.clone()], 0);
+        held.v.z.store_up_to_end(&mut v.z[run.clone()], 0);
         for row in [&mut v.x, &mut v.y, &mut w.x, &mut w.y, &mut w.z] {
             zero.store_up_to_end(&mut row[run.clone()], 0);
         }

@@ -89,7 +89,7 @@ impl<'d> Kernel<'d> {
 
 impl Device {
     /// What `work` makes, if the device has no complaint about it.
-    fn checked<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
+    pub(super) fn checked<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         // What a backend cannot translate is an internal error, not one of validation.
         let filters = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
         let scopes = filters.map(|filter| self.device.push_error_scope(filter));
@@ -105,14 +105,17 @@ impl Device {
     }
 
     /// The numbers in `buffer`, when all work that was given is done.
-    fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<f64>> {
+    pub(super) fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<f64>> {
         // A failed mapping shows as an error of `get_mapped_range` below.
         buffer.slice(..).map_async(wgpu::MapMode::Read, |_| ());
         let done = self.device.poll(wgpu::PollType::wait_indefinitely());
         done.map_err(|e| failure(&self.adapter, format!("was lost: {e}")))?;
         let range = buffer.slice(..).get_mapped_range();
         let bytes = range.map_err(|e| failure(&self.adapter, format!("does not give its results back: {e}")))?;
-        Ok(bytemuck::pod_collect_to_vec(&bytes))
+        let numbers = bytemuck::pod_collect_to_vec(&bytes);
+        drop(bytes);
+        buffer.unmap();
+        Ok(numbers)
     }
 }
 

@@ -146,7 +146,7 @@ fn bond<L: BondLaw>(name: &str, law: L, turn: bool, damped: bool) -> Case {
             "far_x_y" => 0.02 * draw(body, 0, "near_x_y") + gone("far_v_y"),
             "far_x_z" => 0.02 * draw(body, 0, "near_x_z") + gone("far_v_z"),
             "rest_length" => LENGTH,
-            "radius" => RADIUS,
+            "radius0" => RADIUS,
             "inverse_length" => 1.0 / LENGTH,
             "inverse_radius" => 1.0 / RADIUS,
             "e1_y" => 1.0,
@@ -171,7 +171,7 @@ fn section(law: ElastoPlastic) -> Case {
     let function = Function::record("section_stress", &formula).unwrap();
     let batches = histories(&formula, &function, |body, step, name, scale| match name {
         "rest_length" => LENGTH,
-        "radius" => RADIUS,
+        "radius0" => RADIUS,
         "inverse_length" => 1.0 / LENGTH,
         "inverse_radius" => 1.0 / RADIUS,
         "history_2" => 1.0 - 0.1 * draw(body, step, name).abs(),

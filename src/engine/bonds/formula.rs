@@ -1,12 +1,14 @@
 //! What a bond does in a step, and the section values that its rupture looks at, as formulas that can be recorded.
 
-use super::kinematics::{Node, Step};
-use super::layout::{MODES, force, shape};
+use super::kinematics::{Node, Step, reached};
+use super::layout::{ACROSS, SHAPE_NAMES, VISCOSITY, force, shape};
 use crate::base::lanes::Real;
 use crate::base::recorder::{Formula, put_vector, take_vector};
 use crate::base::triple::Triple;
+use crate::engine::rupture::Limit;
 use crate::law::bond::rupture::BeamStress;
 use crate::law::bond::{BondForce, BondLaw, Section};
+use std::collections::BTreeMap;
 
 /// A step of one bond: its motion, its law, its dashpots. A bond whose `live` is 0 stays as it was and does nothing.
 #[derive(Debug, Clone)]
@@ -18,10 +20,6 @@ pub struct BondStep<L> {
     /// Whether there are dashpots.
     pub damped: bool,
 }
-
-const SHAPE: [&str; 4] = ["rest_length", "radius", "inverse_length", "inverse_radius"];
-const ACROSS: [&str; 5] = ["shear_1", "shear_2", "bend_1", "bend_2", "twist"];
-const VISCOSITY: [&str; MODES] = ["viscosity_axial", "viscosity_shear", "viscosity_bend", "viscosity_twist"];
 
 impl<L: BondLaw> Formula for BondStep<L> {
     /// Takes positions (m), velocities (m/s) and spins (rad/s) of the two particles, the shape, what the bond remembers
@@ -36,7 +34,7 @@ impl<L: BondLaw> Formula for BondStep<L> {
             Node { x, v, w: if *turn { vector("w") } else { Triple::zero(v.x) } }
         };
         let ends = [node("near"), node("far")];
-        let shape_numbers = SHAPE.map(&mut *take);
+        let shape_numbers = SHAPE_NAMES.map(&mut *take);
         let shape = shape(|k| shape_numbers[k]);
         let zero = shape.radius.splat(0.0);
         let old_e1 = if *turn { take_vector(take, "e1") } else { ends[0].w };
@@ -89,6 +87,52 @@ impl<L: BondLaw> Formula for BondStep<L> {
     }
 }
 
+/// [`BondStep`] in a run: energies are added up, and it is seen whether a bond has reached its limit.
+#[derive(Debug, Clone)]
+pub struct BondInRun<L> {
+    /// The step.
+    pub step: BondStep<L>,
+    /// What limits it.
+    pub limit: Option<Limit>,
+}
+
+impl<L: BondLaw> Formula for BondInRun<L> {
+    /// Takes what the step takes, the energies so far (J) and the bond's limit. Puts what the step puts, but the energies with
+    /// its own (J), and whether the bond has to be broken (1 or 0).
+    fn compute<R: Real>(&self, take: &mut dyn FnMut(&str) -> R, put: &mut dyn FnMut(&str, R)) {
+        let (mut taken, mut done) = (BTreeMap::new(), BTreeMap::new());
+        let mut take = |name: &str| *taken.entry(name.to_owned()).or_insert_with(|| take(name));
+        self.step.compute(&mut take, &mut |name, number| {
+            done.insert(name.to_owned(), number);
+        });
+        let (zero, one) = (done["axial"].splat(0.0), done["axial"].splat(1.0));
+        let due = self.limit.map(|limit| {
+            let (live, most) = (take("live").simd_gt(zero), take("limit"));
+            let due = match limit {
+                Limit::PlasticStrain => reached(done["plastic_strain"], most),
+                Limit::BeamStress(criterion) => {
+                    let across = ACROSS.map(|name| done.get(name).copied().unwrap_or(zero));
+                    let shape_numbers = SHAPE_NAMES.map(&mut take);
+                    let state = L::history(|k| done[&format!("history_{k}")]);
+                    let section = self.step.law.section(&shape(|k| shape_numbers[k]), &state);
+                    let force = force(done["axial"], |k| across[k]);
+                    let [tension, shear] = criterion.utilisation(&force, &section);
+                    reached(tension, most) | reached(shear, most)
+                }
+            };
+            R::select(live & due, one, zero)
+        });
+        for (name, number) in &done {
+            match name.as_str() {
+                "plastic_work" | "damping_work" => put(name, take(name) + *number),
+                "plastic_strain" => {}
+                _ => put(name, *number),
+            }
+        }
+        due.into_iter().for_each(|due| put("due", due));
+    }
+}
+
 /// What the criterion of [`BeamStress`] looks at in a bond: its two utilisations.
 #[derive(Debug, Clone)]
 pub struct SectionStress<L> {
@@ -102,7 +146,7 @@ impl<L: BondLaw> Formula for SectionStress<L> {
     /// Takes the shape, forces and history of a bond; puts its section (radius (m), area (m²), second moment (m⁴)) and its
     /// tensile and shear utilisation (-).
     fn compute<R: Real>(&self, take: &mut dyn FnMut(&str) -> R, put: &mut dyn FnMut(&str, R)) {
-        let shape_numbers = SHAPE.map(&mut *take);
+        let shape_numbers = SHAPE_NAMES.map(&mut *take);
         let axial = take("axial");
         let across = ACROSS.map(&mut *take);
         let history: Vec<R> = (0..L::HISTORY).map(|k| take(&format!("history_{k}"))).collect();

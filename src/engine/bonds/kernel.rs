@@ -1,6 +1,6 @@
 //! The bonds of one chunk, as many at once as a register holds.
 
-use super::kinematics::{Acts, Node, Step};
+use super::kinematics::{Acts, Node, Step, reached};
 use super::layout::{CONSTANTS, Layout, SHAPE, force, shape};
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
@@ -111,7 +111,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         self.act(block, lane, live, &acts, self.law.thinning(&shape, &state));
         self.limit.is_some_and(|limit| {
             let limit = Lanes::load_up_to_end(simd, limit, slot);
-            (live & !limit.simd_gt(self.law.plastic_strain(&shape, &state))).any()
+            (live & reached(self.law.plastic_strain(&shape, &state), limit)).any()
         })
     }
 

@@ -46,6 +46,12 @@ fn log_strain<R: Real>(d: Triple<R>, shape: &BondShape<R>) -> R {
     (d.length_squared() * (shape.inverse_length * shape.inverse_length)).ln() * 0.5
 }
 
+/// Where what limits a bond has reached its limit, or is no number.
+#[inline(always)]
+pub(super) fn reached<R: Real>(value: R, limit: R) -> R::Mask {
+    !limit.simd_gt(value)
+}
+
 impl<L: BondLaw, R: Real> Step<'_, L, R> {
     /// Bonds that only stretch.
     #[inline(always)]

@@ -16,6 +16,7 @@ mod layout;
 pub mod trial;
 
 use crate::base::lanes::BLOCK;
+use crate::base::recorder::Function;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::rupture::{Criterion, RuptureCheck};
 use crate::engine::saved::{Reader, Unfit, Writer};
@@ -30,8 +31,9 @@ use crate::law::damping::viscous_coefficient;
 use crate::scene::plan::Plan;
 use crate::scene::spec::{BondLawSpec, Spec};
 use crate::strand::assembly::Assembly;
+use formula::{BondInRun, BondStep};
 use kernel::Chunk;
-use layout::{CONSTANTS, Layout, MODES, SHAPE, force, place, shape};
+use layout::{CONSTANTS, Layout, MODES, SHAPE, constant_named, force, place, shape};
 use pulp::Arch;
 
 /// Chooses law and modes, once per run.
@@ -75,6 +77,15 @@ pub trait Bonds: Send + Sync {
     fn utilisation(&self, slot: usize, state: &State) -> f64;
     /// Memory of the stage.
     fn bytes(&self) -> Bytes;
+    /// A step of a bond as a function.
+    ///
+    /// # Errors
+    /// Why it cannot be recorded.
+    fn record(&self) -> Result<Function, String>;
+    /// A number of every slot, by its name in that function.
+    fn numbers(&self, name: &str) -> Option<Vec<f64>>;
+    /// Takes up a number of every slot that the function has given, if bonds remember a number of this name.
+    fn set_numbers(&mut self, name: &str, numbers: &[f64]);
     /// Puts in what the bonds remember.
     fn save(&self, out: &mut Writer);
     /// Takes up what [`Self::save`] has put in.
@@ -282,6 +293,35 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     fn utilisation(&self, slot: usize, state: &State) -> f64 {
         let Some(check) = &self.rupture else { return 0.0 };
         check.utilisation(slot, state, self.plastic_strain(slot), &self.force(slot), &self.section(slot))
+    }
+
+    fn record(&self) -> Result<Function, String> {
+        let limit = match &self.rupture {
+            None => None,
+            Some(check) => Some(check.formula().ok_or("fibre strain asks for angles between bonds")?),
+        };
+        let step = BondStep { law: self.law.clone(), turn: TURN, damped: self.damped };
+        Function::record("bonds", &BondInRun { step, limit }).map_err(|reason| reason.to_string())
+    }
+
+    fn numbers(&self, name: &str) -> Option<Vec<f64>> {
+        let slots = 0..self.kind.len() * BLOCK;
+        if let Some(row) = constant_named(name) {
+            return Some(slots.map(|slot| self.constant(slot, row)).collect());
+        }
+        if name == "limit" {
+            let check = self.rupture.as_ref()?;
+            return Some(slots.map(|slot| check.limit(slot)).collect());
+        }
+        let field = Layout::<L, TURN>::named(name)?;
+        Some(slots.map(|slot| self.get(slot, field)).collect())
+    }
+
+    fn set_numbers(&mut self, name: &str, numbers: &[f64]) {
+        let Some(field) = Layout::<L, TURN>::named(name) else { return };
+        numbers.iter().enumerate().for_each(|(slot, number)| self.set(slot, field, *number));
+        // Whoever has computed them has not looked at all limits.
+        self.due.fill(true);
     }
 
     fn save(&self, out: &mut Writer) {

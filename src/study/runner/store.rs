@@ -57,7 +57,7 @@ impl Identity {
 pub struct Record<T> {
     /// Which case.
     pub identity: Identity,
-    /// Which build ran it, see [`build`].
+    /// Which build ran it, see [`build()`].
     pub build: String,
     /// Its result.
     pub result: T,
