@@ -466,7 +466,7 @@ fn an_animation_that_cannot_be_written_is_refused_before_the_simulation() {
     }
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("taken.gif"), "precious").unwrap();
-    for (file, word) in [("a.mp4", ".gif"), ("taken.gif", "--overwrite")] {
+    for (file, word) in [("a.mov", ".gif"), ("taken.gif", "--overwrite")] {
         let output = short_run(folder.path(), &["--no-recording", "--animation", file]);
         assert_code(&output, 2);
         assert!(plain(&stderr(&output)).contains(word), "{}", stderr(&output));

@@ -337,7 +337,7 @@ fn one_command_starts_a_run_and_starts_it_again() {
 /// What `nohup` starts goes on when its terminal is closed.
 #[cfg(unix)]
 #[test]
-fn a_signal_that_was_ignored_from_the_start_stays_ignored() {
+fn a_hang_up_that_was_ignored_from_the_start_stays_ignored() {
     use rustix::process::{Pid, Signal, kill_process};
     let folder = tempfile::tempdir().unwrap();
     let scene = scene(folder.path(), STRAND);

@@ -56,13 +56,14 @@ pub fn install_saying(words: &'static str) -> Result<&'static AtomicBool> {
     Ok(&STOP)
 }
 
-/// Calls `handler` at INT, TERM and HUP, but for those that this process was started to ignore, such as HUP by `nohup`.
+/// Calls `handler` at INT, TERM and HUP; not at HUP where this process was started to ignore it, as `nohup` does.
 #[cfg(unix)]
 fn listen(handler: impl Fn() + Send + 'static) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    let ignored = ignored();
-    let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
-    let mut signals = signal_hook::iterator::Signals::new(heard.collect::<Vec<_>>())?;
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
+    if ignored() >> (SIGHUP - 1) & 1 == 0 {
+        signals.add_signal(SIGHUP)?;
+    }
     std::thread::spawn(move || signals.forever().for_each(|_| handler()));
     Ok(())
 }

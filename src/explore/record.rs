@@ -261,8 +261,10 @@ fn between(a: &Snapshot, b: &Snapshot, share: f64) -> Snapshot {
     let t = share as f32;
     let mix = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a + (b - a) * t).collect();
     let position = a.position.iter().zip(&b.position);
+    let number = |of: fn(&Sample) -> f64| of(&a.sample) + (of(&b.sample) - of(&a.sample)) * share;
+    let [strain, time, stress] = [number(|s| s.strain), number(|s| s.time), number(|s| s.stress)];
     Snapshot {
-        sample: a.sample.clone(),
+        sample: Sample { strain, time, stress, ..a.sample.clone() },
         position: position.map(|(a, b)| Vec3::from(*a).lerp(Vec3::from(*b), t).to_array()).collect(),
         radius: mix(&a.radius, &b.radius),
         speed: mix(&a.speed, &b.speed),

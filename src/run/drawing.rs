@@ -68,7 +68,8 @@ impl Undrawn {
         let Self { options, scene, summary, folder, replay } = self;
         let lock = folder.take_over()?;
         let (writer, frames) = outputs::frames(&options, &scene.spec, &folder, true)?;
-        Ok(Drawing { replay, writer, frames, scene, summary, folder, _lock: lock })
+        let animated = options.animation.is_some();
+        Ok(Drawing { replay, writer, frames, animated, scene, summary, folder, _lock: lock })
     }
 }
 
@@ -79,6 +80,8 @@ pub struct Drawing {
     /// What draws.
     pub writer: Box<dyn Observer>,
     frames: outputs::Frames,
+    /// An animation is to be made of them.
+    animated: bool,
     scene: Scene,
     summary: RunSummary,
     folder: OutFolder,
@@ -91,7 +94,7 @@ impl Drawing {
     /// # Errors
     /// [`Error::Io`] when a file cannot be written.
     pub fn end(self) -> Result<RunSummary> {
-        let Self { replay, frames, scene, mut summary, folder, .. } = self;
+        let Self { replay, frames, animated, scene, mut summary, folder, .. } = self;
         let mut timings = frames.timings();
         let drawn = frames.kept() + timings.frames as usize;
         // Of those that were drawn again, the first time counts no more.
@@ -100,7 +103,8 @@ impl Drawing {
         }
         // Those that the writer was never told of, too.
         let left = replay.count().saturating_sub(drawn);
-        timings = Timings { not_drawn: left as u32, ..timings.for_frames(drawn as u32) };
+        let not_animated = timings.not_animated || (animated && left > 0);
+        timings = Timings { not_drawn: left as u32, not_animated, ..timings.for_frames(drawn as u32) };
         summary.cost.frames = Some(timings);
         super::write_summary(&folder, &scene.spec, &summary)?;
         if !timings.unfinished() {
