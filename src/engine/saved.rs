@@ -54,8 +54,7 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// [`Unfit`] when there is none of this type.
     pub fn take<T: DeserializeOwned>(&mut self) -> Result<T, Unfit> {
-        let (part, rest) =
-            postcard::take_from_bytes(self.bytes).map_err(|e| Unfit(format!("it cannot be read: {e}")))?;
+        let (part, rest) = postcard::take_from_bytes(self.bytes).map_err(|_| Unfit("its bytes are damaged".into()))?;
         self.bytes = rest;
         Ok(part)
     }

@@ -352,7 +352,7 @@ fn read(path: &Path) -> std::io::Result<Checkpoint> {
     }
     let mut bytes = Vec::new();
     FrameDecoder::new(reader).read_to_end(&mut bytes).map_err(|e| damaged(e.to_string()))?;
-    postcard::from_bytes(&bytes).map_err(|e| damaged(e.to_string()))
+    postcard::from_bytes(&bytes).map_err(|_| damaged("its bytes are no state of a run".into()))
 }
 
 impl Checkpoint {
