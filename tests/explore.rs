@@ -264,6 +264,9 @@ fn two_runs_stand_side_by_side_at_the_same_strain() {
     let state = (after - 1) as f64 + (strain - right[after - 1]) / (right[after] - right[after - 1]);
     let facts = json_of(&shown.fetch("/run.json"));
     assert_eq!(facts["other"]["states"].as_array().unwrap().len(), 7);
+    // Runs of the same scene are told apart by their folders.
+    assert_eq!(facts["other"]["label"], beside.path().display().to_string());
+    assert_ne!(facts["label"], facts["other"]["label"]);
     let mut socket = shown.socket();
     let view = close_up(9.5);
     say(&mut socket, json!({ "look": { "number": 1, "size": SIZE, "view": view } }));

@@ -419,7 +419,7 @@ function drawOverlay() {
     drawBreaks(run.other, now.other, part, width);
     element(overlay, "line", { class: "axis", x1: part, x2: part, y1: 0, y2: height });
     [[run, now, 0], [run.other, now.other, part]].forEach(([of, told, left]) => {
-      element(overlay, "text", { class: "caption", x: left + 10, y: 18 }, `${of.name}, ${told.when}`);
+      element(overlay, "text", { class: "caption", x: left + 10, y: 18 }, `${of.label}, ${told.when}`);
     });
   }
   drawTriad(height);
@@ -495,7 +495,7 @@ function drawCurve() {
     element(dot, "title", {}, `break ${r.order}: wire ${run.wires[r.wire].number}, ${r.when}`);
   }
   const selected = view.selected === undefined ? "" : `; blue: ${wireName(view.selected).toLowerCase()} at mid-gauge`;
-  svg.setAttribute("aria-label", `Nominal stress over strain, ${run.ruptures.length} breaks${selected}${run.other ? `; dashed: ${run.other.name}, right` : ""}`);
+  svg.setAttribute("aria-label", `Nominal stress over strain, ${run.ruptures.length} breaks${selected}${run.other ? `; dashed: ${run.other.label}, right` : ""}`);
 }
 $("curve").onclick = event => {
   if (!curve) return;
@@ -567,7 +567,7 @@ function drawParticle() {
     list.append(dt, dd);
   };
   const p = particle, of = p.other ? run.other : run;
-  if (run.other) add("run", of.name);
+  if (run.other) add("run", of.label);
   add("particle", p.wire === null ? `free sphere ${p.particle}` : `${p.number_in_wire} of ${p.of} in wire ${of.wires[p.wire].number}`);
   add("position", `${p.position.map(v => fixed(v, 3)).join(", ")} mm (z ${fixed(p.rest_z, 3)} mm before loading)`);
   add("radius", `${fixed(p.radius, 4)} mm`);

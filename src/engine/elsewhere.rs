@@ -160,7 +160,8 @@ impl Engine {
             let strain = self.holds.strain();
             let bonds = self.measures.bonds().len();
             let (grips, axial) = measured.split_at(measured.len() - bonds);
-            let grips = grips.try_into().unwrap_or_default();
+            // Bodies without grips have no reactions.
+            let grips = if grips.is_empty() { [0.0; 3] } else { [grips[0], grips[1], grips[2]] };
             self.holds.take(grips, self.state.time, block.dt, kicked, &self.state.mass);
             self.state.step += 1;
             self.state.time += block.dt;

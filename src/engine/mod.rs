@@ -13,7 +13,7 @@ pub mod grips;
 mod info;
 pub mod integrate;
 mod kept;
-pub mod loading_rate;
+pub(crate) mod loading_rate;
 pub mod measure;
 pub mod memory;
 mod monitor;

@@ -295,7 +295,7 @@ impl Service {
         );
         let headlines = self.shared.headlines();
         let compared = headlines.len() > 1;
-        let names: Vec<&str> = headlines.iter().map(|(name, _)| *name).collect();
+        let names: Vec<&str> = headlines.iter().map(|(name, _)| name.as_str()).collect();
         let name = maud::html! { (names.join(" and ")) }.into_string();
         let headline: String = headlines
             .iter()

@@ -6,13 +6,15 @@ use super::view::View;
 use crate::base::error::{Error, Result};
 use image::{RgbImage, imageops};
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A run and the one who draws it.
 pub(super) struct Pane {
     pub record: Record,
+    /// Its folder.
+    run: PathBuf,
     artist: Mutex<Artist>,
 }
 
@@ -24,7 +26,7 @@ impl Pane {
     pub fn open(run: &Path) -> Result<Self> {
         let record = Record::read(run)?;
         let artist = Mutex::new(Artist::new(&record)?);
-        Ok(Self { record, artist })
+        Ok(Self { record, run: run.into(), artist })
     }
 
     /// The one who draws, when it is free. A picture that failed in the middle leaves nothing half done.
@@ -127,6 +129,8 @@ impl Shared {
         facts["adapter"] = self.run.artist().adapter().into();
         if let Some(other) = &self.other {
             facts["other"] = other.record.facts();
+            facts["label"] = self.label(&self.run).into();
+            facts["other"]["label"] = self.label(other).into();
         }
         facts
     }
@@ -141,9 +145,18 @@ impl Shared {
     }
 
     /// What broke first, as markup, of each run.
-    pub fn headlines(&self) -> Vec<(&str, String)> {
+    pub fn headlines(&self) -> Vec<(String, String)> {
         let all = [Some(&self.run), self.other.as_ref()];
-        all.into_iter().flatten().map(|pane| (pane.record.name(), pane.record.headline())).collect()
+        all.into_iter().flatten().map(|pane| (self.label(pane), pane.record.headline())).collect()
+    }
+
+    /// What a run is called: its scene, or its folder where the other one is a run of the same scene.
+    fn label(&self, pane: &Pane) -> String {
+        let name = pane.record.name();
+        match &self.other {
+            Some(other) if other.record.name() == self.run.record.name() => pane.run.display().to_string(),
+            _ => name.to_owned(),
+        }
     }
 
     /// What is wrong with the runs' folders, in sentences.

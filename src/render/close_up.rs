@@ -91,7 +91,7 @@ pub struct CloseUp {
 }
 
 impl CloseUp {
-    /// A close_up that knows what is going to break.
+    /// One that knows what is going to break.
     pub fn knowing(ruptures: Vec<Rupture>) -> Self {
         Self { known: Some(ruptures), ..Self::default() }
     }

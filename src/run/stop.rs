@@ -29,7 +29,7 @@ pub struct StopRule {
     fallen: Option<f64>,
     /// Strain at which stress dropped, as long as it stays down (-).
     dropped_at: Option<f64>,
-    /// Strain since the drop, where it has gone to `stop.strain_after_drop` (-).
+    /// Strain since the drop, in the direction of the load, where it has gone to `stop.strain_after_drop` (-).
     passed: Option<f64>,
 }
 
@@ -103,7 +103,8 @@ impl StopRule {
         self.fallen = self.stop.stress_fraction.filter(|share| below(*share)).map(|_| mean / self.peak);
         self.dropped_at = if below(1.0 - DROP) { self.dropped_at.or(Some(strain)) } else { None };
         let beyond = self.dropped_at.zip(self.stop.strain_after_drop);
-        self.passed = beyond.filter(|(at, beyond)| strain - at >= *beyond).map(|(at, _)| strain - at);
+        let since = beyond.map(|(at, beyond)| ((strain - at) * self.peak.signum(), beyond));
+        self.passed = since.filter(|(since, beyond)| since >= beyond).map(|(since, _)| since);
     }
 
     /// The condition that holds now, if one does.
@@ -203,6 +204,24 @@ mod tests {
             panic!("it goes on")
         };
         assert!(limit == 0.02 && (0.02..0.031).contains(&reached), "{reached}");
+    }
+
+    #[test]
+    fn so_does_one_of_what_is_pushed() {
+        let mut rule = StopRule::new(&StopSpec { strain_after_drop: Some(0.02), ..StopSpec::default() }, 10.0);
+        let push = |rule: &mut StopRule, from: f64, to: f64, stress: f64| {
+            for k in 0..=100 {
+                rule.step(rule.time + 1.0, from + (to - from) * f64::from(k) / 100.0, stress);
+            }
+            rule.reached(to, 0.0, 0)
+        };
+        push(&mut rule, 0.0, -0.1, -100.0);
+        rule.rupture();
+        assert_eq!(push(&mut rule, -0.1, -0.11, -40.0), None);
+        let Some(StopReason::AfterDrop { reached, .. }) = push(&mut rule, -0.11, -0.13, -40.0) else {
+            panic!("it goes on")
+        };
+        assert!((0.02..0.031).contains(&reached), "{reached}");
     }
 
     #[test]

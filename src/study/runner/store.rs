@@ -214,13 +214,19 @@ mod tests {
         assert_eq!(found(&cleared, &one), None);
     }
 
-    #[test]
-    fn half_a_record_is_none() {
+    /// A store with the result 1.5 of one case: its folder, itself, the case, and the file of the record.
+    fn kept() -> (tempfile::TempDir, CaseStore, Identity, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let store = CaseStore::open(folder.path(), false).unwrap();
         let one = identity("a scene", 1);
         store.keep(&one, "scene.toml", 1.5).unwrap();
         let path = store.folder().join(one.name()).join(RECORD);
+        (folder, store, one, path)
+    }
+
+    #[test]
+    fn half_a_record_is_none() {
+        let (_folder, store, one, path) = kept();
         let text = std::fs::read_to_string(&path).unwrap();
         assert_eq!(store.damaged(), []);
         std::fs::write(&path, &text[..text.len() / 2]).unwrap();
@@ -232,11 +238,7 @@ mod tests {
 
     #[test]
     fn a_record_with_another_number_is_none() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = CaseStore::open(folder.path(), false).unwrap();
-        let one = identity("a scene", 1);
-        store.keep(&one, "scene.toml", 1.5).unwrap();
-        let path = store.folder().join(one.name()).join(RECORD);
+        let (_folder, store, one, path) = kept();
         let text = std::fs::read_to_string(&path).unwrap();
         for changed in
             [text.replace("1.5", "1.6"), text.replace("\"build\":", "\"building\":"), text.replace(DIGEST, ",\"a\":\"")]
