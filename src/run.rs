@@ -20,6 +20,7 @@ pub mod record;
 pub mod replay;
 mod schedule;
 pub mod size;
+pub mod steps;
 mod stop;
 #[cfg(feature = "record")]
 pub mod view;
@@ -29,6 +30,7 @@ pub use crate::observe::summary::RunSummary;
 pub use drive::{Outcome, simulate, simulate_engine};
 pub use options::{Outputs, RunOptions};
 pub use schedule::{Due, Schedule};
+pub use steps::DeviceChoice;
 pub use stop::StopRule;
 
 use crate::base::error::{Error, Result};
@@ -52,6 +54,7 @@ use folder::OutFolder;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use steps::Steps;
 
 /// Runs a scene and writes its results; `stop` ends it cleanly after the step in progress.
 ///
@@ -86,13 +89,14 @@ pub fn run_watched(
     let assembly = assemble(scene)?;
     let bonds = assembly.bond_count();
     let engine = Engine::new(&scene.spec, &scene.plan, assembly)?;
+    let steps = Steps::new(&options.device, &engine)?;
     let _lock = folder.open()?;
     let resolved = write::to_toml(&scene.spec);
     write_whole(&folder.file(folder::SCENE), &resolved)?;
     let written = outputs::open(options, &scene.spec, &folder)?;
     let every = scene.spec.output.checkpoint;
     let keeper = Keeper::new(&options.out, every, Identity::new(resolved), options.outputs(), None);
-    let job = Job { scene, options, folder: &folder, clock, bonds, keeper };
+    let job = Job { scene, options, folder: &folder, clock, bonds, keeper, steps };
     drive_and_summarise(job, engine, written, watchers, stop, None)
 }
 
@@ -110,12 +114,13 @@ pub struct Resumable {
 }
 
 impl Resumable {
-    /// Looks at the folder of a run, and changes nothing there.
+    /// Looks at the folder of a run, and changes nothing there. It goes on with `threads`, and on `device` or on what it began
+    /// with.
     ///
     /// # Errors
     /// [`Error::Input`] when there is no checkpoint, when none is whole, or when it is not one of the scene that lies beside
     /// it; something missing on the machine (adapter).
-    pub fn open(folder: &Path, threads: Option<usize>) -> Result<Self> {
+    pub fn open(folder: &Path, threads: Option<usize>, device: Option<DeviceChoice>) -> Result<Self> {
         let out = OutFolder::of_run(folder)?;
         let (checkpoint, damaged) = checkpoint::latest(folder)?;
         let mut notes: Vec<String> =
@@ -123,7 +128,8 @@ impl Resumable {
         let scene = crate::scene::load(&out.file(folder::SCENE).to_string_lossy(), &[])?;
         let identity = Identity::new(write::to_toml(&scene.spec));
         checkpoint.check(&identity)?;
-        let options = RunOptions::of_resumed(folder, &checkpoint.outputs, threads);
+        let began = RunOptions::of_resumed(folder, &checkpoint.outputs, threads);
+        let options = RunOptions { device: device.unwrap_or(began.device), ..began };
         outputs::check(&options)?;
         notes.push(format!("going on from step {}", checkpoint.step));
         Ok(Self { scene, options, folder: out, identity, checkpoint, notes })
@@ -160,6 +166,7 @@ impl Resumable {
         let state = LoopState::restore(&scene.spec, &info, &checkpoint.driver);
         let state = state.and_then(|state| engine.restore(&checkpoint.engine).map(|()| state));
         let state = state.map_err(|unfit| checkpoint::not_its(&unfit.to_string()))?;
+        let steps = Steps::new(&options.device, &engine)?;
         let before = checkpoint.find_trajectory(&options.out, &info)?;
         // It is kept until the first checkpoint of the new one.
         let kept = folder.file(folder::RESUMED_FROM);
@@ -172,7 +179,7 @@ impl Resumable {
         let written = outputs::open(&options, &scene.spec, &folder)?;
         let every = scene.spec.output.checkpoint;
         let keeper = Keeper::new(&options.out, every, identity, options.outputs(), Some(&checkpoint));
-        let job = Job { scene: &scene, options: &options, folder: &folder, clock, bonds, keeper };
+        let job = Job { scene: &scene, options: &options, folder: &folder, clock, bonds, keeper, steps };
         drive_and_summarise(job, engine, written, watchers, stop, Some(Resumed { checkpoint, state, trajectory }))
     }
 }
@@ -253,6 +260,8 @@ impl Clock {
             ms_per_step: (outcome.steps > 0).then(|| stepping_ms / outcome.steps as f64),
             threads: outcome.threads[0],
             threads_available: outcome.threads[1],
+            adapter: outcome.adapter.clone(),
+            not_on_adapter: outcome.not_on_adapter.clone(),
             frames,
             versions: cost::versions(),
         }
@@ -267,6 +276,7 @@ struct Job<'a> {
     clock: Clock,
     bonds: usize,
     keeper: Keeper,
+    steps: Steps,
 }
 
 fn drive_and_summarise(
@@ -286,7 +296,8 @@ fn drive_and_summarise(
     let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
-    let (outcome, error) = drive::drive(engine, spec, &mut observers, stop, Some(&mut job.keeper), resumed)?;
+    let (outcome, error) =
+        drive::drive((engine, job.steps), spec, &mut observers, stop, Some(&mut job.keeper), resumed)?;
     let timings = written.frames.as_ref().map(outputs::Frames::timings);
     let files = Some(job.options.written());
     let closing = Closing { written: files, ..closing(&job.clock, &outcome, error.as_ref(), timings) };

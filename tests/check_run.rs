@@ -82,6 +82,7 @@ pub fn run_into(scene: &Scene, out: &Path) {
         overwrite: false,
         wait: false,
         threads: Some(1),
+        device: run::DeviceChoice::default(),
         frames: false,
         animation: None,
         recording: cfg!(feature = "record"),

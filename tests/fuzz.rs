@@ -402,7 +402,7 @@ fn checkpoints(count: u32) {
                 }
             }
             std::fs::write(out.join(SLOTS[0]), damage.of(&bytes, 16)).unwrap();
-            let resumed = Resumable::open(&out, Some(1));
+            let resumed = Resumable::open(&out, Some(1), None);
             if let Err(error) = resumed.and_then(|run| run.go_on(&|_| {}, Vec::new(), &AtomicBool::new(true))) {
                 is_for_people(&error);
             }

@@ -1,4 +1,5 @@
-//! Recorded laws on the graphics adapter that there is, against the laws with `f64`; whole steps in `gpu/steps.rs`.
+//! Recorded laws on the graphics adapter that there is, against the laws with `f64`; whole steps in `gpu/steps.rs`,
+//! runs in `gpu/runs.rs`.
 //!
 //! Results may differ from the law's own by rounding: by 1e-13 of the largest result for that output among arguments of one
 //! batch, and by some times what the law's own result changes by when its arguments change in their last bits. (A steep law
@@ -8,6 +9,8 @@
 mod drive;
 #[path = "common/laws.rs"]
 mod laws;
+#[path = "gpu/runs.rs"]
+mod runs;
 #[path = "gpu/steps.rs"]
 mod steps;
 

@@ -71,6 +71,7 @@ fn write(scene: &Scene, out: PathBuf) -> RunSummary {
         overwrite: false,
         wait: false,
         threads: Some(1),
+        device: run::DeviceChoice::default(),
         frames: false,
         animation: None,
         recording: false,

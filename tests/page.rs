@@ -60,6 +60,7 @@ fn simulated(name: &str, overrides: &[&str]) -> TempDir {
         overwrite: true,
         wait: false,
         threads: Some(2),
+        device: run::DeviceChoice::default(),
         frames: false,
         recording: false,
         live: None,

@@ -164,7 +164,8 @@ fn what_was_changed_or_is_not_there_is_refused() {
     // A checkpoint of another scene, as if scene.toml had been edited.
     let loaded = strandsnap::scene::load(text(&scene), &[]).unwrap();
     let resolved = strandsnap::scene::write::to_toml(&loaded.spec);
-    let outputs = run::Outputs { frames: false, recording: false, animation: None };
+    let outputs =
+        run::Outputs { frames: false, recording: false, animation: None, device: run::DeviceChoice::Processor };
     let identity = run::checkpoint::Identity::new(resolved);
     fs::write(out.join("trajectory.bin.partial"), "").unwrap();
     let mut keeper = run::checkpoint::Keeper::new(&out, loaded.spec.output.checkpoint, identity, outputs, None);

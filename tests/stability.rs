@@ -1,6 +1,7 @@
 //! The quick form of the stability matrix: every case must end as it should.
 
 use std::sync::atomic::AtomicBool;
+use strandsnap::run::DeviceChoice;
 use strandsnap::study::runner::{CaseRunner, all_outputs, cores};
 use strandsnap::study::stability::case::StabilityCase;
 use strandsnap::study::stability::outcome::{Outcome, Report};
@@ -9,7 +10,7 @@ use strandsnap::study::stability::{self, select};
 fn run_all(cases: &[StabilityCase]) -> Vec<Report> {
     let stop = AtomicBool::new(false);
     let runner = CaseRunner { jobs: cores(), threads: Some(1), budget: None, stop: &stop, tell: &|_| {} };
-    all_outputs(stability::run_all(cases, true, &runner, None).unwrap()).unwrap()
+    all_outputs(stability::run_all(cases, true, &DeviceChoice::Processor, &runner, None).unwrap()).unwrap()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Every case of `strandsnap verify`, in its quick form. One test per case, so that a miss is named.
 
 use std::sync::atomic::AtomicBool;
+use strandsnap::run::DeviceChoice;
 use strandsnap::run::in_pool;
 use strandsnap::scene::{self, builtin};
 use strandsnap::strand;
@@ -22,7 +23,9 @@ fn miss(f: &Comparison) -> String {
 
 fn check(name: &str) {
     let case = select(&[name.to_owned()]).unwrap_or_else(|error| panic!("{error}"))[0];
-    let report = in_pool(Some(1), || run_one(case, Effort::Quick, &AtomicBool::new(false))).unwrap().unwrap();
+    let report = in_pool(Some(1), || run_one(case, Effort::Quick, &DeviceChoice::Processor, &AtomicBool::new(false)))
+        .unwrap()
+        .unwrap();
     let findings = report.result.unwrap_or_else(|error| panic!("{name}: {error:?}"));
     let misses: Vec<String> = findings.iter().filter(|f| f.verdict() == Verdict::Miss).map(miss).collect();
     assert!(misses.is_empty(), "{name} misses\n{}", misses.join("\n"));

@@ -8,7 +8,7 @@ use strandsnap::engine::Engine;
 use strandsnap::observe::partial;
 use strandsnap::run::checkpoint::{Identity, Keeper, LoopPosition};
 use strandsnap::run::folder::TRAJECTORY;
-use strandsnap::run::{Outputs, assemble};
+use strandsnap::run::{DeviceChoice, Outputs, assemble};
 use strandsnap::scene::write;
 
 /// Checkpoints that are timed.
@@ -24,7 +24,7 @@ pub fn print(args: &Args) -> Result<()> {
     let trajectory = partial::name(&folder.path().join(TRAJECTORY));
     std::fs::write(&trajectory, "").map_err(|e| Error::io("cannot write", &trajectory, e))?;
     let identity = Identity::new(write::to_toml(&scene.spec));
-    let outputs = Outputs { frames: false, recording: false, animation: None };
+    let outputs = Outputs { frames: false, recording: false, animation: None, device: DeviceChoice::Processor };
     let mut keeper = Keeper::new(folder.path(), scene.spec.output.checkpoint, identity, outputs, None);
     let (mut gathered, mut written, mut bytes) = (Duration::ZERO, Duration::ZERO, 0);
     for _ in 0..TIMED {

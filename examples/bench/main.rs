@@ -4,12 +4,14 @@
 //! ```text
 //! cargo run --release --example bench -- [--scene ka4] [--threads 1,2] [--lengths 1,10] [--json FILE]
 //! cargo run --release --example bench -- --plans
+//! cargo run --release --example bench -- --device gpu --batch 1,16,256 [--json FILE]
 //! ```
 //!
 //! The strand is first pulled fast (same strain rate for every length) until it is in full contact, then timed at that
 //! state. The ends of a very long strand would have to move faster than a step allows: measure that with `--strain 0`
 //! on a scene whose wires touch from the start, such as `--scene examples/peers/strand.toml --lengths 1,10,100`.
 
+mod adapter;
 mod checkpoint;
 mod counted;
 mod loops;
@@ -24,7 +26,8 @@ mod work;
 
 use clap::Parser;
 use measure::Row;
-use std::path::PathBuf;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
 use strandsnap::base::error::{Error, Result};
 use strandsnap::engine::REVISION;
 use strandsnap::run::cost;
@@ -56,6 +59,12 @@ pub struct Args {
     /// How often they are timed; the best counts
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..))]
     repeats: u64,
+    /// Measure steps on this graphics adapter instead: gpu, or a part of its name
+    #[arg(long, value_name = "NAME")]
+    device: Option<String>,
+    /// Strands that are stepped at once on it
+    #[arg(long, value_delimiter = ',', default_value = "1,4", requires = "device")]
+    batch: Vec<usize>,
     /// Also write the rows to this file, with what the machine is and which program was measured
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -76,6 +85,10 @@ fn main() -> miette::Result<()> {
         println!("{}", serde_json::to_string(&measure::rows(&args, factor)?).expect("rows are plain data"));
         return Ok(());
     }
+    if let Some(name) = &args.device {
+        let rows = adapter::print(&args, name)?;
+        return Ok(args.json.as_ref().map_or(Ok(()), |file| keep(file, &rows))?);
+    }
     let mut rows = Vec::new();
     for factor in &args.lengths {
         rows.extend(in_process_of_its_own(*factor)?);
@@ -83,17 +96,19 @@ fn main() -> miette::Result<()> {
     tables::print(&rows);
     checkpoint::print(&args)?;
     output::print(&args, &rows)?;
-    if let Some(file) = &args.json {
-        let kept = serde_json::json!({
-            "machine": Devices::find(),
-            "versions": cost::versions(),
-            "physics_revision": REVISION,
-            "rows": rows,
-        });
-        let text = serde_json::to_string_pretty(&kept).expect("rows are plain data");
-        strandsnap::observe::files::write_whole(file, &text)?;
-    }
-    Ok(())
+    Ok(args.json.as_ref().map_or(Ok(()), |file| keep(file, &rows))?)
+}
+
+/// Writes rows, with what the machine is and which program was measured.
+fn keep(file: &Path, rows: &impl Serialize) -> Result<()> {
+    let kept = serde_json::json!({
+        "machine": Devices::find(),
+        "versions": cost::versions(),
+        "physics_revision": REVISION,
+        "rows": rows,
+    });
+    let text = serde_json::to_string_pretty(&kept).expect("rows are plain data");
+    strandsnap::observe::files::write_whole(file, &text)
 }
 
 /// The rows of one length, measured by a child that is called as this process was.

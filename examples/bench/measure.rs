@@ -159,7 +159,7 @@ pub fn rows(args: &Args, factor: f64) -> Result<Vec<Row>> {
 }
 
 /// An engine in full contact, and what its way there was like.
-fn pulled(args: &Args, scene: &Scene) -> Result<(Engine, Option<Pull>)> {
+pub fn pulled(args: &Args, scene: &Scene) -> Result<(Engine, Option<Pull>)> {
     let mut engine = Engine::new(&scene.spec, &scene.plan, assemble(scene)?)?;
     let (clock, mut seen) = (Instant::now(), ParticleView::default());
     while engine.strain() < args.strain / 100.0 {

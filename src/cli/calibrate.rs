@@ -9,7 +9,7 @@ use crate::base::error::Result;
 use crate::base::wording::counted;
 use crate::observe::files::write_whole;
 use crate::reference::published::{self, CALIBRATED_ON};
-use crate::run::folder;
+use crate::run::{DeviceChoice, folder};
 use crate::study::calibrate::{Calibration, Iteration, Target, calibrate, default_seeds};
 use crate::study::runner::{CaseRunner, CaseStore, cores};
 use crate::study::statistics::Statistics;
@@ -38,6 +38,9 @@ pub struct Args {
     /// Threads of each run, when runs are made one by one [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "jobs")]
     threads: Option<u16>,
+    /// Compute the steps on this, as `run --device` says: runs side by side on one adapter go together there
+    #[arg(long, value_name = "cpu|gpu|auto|NAME", default_value = "cpu")]
+    device: DeviceChoice,
     /// Folder of the calibration [default: out/calibration/NAME]; runs that are kept in it are not made again
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -61,7 +64,7 @@ pub fn run(args: &Args) -> Result<Ended> {
     };
     let out = args.out.clone().unwrap_or_else(|| folder::calibration(&scene.spec.name));
     let _lock = cases::lock(&out, false)?;
-    let store = CaseStore::open(&out, args.fresh)?;
+    let store = CaseStore::open(&out, args.fresh)?.on(&args.device);
     let stop = interrupt::install_for_cases()?;
     let line = ProgressLine::new("calibrate");
     let runner = CaseRunner {

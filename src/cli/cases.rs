@@ -4,6 +4,7 @@ use super::interrupt;
 use super::say::say;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
+use crate::run::DeviceChoice;
 use crate::run::lock::Lock;
 use crate::study::runner::{CaseRunner, CaseStore, Progress, Status, Unfinished, cores};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -34,6 +35,9 @@ pub struct CaseArgs {
     /// Cases that run side by side, each on one thread [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Compute the steps on this, as `run --device` says; cases whose steps cannot be done there are computed on the processor
+    #[arg(long, value_name = "cpu|gpu|auto|NAME", default_value = "cpu")]
+    pub device: DeviceChoice,
     /// List the cases, and run none
     #[arg(long)]
     pub list: bool,

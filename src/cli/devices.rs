@@ -32,7 +32,7 @@ pub fn devices(args: &Args) {
         None if cfg!(feature = "render") => "frames: none can be drawn, for want of a graphics adapter".to_owned(),
         None => "frames: none can be drawn, this program was built without them (feature `render`)".to_owned(),
     };
-    say!("used for the simulation: {}; for {frames}", found.used.simulation);
+    say!("used for the simulation: {}, unless --device says otherwise; for {frames}", found.used.simulation);
 }
 
 #[cfg(not(feature = "gpu"))]

@@ -9,7 +9,7 @@ use super::values::{Threads, duration, threads};
 use crate::base::error::Result;
 use crate::observe::Observer;
 use crate::run::drawing::Undrawn;
-use crate::run::{self, Resumable};
+use crate::run::{self, DeviceChoice, Resumable};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -20,6 +20,9 @@ pub struct Args {
     /// Threads: a number, or as many as make it faster, up to one per core; the results are the same on any number
     #[arg(long, value_name = "N|auto", value_parser = threads, default_value = "auto")]
     threads: Threads,
+    /// Compute on this from here on, as `run --device` says [default: what the run began with]
+    #[arg(long, value_name = "cpu|gpu|auto|NAME")]
+    device: Option<DeviceChoice>,
     /// Stop after this time, such as 90s, 20m or 2h, as Ctrl-C does: results so far are kept, exit code 130
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time_limit: Option<Duration>,
@@ -32,7 +35,7 @@ pub fn resume(args: &Args) -> Result<Ended> {
     if let Some(undrawn) = Undrawn::find(&args.run)? {
         return draw(undrawn, args.time_limit, args.quiet);
     }
-    let resumable = Resumable::open(&args.run, args.threads.count())?;
+    let resumable = Resumable::open(&args.run, args.threads.count(), args.device.clone())?;
     go_on(resumable, args.time_limit, args.quiet)
 }
 

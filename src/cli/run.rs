@@ -12,7 +12,7 @@ use crate::base::error::{Error, Result};
 use crate::observe::Observer;
 use crate::run::drawing::Undrawn;
 use crate::run::folder::{ANIMATION, SUMMARY};
-use crate::run::{self, Resumable, RunOptions, cautions, lock, outputs};
+use crate::run::{self, DeviceChoice, Resumable, RunOptions, cautions, lock, outputs};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -43,6 +43,11 @@ pub struct Args {
     /// Threads: a number, or as many as make it faster, up to one per core; the results are the same on any number
     #[arg(long, value_name = "N|auto", value_parser = threads, default_value = "auto")]
     threads: Threads,
+    /// Compute on the processor (cpu), on a graphics adapter with 64-bit numbers (gpu), on the one with this in its name, or on
+    /// one that is there and can (auto); `strandsnap devices` lists them. Results of different devices differ by rounding
+    /// [default: cpu]
+    #[arg(long, value_name = "cpu|gpu|auto|NAME")]
+    device: Option<DeviceChoice>,
     /// Draw no frames (this needs no graphics adapter)
     #[arg(long, conflicts_with = "animation")]
     no_frames: bool,
@@ -72,7 +77,7 @@ pub fn run(args: Args) -> Result<Ended> {
     // The limit of one that may have waited runs already.
     let time_limit = args.time_limit.filter(|_| !args.wait);
     if args.resume && run::folder::has_checkpoint(&out) {
-        let resumable = Resumable::open(&out, args.threads.count())?;
+        let resumable = Resumable::open(&out, args.threads.count(), args.device)?;
         resumable.check_scene(&scene)?;
         return go_on(resumable, time_limit, args.quiet);
     }
@@ -94,6 +99,7 @@ pub fn run(args: Args) -> Result<Ended> {
         out,
         wait: args.wait,
         threads: args.threads.count(),
+        device: args.device.unwrap_or_default(),
         frames: outputs::HAS_RENDER && !args.no_frames,
         recording: outputs::HAS_RECORD && !args.no_recording,
         live: args.live,

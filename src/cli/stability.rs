@@ -19,7 +19,7 @@ pub fn stability(args: &CaseArgs) -> Result<Ended> {
     }
     args.prepare(NAME)?;
     let began = Instant::now();
-    let ran = args.run(NAME, |runner, kept| run_all(&cases, args.quick, runner, kept))?;
+    let ran = args.run(NAME, |runner, kept| run_all(&cases, args.quick, &args.device, runner, kept))?;
     let reports = &ran.outputs;
     say::print(format_args!("{}", report::table(reports)));
     say!("\n{}", report::summary(reports, began.elapsed().as_secs_f64()));

@@ -7,7 +7,7 @@ use super::say::{self, say};
 use super::values::{Seeds, name_or_path, quality};
 use crate::base::error::{Error, Result};
 use crate::base::wording::counted;
-use crate::run::folder;
+use crate::run::{DeviceChoice, folder};
 use crate::scene::quality::Quality;
 use crate::study::runner::{CaseRunner, CaseStore, all_outputs, cores};
 use crate::study::sweep::report::{self, Findings};
@@ -32,6 +32,9 @@ pub struct Args {
     /// Cases side by side, each on one thread [default: one per core, which is faster than threads within one]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
+    /// Compute the steps on this, as `run --device` says: cases side by side on one adapter go together there
+    #[arg(long, value_name = "cpu|gpu|auto|NAME", default_value = "cpu")]
+    device: DeviceChoice,
     /// Folder of the study [default: out/study/NAME]; cases that are kept in it are not run again
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -68,16 +71,16 @@ pub fn study(args: &Args) -> Result<Ended> {
     let out = args.out.clone().unwrap_or_else(|| folder::study(&definition.name));
     let jobs = args.jobs.map_or_else(cores, usize::from);
     if args.dry_run {
-        return dry_run(&definition, &out, jobs);
+        return dry_run(&definition, &out, &args.device, jobs);
     }
     if args.collect {
-        let store = CaseStore::of(&out);
+        let store = CaseStore::of(&out).on(&args.device);
         let shown = show(&definition, &store, &out);
         cases::tell_damaged(&store, "its case counts as not run, until the study is run again");
         return shown.map(|()| Ended::Well);
     }
     let _lock = cases::lock(&out, args.case.is_some())?;
-    let store = CaseStore::open(&out, args.fresh)?;
+    let store = CaseStore::open(&out, args.fresh)?.on(&args.device);
     let stop = interrupt::install_for_cases()?;
     let line = ProgressLine::new("study");
     let jobs = if args.case.is_some() { 1 } else { jobs };
@@ -106,8 +109,8 @@ fn list() -> Result<Ended> {
     Ok(Ended::Well)
 }
 
-fn dry_run(definition: &Definition, out: &Path, jobs: usize) -> Result<Ended> {
-    let store = CaseStore::of(out);
+fn dry_run(definition: &Definition, out: &Path, device: &DeviceChoice, jobs: usize) -> Result<Ended> {
+    let store = CaseStore::of(out).on(device);
     let gathered = Gathered::read(definition, &store);
     cases::tell_damaged(&store, cases::RUN_AGAIN);
     let costs = sweep::costs(definition, &gathered, &|_| {})?;

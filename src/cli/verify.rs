@@ -19,7 +19,7 @@ pub fn verify(args: &CaseArgs) -> Result<Ended> {
     args.prepare(NAME)?;
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
     let began = Instant::now();
-    let ran = args.run(NAME, |runner, kept| verify::run_all(&cases, effort, runner, kept))?;
+    let ran = args.run(NAME, |runner, kept| verify::run_all(&cases, effort, &args.device, runner, kept))?;
     let reports = &ran.outputs;
     show(reports, began.elapsed().as_secs_f64());
     if let Some(path) = &args.json {

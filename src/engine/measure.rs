@@ -45,6 +45,29 @@ struct Step {
     values: Vec<f64>,
 }
 
+/// The running mean of strain alone, which is known before a step is done: grips go by plan.
+pub struct Strains {
+    window: f64,
+    steps: VecDeque<[f64; 2]>,
+    sum: [f64; 2],
+}
+
+impl Strains {
+    /// Takes in a step of `dt` (s) at a strain (-) as [`Measures::take`] does; gives what [`Measures::strain`] then is.
+    pub fn take(&mut self, strain: f64, dt: f64) -> f64 {
+        while let Some([length, part]) = self.steps.pop_front_if(|first| self.sum[0] + dt - first[0] >= self.window) {
+            self.sum = [self.sum[0] - length, self.sum[1] - part];
+        }
+        if self.steps.is_empty() {
+            self.sum = [0.0; 2];
+        }
+        let step = [dt, strain * dt];
+        self.sum = [self.sum[0] + step[0], self.sum[1] + step[1]];
+        self.steps.push_back(step);
+        if self.sum[0] > 0.0 { self.sum[1] / self.sum[0] } else { 0.0 }
+    }
+}
+
 const STRAIN: usize = 0;
 const FORCE: usize = 1;
 const TORQUE: usize = 3;
@@ -97,6 +120,13 @@ impl Measures {
         self.sum.length += dt;
         self.sum.values.iter_mut().zip(&step.values).for_each(|(sum, value)| *sum += value);
         self.steps.push_back(step);
+    }
+
+    /// What the strain of coming steps will be.
+    pub fn strains(&self) -> Strains {
+        let one = |step: &Step| [step.length, step.values[STRAIN]];
+        let steps = self.steps.iter().map(one).collect();
+        Strains { window: self.window, steps, sum: one(&self.sum) }
     }
 
     fn mean(&self, value: usize) -> f64 {

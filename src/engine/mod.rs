@@ -47,7 +47,7 @@ use memory::StageBytes;
 use monitor::{Action, Monitor};
 use neighbours::Neighbours;
 use pulp::Arch;
-use state::{CHUNK, State};
+use state::{CHUNK, ChunkSums, State};
 use std::time::Instant;
 use step_view::StepView;
 use team::{Team, Tuning};
@@ -280,14 +280,8 @@ impl Engine {
             let after_search = Instant::now();
             self.timings.neighbours += after_search - after_bonds;
             let partial = c.stage.compute(&mut self.state, &self.team);
-            self.energy.plastic_contacts += partial.plastic;
-            self.energy.plastic_thinning += partial.thinning;
-            self.energy.friction += partial.friction;
-            self.energy.damping += partial.damping;
             self.timings.contacts += after_search.elapsed();
-            if self.monitor.is_deepest(&partial.deepest) {
-                self.show(|monitor, view| monitor.look_at_contact(partial.deepest, view));
-            }
+            self.book_contacts(&partial);
             if stale {
                 self.show(Monitor::look_at_search);
             }
@@ -301,6 +295,17 @@ impl Engine {
         integrate::gather(&mut self.state, parts, self.arch, &self.team);
         self.timings.integrate += before_gather.elapsed();
         Ok(())
+    }
+
+    /// Books what contacts have given off.
+    fn book_contacts(&mut self, partial: &ChunkSums) {
+        self.energy.plastic_contacts += partial.plastic;
+        self.energy.plastic_thinning += partial.thinning;
+        self.energy.friction += partial.friction;
+        self.energy.damping += partial.damping;
+        if self.monitor.is_deepest(&partial.deepest) {
+            self.show(|monitor, view| monitor.look_at_contact(partial.deepest, view));
+        }
     }
 
     /// Whether wires thin as they stretch.

@@ -23,6 +23,16 @@ pub fn ran_away<R: Real>(square: R, limit: R) -> R::Mask {
     square.simd_gt(limit) | !square.simd_gt(square.splat(f64::NEG_INFINITY))
 }
 
+/// Squared distance (m²) of a place from where the affine stretch since a reference would have it: `moved` (m) is how far the
+/// upper face has moved since, over a length whose lower end and inverse are `low` (m) and `per_length` (1/m).
+#[inline(always)]
+pub fn residual<R: Real>(x: Triple<R>, reference: Triple<R>, moved: R, [low, per_length]: [R; 2]) -> R {
+    let share = ((reference.z - low) * per_length).simd_max(low.splat(0.0)).simd_min(low.splat(1.0));
+    let mut off = x - reference;
+    off.z = off.z - moved * share;
+    off.plain_dot(off)
+}
+
 /// Force of the two bonds of a particle (N) from their pulls: of the bond that begins at it and of the one before.
 #[inline(always)]
 pub fn force_of_bonds<R: Real>(here: R, before: R) -> R {

@@ -4,6 +4,7 @@
 //! pair stays covered while 2 max|u − u_affine| + Δε (reach + skin) < skin.
 
 use super::bytes::{behind, behind_all};
+use super::motion::residual;
 use super::saved::{Reader, Unfit, Writer};
 use super::state::{CHUNK, State};
 use super::team::Team;
@@ -111,27 +112,56 @@ impl Neighbours {
         if state.travel < self.safe_until {
             return false;
         }
-        let length = self.stretch.gauge[1] + self.stretch.displacement - self.stretch.gauge[0];
-        let strain = if length > 0.0 { ((now.displacement - self.stretch.displacement) / length).abs() } else { 0.0 };
-        let reach = 2.0 * self.largest + self.margin + self.skin;
-        let left = self.skin - 2.0 * self.residual(state, now, team) - strain * reach;
+        let (length, reach) = (self.length(), self.reach());
+        let left = self.skin - 2.0 * self.residual(state, now, team) - self.strain(now) * reach;
         // While no particle goes further than 1, held ones included, a residual grows by 2 and the strain by 1/length.
         let closing = 4.0 + if length > 0.0 { reach / length } else { 0.0 };
         self.safe_until = state.travel + left / closing;
         left <= 0.0
     }
 
+    /// How far the upper face has moved since the last search (m), and of the length between the faces its lower end (m) and
+    /// its inverse (1/m).
+    fn moved(&self, now: &Stretch) -> (f64, [f64; 2]) {
+        let (low, length) = (self.stretch.gauge[0], self.length());
+        let moved = now.displacement - self.stretch.displacement;
+        if length > 0.0 { (moved, [low, 1.0 / length]) } else { (0.0, [low, 0.0]) }
+    }
+
+    /// Length between the faces at the last search (m).
+    fn length(&self) -> f64 {
+        self.stretch.gauge[1] + self.stretch.displacement - self.stretch.gauge[0]
+    }
+
+    /// Greatest distance at which a pair is a candidate (m).
+    fn reach(&self) -> f64 {
+        2.0 * self.largest + self.margin + self.skin
+    }
+
+    /// Strain since the last search (-).
+    fn strain(&self, now: &Stretch) -> f64 {
+        let length = self.length();
+        if length > 0.0 { ((now.displacement - self.stretch.displacement) / length).abs() } else { 0.0 }
+    }
+
+    /// Numbers by which every particle sees by itself whether it is time for a search: of [`residual`], and the square that
+    /// must not be passed (m²), below zero where it is time in any case.
+    pub fn watch(&self, now: &Stretch) -> [(&'static str, f64); 4] {
+        let (moved, [low, per_length]) = self.moved(now);
+        let left = 0.5 * (self.skin - self.strain(now) * self.reach());
+        let most = if self.rebuilds > 0 && left > 0.0 { left * left } else { -1.0 };
+        [("search_moved", moved), ("search_low", low), ("search_per_length", per_length), ("search_most", most)]
+    }
+
+    /// Forgets how far particles may go unseen: they have moved elsewhere.
+    pub fn look_anew(&mut self) {
+        self.safe_until = 0.0;
+    }
+
     /// Greatest distance of a particle from where the affine stretch since the last search would have it (m).
     fn residual(&self, state: &State, now: &Stretch, team: &Team) -> f64 {
-        let [low, high] = self.stretch.gauge;
-        let length = high + self.stretch.displacement - low;
-        let moved = now.displacement - self.stretch.displacement;
-        let (inverse_length, moved) = if length > 0.0 { (1.0 / length, moved) } else { (0.0, 0.0) };
-        let square = |p: usize| {
-            let before = self.reference.get(p);
-            let affine = moved * ((before.z - low) * inverse_length).clamp(0.0, 1.0);
-            (state.x.get(p) - before - DVec3::Z * affine).length_squared()
-        };
+        let (moved, face) = self.moved(now);
+        let square = |p: usize| residual::<f64>(state.x.get(p).into(), self.reference.get(p).into(), moved, face);
         let greatest =
             |chunk: usize| (chunk * CHUNK..state.len().min((chunk + 1) * CHUNK)).map(square).fold(0.0, f64::max);
         let found = team.map(0..state.len().div_ceil(CHUNK), |chunk, _| greatest(chunk));

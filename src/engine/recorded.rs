@@ -5,7 +5,8 @@
 //! with `here_` and `before_`; `held_0` is 1 where hold 0 acts, `free` where none prescribes anything. Others are of the step, the same for all particles.
 
 use super::motion::{
-    Kicked, Rigid, affine_share, drifted, force_of_bonds, kicked, ran_away, sped_up, thinned_radius, torque_of_bonds,
+    Kicked, Rigid, affine_share, drifted, force_of_bonds, kicked, ran_away, residual, sped_up, thinned_radius,
+    torque_of_bonds,
 };
 use crate::base::lanes::Real;
 use crate::base::recorder::{Formula, put_vector, take_vector};
@@ -43,6 +44,8 @@ pub struct Motion {
     pub adaptive: bool,
     /// Squared displacement in a step beyond which a particle has run away (m²).
     pub limit: f64,
+    /// Whether particles see that neighbours have to be searched anew.
+    pub search: bool,
 }
 
 impl Formula for Motion {
@@ -107,27 +110,52 @@ impl Formula for Motion {
             put("grip_torque", grip_torque);
         }
         put("ran_away", R::select(ran_away(square, zero.splat(self.limit)), one, zero));
+        if self.search {
+            let reference = take_vector(take, "reference");
+            let [moved, low, per_length, most] =
+                ["search_moved", "search_low", "search_per_length", "search_most"].map(&mut *take);
+            let fits = most.simd_gt(residual(x, reference, moved, [low, per_length]));
+            put("search", R::select(fits, zero, one));
+        }
     }
 }
 
-/// What the bonds of a particle add up to.
+/// What the bonds and contacts of a particle add up to; of its contacts `contacts_` are the sums over their pairs.
 #[derive(Debug, Clone)]
 pub struct Gathering {
     /// Whether particles turn.
     pub turn: bool,
     /// Whether wires thin as they stretch.
     pub thin: bool,
+    /// Whether there are bonds.
+    pub bonds: bool,
+    /// Whether there are contacts.
+    pub contacts: bool,
 }
 
 impl Formula for Gathering {
-    /// Puts force and torque, radius, and by how much it has shrunk.
+    /// Puts force (N) and torque (N m), radius (m), and by how much it has shrunk.
     fn compute<R: Real>(&self, take: &mut dyn FnMut(&str) -> R, put: &mut dyn FnMut(&str, R)) {
         for axis in ["x", "y", "z"] {
-            let [here, before] = ["here", "before"].map(|side| take(&format!("{side}_pull_{axis}")));
-            put(&format!("force_{axis}"), force_of_bonds(here, before));
+            let mut parts = Vec::new();
+            if self.bonds {
+                let [here, before] = ["here", "before"].map(|side| take(&format!("{side}_pull_{axis}")));
+                parts.push(force_of_bonds(here, before));
+            }
+            if self.contacts {
+                parts.push(take(&format!("contacts_force_{axis}")));
+            }
+            put(&format!("force_{axis}"), sum(&parts));
             if self.turn {
-                let (near, far) = (format!("here_moment_near_{axis}"), format!("before_moment_far_{axis}"));
-                put(&format!("torque_{axis}"), torque_of_bonds(take(&near), take(&far)));
+                parts.clear();
+                if self.bonds {
+                    let (near, far) = (format!("here_moment_near_{axis}"), format!("before_moment_far_{axis}"));
+                    parts.push(torque_of_bonds(take(&near), take(&far)));
+                }
+                if self.contacts {
+                    parts.push(take(&format!("contacts_torque_{axis}")));
+                }
+                put(&format!("torque_{axis}"), sum(&parts));
             }
         }
         if self.thin {
@@ -138,4 +166,11 @@ impl Formula for Gathering {
             put("thinned", kept - now);
         }
     }
+}
+
+/// The sum of some parts, of which there is one.
+fn sum<R: Real>(parts: &[R]) -> R {
+    let mut sum = parts[0];
+    parts[1..].iter().for_each(|part| sum += *part);
+    sum
 }

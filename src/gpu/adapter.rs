@@ -1,7 +1,9 @@
 //! Adapters and what they can do.
 
+use super::together::Registry;
 use crate::base::error::{Error, Result};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// An adapter of this machine: a graphics processor, or a program that does its work on the processor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -59,10 +61,13 @@ pub fn adapters() -> Vec<Adapter> {
     all().iter().map(Adapter::of).collect()
 }
 
-/// An adapter that is open for work with 64-bit numbers.
+/// An adapter that is open for work with 64-bit numbers. A clone is the same one.
+#[derive(Clone)]
 pub struct Device {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
+    /// What is stepped on it.
+    pub(super) together: Arc<Registry>,
     /// What it is.
     pub adapter: Adapter,
 }
@@ -80,6 +85,33 @@ impl Device {
             what: "no graphics adapter whose shaders have 64-bit numbers".into(),
             help: Some("`strandsnap devices` lists the adapters; a software one (Mesa's lavapipe) will do".into()),
         })?;
+        Self::request(facts, &adapter)
+    }
+
+    /// Opens the first adapter whose name has `name` in it, in letters of either case.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when no adapter is called so; [`Error::Missing`] when it has no 64-bit numbers or refuses to open.
+    pub fn open_named(name: &str) -> Result<Self> {
+        let all: Vec<_> = all().into_iter().map(|adapter| (Adapter::of(&adapter), adapter)).collect();
+        let called = |facts: &Adapter| facts.name.to_lowercase().contains(&name.to_lowercase());
+        let mut named: Vec<_> = all.iter().filter(|(facts, _)| called(facts)).collect();
+        named.sort_by_key(|(facts, _)| !facts.f64);
+        let Some((facts, adapter)) = named.first() else {
+            let names: Vec<&str> = all.iter().map(|(facts, _)| facts.name.as_str()).collect();
+            let known = if names.is_empty() { "there is none".to_owned() } else { names.join(", ") };
+            return Err(Error::input(
+                format!("no graphics adapter is called {name}"),
+                format!("those of this machine: {known}; cpu, gpu and auto are the other choices"),
+            ));
+        };
+        if !facts.f64 {
+            return Err(failure(facts, "has no 64-bit numbers in its shaders".into()));
+        }
+        Self::request(facts.clone(), adapter)
+    }
+
+    fn request(facts: Adapter, adapter: &wgpu::Adapter) -> Result<Self> {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("strandsnap"),
             required_features: FEATURES,
@@ -88,7 +120,12 @@ impl Device {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|e| failure(&facts, format!("refused to open: {e}")))?;
-        Ok(Self { device, queue, adapter: facts })
+        Ok(Self { device, queue, together: Arc::default(), adapter: facts })
+    }
+
+    /// Gives the adapter up: whatever is asked of it from now on fails, as when a driver loses it.
+    pub fn destroy(&self) {
+        self.device.destroy();
     }
 }
 

@@ -82,7 +82,7 @@ impl<'d> Kernel<'d> {
             }
             encoder.copy_buffer_to_buffer(&results, 0, &read, 0, bytes(self.outputs));
             self.device.queue.submit([encoder.finish()]);
-            self.device.read(&read)
+            self.device.read(&read, read.size())
         })?
     }
 }
@@ -104,13 +104,13 @@ impl Device {
         }
     }
 
-    /// The numbers in `buffer`, when all work that was given is done.
-    pub(super) fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<f64>> {
+    /// The numbers in the first `bytes` of `buffer`, when all work that was given is done.
+    pub(super) fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<f64>> {
         // A failed mapping shows as an error of `get_mapped_range` below.
-        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| ());
+        buffer.slice(..bytes).map_async(wgpu::MapMode::Read, |_| ());
         let done = self.device.poll(wgpu::PollType::wait_indefinitely());
         done.map_err(|e| failure(&self.adapter, format!("was lost: {e}")))?;
-        let range = buffer.slice(..).get_mapped_range();
+        let range = buffer.slice(..bytes).get_mapped_range();
         let bytes = range.map_err(|e| failure(&self.adapter, format!("does not give its results back: {e}")))?;
         let numbers = bytemuck::pod_collect_to_vec(&bytes);
         drop(bytes);

@@ -113,11 +113,17 @@ fn cost(summary: &RunSummary) -> String {
     if let Some(ms) = cost.ms_per_step {
         let _ = write!(text, ", {ms:.3} ms per step");
     }
+    if let Some(adapter) = &cost.adapter {
+        let _ = write!(text, ", computed on {adapter}");
+    }
     let _ = match cost.threads_available {
         available if available > cost.threads => {
             write!(text, " on {} of {} (more were no faster)", cost.threads, counted(available, "thread"))
         }
         _ => write!(text, " on {}", counted(cost.threads, "thread")),
     };
+    if let Some(reason) = &cost.not_on_adapter {
+        let _ = write!(text, "; computed on the processor: {reason}");
+    }
     text
 }

@@ -240,6 +240,12 @@ pub struct Cost {
     /// Threads that it could choose from.
     #[serde(default)]
     pub threads_available: usize,
+    /// The graphics adapter that did the steps; `None` where the processor did them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adapter: Option<String>,
+    /// Why the processor did them, or the last ones, where a graphics adapter would have been taken.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub not_on_adapter: Option<String>,
     /// Where the time of the frames went; `None` when none were drawn.
     pub frames: Option<Timings>,
     /// Versions of this program and of what its output depends on.

@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 
 const MAGIC: [u8; 12] = *b"strandsnap\0C";
 /// Raised whenever what is written changes its meaning or order.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Share of the run's time that checkpoints may take where the scene does not say how often (-).
 const SHARE: f64 = 0.01;
 /// Least wall time between two of them there (s).
@@ -400,12 +400,13 @@ impl Checkpoint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::steps::DeviceChoice;
 
     fn checkpoint(number: u64) -> Checkpoint {
         Checkpoint {
             number,
             identity: Identity::new("name = \"a\"\nseed = 1\n".into()),
-            outputs: Outputs { frames: false, recording: true, animation: None },
+            outputs: Outputs { frames: false, recording: true, animation: None, device: DeviceChoice::Processor },
             records: 3,
             tail: Vec::new(),
             driver: vec![1; 1000],

@@ -2,10 +2,12 @@
 
 use super::checkpoint::{Checkpoint, Keeper, LoopPosition};
 use super::schedule::Schedule;
+use super::steps::{Look, Steps};
 use super::stop::StopRule;
 use crate::base::error::{Error, Result};
 use crate::base::finding::{Finding, Notice, StopReason};
 use crate::engine::Engine;
+use crate::engine::elsewhere::Foretold;
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
@@ -45,6 +47,10 @@ pub struct Outcome {
     pub observing: Duration,
     /// Threads that worked at the end, and how many there were to choose from.
     pub threads: [usize; 2],
+    /// The graphics adapter that has done the steps.
+    pub adapter: Option<String>,
+    /// Why the processor has, where an adapter would have been taken.
+    pub not_on_adapter: Option<String>,
 }
 
 /// Simulates the assembly of a scene and its plan, and shows it to observers; writes nothing itself.
@@ -74,7 +80,7 @@ pub fn simulate(
 /// As for [`simulate`], but for what [`Engine::new`] refuses.
 pub fn simulate_engine(engine: Engine, observers: &mut [&mut dyn Observer], stop: &AtomicBool) -> Result<Outcome> {
     let spec = engine.spec().clone();
-    let (outcome, error) = drive(engine, &spec, observers, stop, None, None)?;
+    let (outcome, error) = drive((engine, Steps::default()), &spec, observers, stop, None, None)?;
     match error {
         Some(error) => Err(error),
         None => Ok(outcome),
@@ -141,10 +147,10 @@ impl LoopState {
     }
 }
 
-/// [`simulate`] from an engine that is set up; the error that ended the run comes beside its outcome. `keeper` keeps its
+/// [`simulate`] from an engine that is set up, with who does its steps; the error that ended the run comes beside its outcome. `keeper` keeps its
 /// checkpoints. A run that was `resumed` first tells its observers again what it had told before.
 pub(super) fn drive(
-    engine: Engine,
+    (engine, steps): (Engine, Steps),
     spec: &Spec,
     observers: &mut [&mut dyn Observer],
     stop: &AtomicBool,
@@ -166,6 +172,7 @@ pub(super) fn drive(
     };
     let mut driver = Driver {
         engine,
+        steps,
         end,
         state,
         audience: Audience { observers, started: 0, time: Duration::ZERO, keeper },
@@ -191,12 +198,15 @@ pub(super) fn drive(
         stepping,
         observing,
         threads: driver.engine.threads(),
+        adapter: driver.steps.adapter().map(str::to_owned),
+        not_on_adapter: driver.steps.reason().map(str::to_owned),
     };
     Ok((outcome, error))
 }
 
 struct Driver<'a, 'b> {
     engine: Engine,
+    steps: Steps,
     end: PlannedEnd,
     state: LoopState,
     audience: Audience<'a, 'b>,
@@ -249,7 +259,7 @@ impl Driver<'_, '_> {
             if let Some(reason) = self.state.rule.reached(engine.strain(), engine.time(), engine.steps()) {
                 break reason;
             }
-            self.engine.step()?;
+            self.advance()?;
             self.look()?;
             let (step, broke) = (self.engine.steps(), self.broke);
             if self.audience.keeper.as_ref().is_some_and(|keeper| keeper.due(step, broke)) {
@@ -262,6 +272,22 @@ impl Driver<'_, '_> {
         }
         self.judge()?;
         Ok(reason)
+    }
+
+    /// The next step, or a few up to one after which something is due.
+    fn advance(&mut self) -> Result<()> {
+        let Self { engine, steps, end, state, .. } = self;
+        if steps.adapter().is_none() {
+            return engine.step();
+        }
+        let LoopState { schedule, rule, monitor, .. } = state;
+        let (mut schedule, so_far) = (schedule.clone(), rule.clone());
+        let mut stop = |next: Foretold| {
+            let due = schedule.due(end.fraction(next.strain, next.time, next.steps));
+            due.row || due.snapshot || so_far.reached(next.strain, next.time, next.steps).is_some()
+        };
+        let mut between = |engine: &Engine| monitor_step(engine, rule, monitor);
+        steps.advance(engine, Look { stop: &mut stop, between: &mut between })
     }
 
     /// Wall time in the engine since the loop began.
@@ -293,16 +319,9 @@ impl Driver<'_, '_> {
         checkpoint.tail.iter().try_for_each(|record| self.audience.tell(record))
     }
 
-    /// What decides on the end of the run and on its result, seen at every step whatever is written.
+    /// See [`monitor_step`].
     fn monitor_step(&mut self) {
-        let engine = &self.engine;
-        let (strain, stress) = (engine.strain(), engine.stress());
-        self.state.rule.step(engine.time(), strain, stress);
-        self.state.monitor.see(
-            strain,
-            stress,
-            (0..engine.assembly().wires.len()).map(|w| engine.view().wire_stress(w)),
-        );
+        monitor_step(&self.engine, &mut self.state.rule, &mut self.state.monitor);
     }
 
     /// The guard's look at the present state; a failure is told before it is returned.
@@ -377,6 +396,14 @@ impl Driver<'_, '_> {
         let notices = [self.engine.take_notices(), self.state.guard.take_notices()];
         notices.iter().flatten().try_for_each(|notice| self.audience.notice(notice))
     }
+}
+
+/// What decides on the end of the run and on its result, seen at every step whatever is written.
+fn monitor_step(engine: &Engine, rule: &mut StopRule, monitor: &mut Monitor) {
+    let (strain, stress) = (engine.strain(), engine.stress());
+    rule.step(engine.time(), strain, stress);
+    let stresses = (0..engine.assembly().wires.len()).map(|w| engine.view().wire_stress(w));
+    monitor.see(strain, stress, stresses);
 }
 
 /// All observers, and the time they take.

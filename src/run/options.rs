@@ -1,5 +1,6 @@
 //! What a run is asked for.
 
+use super::steps::DeviceChoice;
 use crate::observe::animation::Animation;
 use crate::observe::summary::OutputFiles;
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,8 @@ pub struct RunOptions {
     pub wait: bool,
     /// Threads of the engine; `None`: as many as make it faster, up to one per core.
     pub threads: Option<usize>,
+    /// What it is computed on.
+    pub device: DeviceChoice,
     /// Draw numbered pictures into `frames/`.
     pub frames: bool,
     /// Make an animation of them.
@@ -35,6 +38,7 @@ impl RunOptions {
             overwrite: false,
             wait: false,
             threads,
+            device: DeviceChoice::default(),
             frames: false,
             animation,
             recording: false,
@@ -45,7 +49,8 @@ impl RunOptions {
     /// What a checkpoint must know of them.
     pub(super) fn outputs(&self) -> Outputs {
         let animation = self.animation.as_ref().map(|animation| (self.within(animation), animation.width));
-        Outputs { frames: self.frames, recording: self.recording, animation }
+        let device = self.device.clone();
+        Outputs { frames: self.frames, recording: self.recording, animation, device }
     }
 
     /// What the summary says of them.
@@ -63,14 +68,14 @@ impl RunOptions {
 
     /// Those of a run that goes on.
     pub(super) fn of_resumed(out: &Path, outputs: &Outputs, threads: Option<usize>) -> Self {
-        let Outputs { frames, recording, animation } = outputs.clone();
+        let Outputs { frames, recording, animation, device } = outputs.clone();
         let animation = animation.map(|(file, width)| Animation { file: out.join(file), width });
         let (overwrite, wait, live) = (true, false, None);
-        Self { out: out.into(), overwrite, wait, threads, frames, animation, recording, live }
+        Self { out: out.into(), overwrite, wait, threads, device, frames, animation, recording, live }
     }
 }
 
-/// What a run writes besides its tables.
+/// What a run writes besides its tables, and what it is computed on: how it goes on after an interruption.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outputs {
     /// Frames.
@@ -79,4 +84,6 @@ pub struct Outputs {
     pub recording: bool,
     /// File of an animation, within the folder of the results or from the root, and its width (px).
     pub animation: Option<(PathBuf, Option<u32>)>,
+    /// What it is computed on.
+    pub device: DeviceChoice,
 }

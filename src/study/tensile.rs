@@ -11,7 +11,7 @@ use crate::observe::Observer;
 use crate::observe::summary::{Break, RunSummary};
 use crate::run::build::build;
 use crate::run::folder::{SCENE, has_checkpoint};
-use crate::run::{Resumable, RunOptions, cost, lock, outputs, run_watched, summarise};
+use crate::run::{DeviceChoice, Resumable, RunOptions, cost, lock, outputs, run_watched, summarise};
 use crate::scene::spec::{PathSpec, Spec};
 use crate::scene::{Scene, write};
 use serde::{Deserialize, Serialize};
@@ -288,7 +288,7 @@ const NO_STRENGTH: &str =
 impl TensileCase<'_> {
     fn identity(&self) -> Identity {
         let text = self.scene.map_or_else(str::to_owned, |s| definition(&Spec { seed: self.seed, ..s.spec.clone() }));
-        Identity::new(text, self.threads, self.writes)
+        Identity::new(text, self.threads, self.writes).on(self.store.device())
     }
 
     /// Runs the scene; `None` when it has no strength.
@@ -305,7 +305,7 @@ impl TensileCase<'_> {
             // Nothing but the engine may cost here.
             (summarise(scene, vec![&mut recorder], stop)?, false)
         } else {
-            resumably(scene, unfinished, &mut recorder, stop)?
+            resumably(scene, unfinished, self.store.device(), &mut recorder, stop)?
         };
         if summary.stopped == StopReason::Interrupted {
             return Err(Error::Interrupted);
@@ -321,6 +321,7 @@ impl TensileCase<'_> {
 fn resumably(
     scene: &Scene,
     out: &Path,
+    device: &DeviceChoice,
     recorder: &mut HistoryRecorder,
     stop: &AtomicBool,
 ) -> Result<(RunSummary, bool)> {
@@ -328,7 +329,7 @@ fn resumably(
     let scene = scene.clone().changed(|spec| spec.output.snapshots = 1);
     let usable = |run: &Resumable| run.check_scene(&scene).is_ok();
     if has_checkpoint(out)
-        && let Some(run) = Resumable::open(out, None).ok().filter(usable)
+        && let Some(run) = Resumable::open(out, None, None).ok().filter(usable)
     {
         match run.go_on(&|_| (), vec![recorder], stop) {
             // What it needs beside the checkpoint is damaged.
@@ -336,7 +337,7 @@ fn resumably(
             done => return done.map(|summary| (summary, true)),
         }
     }
-    let options = RunOptions { overwrite: true, ..RunOptions::tables(out) };
+    let options = RunOptions { overwrite: true, device: device.clone(), ..RunOptions::tables(out) };
     Ok((run_watched(&scene, &options, vec![recorder], stop)?, false))
 }
 

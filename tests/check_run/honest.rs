@@ -454,7 +454,7 @@ fn runs_that_were_interrupted_and_resumed() {
         let out = folder.path().join("run");
         interrupted(&out, rows);
         assert_eq!(wrong(&out), Vec::<String>::new(), "interrupted after {rows} rows");
-        Resumable::open(&out, None).unwrap().go_on(&|_| {}, Vec::new(), &AtomicBool::new(false)).unwrap();
+        Resumable::open(&out, None, None).unwrap().go_on(&|_| {}, Vec::new(), &AtomicBool::new(false)).unwrap();
         strandsnap::page::write(&out, None, None, false, false).unwrap();
         assert_eq!(wrong(&out), Vec::<String>::new(), "resumed after {rows} rows");
     }

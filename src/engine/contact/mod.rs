@@ -7,7 +7,8 @@ pub(super) mod spheres;
 mod stage;
 mod wires;
 
-pub use stage::Contacts;
+pub use spheres::meeting::ENERGIES as PAIR_SUMS;
+pub use stage::{Contacts, Elsewhere};
 
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{effective_modulus, effective_shear_modulus};

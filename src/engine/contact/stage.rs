@@ -1,6 +1,7 @@
 //! What the engine asks of contacts, whatever their laws and shape.
 
 use super::spheres::second::SecondSides;
+use crate::base::recorder::{Function, Unrecordable};
 use crate::engine::bytes::Bytes;
 use crate::engine::neighbours::PairList;
 use crate::engine::saved::{Reader, Unfit, Writer};
@@ -40,6 +41,29 @@ pub trait Contacts: Send + Sync {
     /// # Errors
     /// [`Unfit`] when it is of other bodies or laws.
     fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit>;
+    /// What it takes to work them out elsewhere; `None` where that cannot be.
+    fn elsewhere(&self) -> Option<&dyn Elsewhere>;
+    /// See [`Self::elsewhere`].
+    fn elsewhere_mut(&mut self) -> Option<&mut dyn Elsewhere>;
+    /// Forgets how long pairs that are apart need not be looked at: particles have moved elsewhere.
+    fn look_anew(&mut self);
+}
+
+/// Contacts whose steps are done elsewhere, pair by pair.
+pub trait Elsewhere {
+    /// The step of a pair as a function. It takes numbers of its two particles (`first_`, `second_`), of the pair, and of the
+    /// step; puts numbers of the pair: what it remembers, its `push` on the first particle, the second feels the opposite,
+    /// and where particles `turn` its torques, `twist_first` and `twist_second`.
+    ///
+    /// # Errors
+    /// [`Unrecordable`] for laws that cannot be recorded.
+    fn record(&self, turn: bool) -> Result<Function, Unrecordable>;
+    /// The two particles of each pair, in order.
+    fn pairs(&self) -> Vec<[u32; 2]>;
+    /// A number of all pairs by its name in the function, as it is now; `None` where a step makes it.
+    fn numbers(&self, name: &str) -> Option<Vec<f64>>;
+    /// Takes up the numbers that some steps gave; the energies of these, and the deepest contact.
+    fn take(&mut self, numbers: &[(String, Vec<f64>)]) -> ChunkSums;
 }
 
 /// By how much the gap of two bodies may close while no particle moves further than 1 (-): 2 for the way of both, the

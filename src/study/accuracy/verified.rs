@@ -4,6 +4,7 @@
 use crate::base::error::Result;
 use crate::engine::REVISION;
 use crate::observe::files::write_whole;
+use crate::run::DeviceChoice;
 use crate::run::build::build;
 use crate::study::column::{self, Column};
 use crate::study::plot::{self, Axis, Figure, Legend, Mark, Series, Slope};
@@ -89,7 +90,7 @@ impl Case for KeptCase<'_> {
 
     fn run(&self, stop: &AtomicBool) -> Result<CaseLevels> {
         let verify::VerificationCase { name, about, source, .. } = self.case;
-        let (levels, failed) = match run_one(self.case, self.effort, stop)?.result {
+        let (levels, failed) = match run_one(self.case, self.effort, &DeviceChoice::Processor, stop)?.result {
             Ok(comparisons) => (comparisons.iter().flat_map(|found| levels(self.case, found)).collect(), None),
             Err(error) => (Vec::new(), Some(error.to_string())),
         };

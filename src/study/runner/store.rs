@@ -6,6 +6,7 @@ use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::engine::REVISION;
 use crate::observe::files::write_whole;
+use crate::run::DeviceChoice;
 use crate::run::build::build;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -33,6 +34,9 @@ pub struct Identity {
     threads: Option<usize>,
     /// Whether the run was written to disk.
     writes: bool,
+    /// What it was computed on, if not on the processor: devices differ by rounding.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    device: Option<String>,
     /// The resolved scene, points of centreline files included; or the name of a case that is code, with its build.
     definition: String,
 }
@@ -40,12 +44,19 @@ pub struct Identity {
 impl Identity {
     /// The identity of what `definition` defines.
     pub fn new(definition: String, threads: Option<usize>, writes: bool) -> Self {
-        Self { revision: REVISION, threads, writes, definition }
+        Self { revision: REVISION, threads, writes, device: None, definition }
+    }
+
+    /// The same, computed on `device`.
+    pub fn on(self, device: &DeviceChoice) -> Self {
+        let device = (*device != DeviceChoice::Processor).then(|| device.to_string());
+        Self { device, ..self }
     }
 
     /// Name of its folder: FNV-1a over all of it. The record holds the whole identity, so that a clash of names is seen.
     pub fn name(&self) -> String {
-        let text = format!("{} {:?} {} {}", self.revision, self.threads, self.writes, self.definition);
+        let mut text = format!("{} {:?} {} {}", self.revision, self.threads, self.writes, self.definition);
+        self.device.iter().for_each(|device| text += device);
         let fnv = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
         let hash = text.bytes().fold(0xCBF2_9CE4_8422_2325, fnv);
         format!("{hash:016x}")
@@ -67,6 +78,8 @@ pub struct Record<T> {
 #[derive(Debug, Clone)]
 pub struct CaseStore {
     folder: PathBuf,
+    /// What its cases are computed on.
+    device: DeviceChoice,
     /// Records that were found and cannot be used, and why.
     damaged: Arc<Mutex<BTreeMap<PathBuf, String>>>,
 }
@@ -79,7 +92,7 @@ impl CaseStore {
 
     /// Those in a folder of their own, which need not exist.
     pub(super) fn within(folder: &Path) -> Self {
-        Self { folder: folder.into(), damaged: Arc::default() }
+        Self { folder: folder.into(), device: DeviceChoice::Processor, damaged: Arc::default() }
     }
 
     /// The same, ready to take more; `fresh` removes the records and unfinished runs that are there.
@@ -101,6 +114,16 @@ impl CaseStore {
             }
         }
         Ok(store)
+    }
+
+    /// The same store, of cases that are computed on `device`.
+    pub fn on(self, device: &DeviceChoice) -> Self {
+        Self { device: device.clone(), ..self }
+    }
+
+    /// What its cases are computed on.
+    pub fn device(&self) -> &DeviceChoice {
+        &self.device
     }
 
     /// The folder of all cases.

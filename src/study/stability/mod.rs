@@ -26,6 +26,7 @@ pub mod run;
 pub mod watch;
 
 use crate::base::error::Result;
+use crate::run::DeviceChoice;
 use crate::study::runner::{Case, CaseRunner, Status, Unfinished};
 use crate::study::select;
 use case::StabilityCase;
@@ -48,6 +49,7 @@ pub fn select(names: &[String]) -> Result<Vec<StabilityCase>> {
 struct CaseOfCommand<'a> {
     case: &'a StabilityCase,
     quick: bool,
+    device: &'a DeviceChoice,
     unfinished: Option<&'a Unfinished>,
 }
 
@@ -65,7 +67,11 @@ struct AsExpected {
 impl CaseOfCommand<'_> {
     /// What it is kept by.
     fn key(&self) -> String {
-        format!("stability case {}, {}", self.case.name, if self.quick { "quick" } else { "full" })
+        let effort = if self.quick { "quick" } else { "full" };
+        match self.device {
+            DeviceChoice::Processor => format!("stability case {}, {effort}", self.case.name),
+            device => format!("stability case {}, {effort}, on {device}", self.case.name),
+        }
     }
 }
 
@@ -82,7 +88,7 @@ impl Case for CaseOfCommand<'_> {
     }
 
     fn run(&self, stop: &AtomicBool) -> Result<Report> {
-        let report = run::run_case(self.case, self.quick, stop)?;
+        let report = run::run_case(self.case, self.quick, self.device, stop)?;
         if let Some(unfinished) = self.unfinished.filter(|_| report.outcome != Outcome::Failed) {
             let Report { outcome, answer, residual, steps, wall_s, message, .. } = report.clone();
             unfinished.keep(&self.key(), AsExpected { outcome, answer, residual, steps, wall_s, message })?;
@@ -99,12 +105,13 @@ impl Case for CaseOfCommand<'_> {
 pub fn run_all(
     cases: &[StabilityCase],
     quick: bool,
+    device: &DeviceChoice,
     runner: &CaseRunner,
     unfinished: Option<&Unfinished>,
 ) -> Result<Vec<Status<Report>>> {
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by_key(|index| !cases[*index].long);
-    let of_command = |index: &usize| CaseOfCommand { case: &cases[*index], quick, unfinished };
+    let of_command = |index: &usize| CaseOfCommand { case: &cases[*index], quick, device, unfinished };
     let statuses = runner.run(&order.iter().map(of_command).collect::<Vec<_>>())?;
     let mut placed: Vec<_> = order.into_iter().zip(statuses).collect();
     placed.sort_by_key(|(index, _)| *index);

@@ -7,7 +7,7 @@ use super::outcome::{Ended, Report, judge};
 use super::watch::{RunControl, watch};
 use crate::base::error::{Error, Result};
 use crate::engine::view::Energy;
-use crate::run::in_pool;
+use crate::run::{DeviceChoice, in_pool};
 use crate::scene::Scene;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -18,12 +18,12 @@ use std::time::{Duration, Instant};
 /// Time that a run which was asked to end gets to do so (s).
 const GRACE: Duration = Duration::from_secs(10);
 
-/// Runs a case on a thread of its own, so that it can be given up when it hangs, and judges it.
+/// Runs a case on a thread of its own, its steps on `device` where they can be done there, so that it can be given up when it hangs, and judges it.
 ///
 /// # Errors
 /// [`Error::Interrupted`] when `stop` ended it early.
-pub fn run_case(case: &StabilityCase, quick: bool, stop: &AtomicBool) -> Result<Report> {
-    let control = Arc::new(RunControl::default());
+pub fn run_case(case: &StabilityCase, quick: bool, device: &DeviceChoice, stop: &AtomicBool) -> Result<Report> {
+    let control = Arc::new(RunControl { device: device.clone(), ..RunControl::default() });
     let (send, receive) = mpsc::channel();
     let (job, held) = (case.clone(), control.clone());
     let began = Instant::now();

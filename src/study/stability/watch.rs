@@ -4,9 +4,11 @@ use super::measure::CompletedRun;
 use crate::base::error::Result;
 use crate::base::worst::renew;
 use crate::engine::Engine;
+use crate::engine::elsewhere::Foretold;
 use crate::observe::guard::Guard;
 use crate::observe::planned::PlannedEnd;
-use crate::run::{Schedule, StopRule, assemble};
+use crate::run::steps::{Look, Steps};
+use crate::run::{DeviceChoice, Schedule, StopRule, assemble};
 use crate::scene::Scene;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -17,6 +19,8 @@ pub struct RunControl {
     pub steps: AtomicU64,
     /// Set to end the run.
     pub stop: AtomicBool,
+    /// What does its steps, where it can.
+    pub device: DeviceChoice,
 }
 
 /// Runs a scene to its end; rows come as the scene's `output` asks.
@@ -29,13 +33,15 @@ pub fn watch(scene: &Scene, control: &RunControl) -> Result<CompletedRun> {
     let mut guard = Guard::new(&scene.spec.time);
     guard.start(&info);
     let seen = CompletedRun::start(scene.spec.clone(), &engine);
-    let mut watched = Watched { engine, guard, rule: StopRule::new(&scene.spec.stop, info.wave_passage), seen };
+    let steps = Steps::where_possible(&control.device, &engine)?;
+    let mut watched = Watched { engine, steps, guard, rule: StopRule::new(&scene.spec.stop, info.wave_passage), seen };
     let end = PlannedEnd::new(&scene.spec.stop, info.strain_end);
     let mut schedule = Schedule::new(&scene.spec.output);
     watched.row()?;
     while !control.stop.load(Ordering::Relaxed) && !watched.is_over() {
-        let ruptures = watched.step()?;
-        control.steps.fetch_add(1, Ordering::Relaxed);
+        let begun = watched.engine.steps();
+        let ruptures = watched.step(&schedule, &end)?;
+        control.steps.fetch_add(watched.engine.steps() - begun, Ordering::Relaxed);
         let engine = &watched.engine;
         let now = end.fraction(engine.strain(), engine.time(), engine.steps());
         if ruptures > 0 {
@@ -61,6 +67,7 @@ pub fn watch(scene: &Scene, control: &RunControl) -> Result<CompletedRun> {
 /// A run and all that watch it.
 struct Watched {
     engine: Engine,
+    steps: Steps,
     guard: Guard,
     rule: StopRule,
     seen: CompletedRun,
@@ -72,9 +79,20 @@ impl Watched {
         self.rule.reached(engine.strain(), engine.time(), engine.steps()).is_some()
     }
 
-    /// One step; returns how many bonds broke in it.
-    fn step(&mut self) -> Result<usize> {
-        self.engine.step()?;
+    /// One step, or a few up to one after which something is due; returns how many bonds broke.
+    fn step(&mut self, schedule: &Schedule, end: &PlannedEnd) -> Result<usize> {
+        let Self { engine, steps, rule, .. } = self;
+        if steps.adapter().is_some() {
+            let (mut schedule, so_far) = (schedule.clone(), rule.clone());
+            let mut stop = |next: Foretold| {
+                let due = schedule.due(end.fraction(next.strain, next.time, next.steps));
+                due.row || due.snapshot || so_far.reached(next.strain, next.time, next.steps).is_some()
+            };
+            let mut between = |engine: &Engine| rule.step(engine.time(), engine.strain(), engine.stress());
+            steps.advance(engine, Look { stop: &mut stop, between: &mut between })?;
+        } else {
+            engine.step()?;
+        }
         let ruptures = self.engine.take_ruptures();
         for rupture in &ruptures {
             self.rule.rupture();

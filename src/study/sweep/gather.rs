@@ -63,7 +63,7 @@ impl<'a> Gathered<'a> {
         for (index, (point, seed)) in definition.cases().into_iter().enumerate() {
             let (folder, outcome) = match &definition.scenes[point] {
                 Ok(scene) => {
-                    let identity = identity(scene, seed);
+                    let identity = identity(scene, seed).on(store.device());
                     let record: Option<Record<TensileOutcome>> = store.find(&identity);
                     other_build += usize::from(record.as_ref().is_some_and(|record| record.build != build));
                     (identity.name(), record.map(|record| record.result))

@@ -32,6 +32,7 @@ pub use case::VerificationCase;
 pub use support::Effort;
 
 use crate::base::error::{Error, Result};
+use crate::run::DeviceChoice;
 use crate::study::runner::{Case, CaseRunner, Status, Unfinished};
 use crate::study::select;
 use comparison::{Comparison, Verdict};
@@ -123,13 +124,18 @@ impl Report {
     }
 }
 
-/// Runs one case on the present thread pool.
+/// Runs one case on the present thread pool, its steps on `device` where they can be done there.
 ///
 /// # Errors
 /// [`Error::Interrupted`] when `stop` ended it early.
-pub fn run_one(case: &'static VerificationCase, effort: Effort, stop: &AtomicBool) -> Result<Report> {
+pub fn run_one(
+    case: &'static VerificationCase,
+    effort: Effort,
+    device: &DeviceChoice,
+    stop: &AtomicBool,
+) -> Result<Report> {
     let began = Instant::now();
-    let context = Context::new(effort, stop);
+    let context = Context::new(effort, device, stop);
     let result = match (case.run)(&context) {
         Err(Error::Interrupted) => return Err(Error::Interrupted),
         other => other.map(|mut comparisons| {
@@ -144,6 +150,7 @@ pub fn run_one(case: &'static VerificationCase, effort: Effort, stop: &AtomicBoo
 struct CaseOfCommand<'a> {
     case: &'static VerificationCase,
     effort: Effort,
+    device: &'a DeviceChoice,
     unfinished: Option<&'a Unfinished>,
 }
 
@@ -157,7 +164,10 @@ struct Passed {
 impl CaseOfCommand<'_> {
     /// What it is kept by.
     fn key(&self) -> String {
-        format!("verification case {}, {:?}", self.case.name, self.effort)
+        match self.device {
+            DeviceChoice::Processor => format!("verification case {}, {:?}", self.case.name, self.effort),
+            device => format!("verification case {}, {:?}, on {device}", self.case.name, self.effort),
+        }
     }
 }
 
@@ -174,7 +184,7 @@ impl Case for CaseOfCommand<'_> {
     }
 
     fn run(&self, stop: &AtomicBool) -> Result<Report> {
-        let report = run_one(self.case, self.effort, stop)?;
+        let report = run_one(self.case, self.effort, self.device, stop)?;
         if let (Some(unfinished), Ok(comparisons), true) = (self.unfinished, &report.result, report.passes()) {
             let passed = Passed { comparisons: comparisons.clone(), wall_s: report.wall_s };
             unfinished.keep(&self.key(), passed)?;
@@ -191,10 +201,11 @@ impl Case for CaseOfCommand<'_> {
 pub fn run_all(
     cases: &[&'static VerificationCase],
     effort: Effort,
+    device: &DeviceChoice,
     runner: &CaseRunner,
     unfinished: Option<&Unfinished>,
 ) -> Result<Vec<Status<Report>>> {
-    let of_command = |case: &&'static VerificationCase| CaseOfCommand { case, effort, unfinished };
+    let of_command = |case: &&'static VerificationCase| CaseOfCommand { case, effort, device, unfinished };
     runner.run(&cases.iter().map(of_command).collect::<Vec<_>>())
 }
 

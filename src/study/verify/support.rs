@@ -4,6 +4,7 @@ use super::comparison::{Comparison, Spent};
 use crate::base::error::{Error, Result};
 use crate::engine::Engine;
 use crate::reference::beam::RoundBar;
+use crate::run::steps::{DeviceChoice, Steps};
 use crate::scene::spec::Spec;
 use crate::scene::{self, Scene};
 use crate::strand;
@@ -31,6 +32,7 @@ const LEDGER_TARGET: f64 = 1e-3;
 /// among them.
 pub struct Context<'a> {
     effort: Effort,
+    device: &'a DeviceChoice,
     stop: &'a AtomicBool,
     ledger: Cell<Ledger>,
 }
@@ -43,9 +45,9 @@ struct Ledger {
 }
 
 impl<'a> Context<'a> {
-    /// The context of one case; `stop` ends its simulations early.
-    pub fn new(effort: Effort, stop: &'a AtomicBool) -> Self {
-        Self { effort, stop, ledger: Cell::default() }
+    /// The context of one case; `stop` ends its simulations early. Steps are done on `device` where they can be.
+    pub fn new(effort: Effort, device: &'a DeviceChoice, stop: &'a AtomicBool) -> Self {
+        Self { effort, device, stop, ledger: Cell::default() }
     }
 
     /// What ends a case early.
@@ -94,7 +96,8 @@ impl<'a> Context<'a> {
         let mut assembly = strand::build(&spec)?;
         change(&mut assembly);
         let engine = Engine::new(&spec, &plan, assembly)?;
-        Ok(Simulation { spec, engine, context: self, wall_s: 0.0 })
+        let steps = Steps::where_possible(self.device, &engine)?;
+        Ok(Simulation { spec, engine, steps, context: self, wall_s: 0.0 })
     }
 
     /// The worst energy ledger of the simulations that were finished, if any: what is missing over the work done.
@@ -115,6 +118,7 @@ pub struct Simulation<'a> {
     pub spec: Spec,
     /// The engine that runs it.
     pub engine: Engine,
+    steps: Steps,
     context: &'a Context<'a>,
     wall_s: f64,
 }
@@ -147,7 +151,7 @@ impl Simulation<'_> {
             if self.engine.steps().is_multiple_of(STOP_INTERVAL) && self.context.stop.load(Ordering::Relaxed) {
                 return Err(Error::Interrupted);
             }
-            self.engine.step()?;
+            self.steps.step(&mut self.engine)?;
             each(&self.engine);
         }
         self.wall_s += began.elapsed().as_secs_f64();

@@ -1,6 +1,7 @@
 //! The contacts of one chunk at one step, as many at once as a register holds.
 
 use super::block::Block;
+use super::meeting::{Between, arms, surface_velocity};
 use super::store::Store;
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
@@ -112,12 +113,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let (i, j) = (block.i as usize + lane, block.j as usize + lane);
         let load = |record: &[f64], field: usize| Lanes::load(simd, record, field * BLOCK + lane);
         let (first, second) = (ball(simd, self.seen, i), ball(simd, self.seen, j));
-        let d = second.x - first.x;
-        let square = d.length_squared();
-        let zero = square.splat(0.0);
-        let inverse = square.inverse_sqrt();
-        let distance = square * inverse;
-        let touching = first.radius + second.radius;
+        let zero = first.radius.splat(0.0);
         let constants = block.constants as usize + lane;
         let reduced = Lanes::load(simd, self.constants, constants);
         let [offset, before] = match self.store.record(&block, Self::FIELDS) {
@@ -125,8 +121,8 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
             None => [zero; 2],
         };
         let pairs = reduced.simd_gt(zero);
-        let reach = touching - offset;
-        let overlap = reach - distance;
+        let between = Between::of(second.x - first.x, first.radius + second.radius, offset);
+        let overlap = between.overlap;
         let touches = overlap.simd_gt(zero) & pairs;
         let remembers = before.simd_gt(zero) | offset.simd_gt(zero);
         if !(touches | remembers).any() {
@@ -141,9 +137,8 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let [record, _] = self.store.acting(b, Self::FIELDS, rows::<T>());
         let mut history = History::<N, T, _>::of(reduced, |k| load(record, k));
         let overlap = Lanes::select(touches, overlap, zero);
-        let normal = d * inverse;
-        let sunk = (overlap + offset) * 0.5;
-        let arms = [first.radius - sunk, second.radius - sunk];
+        let normal = between.normal();
+        let arms = arms([first.radius, second.radius], overlap, offset);
         let velocity = velocity::<S, T>(simd, self.seen, [i, j], normal, arms);
         let viscosity = Lanes::load(simd, self.constants, constants + BLOCK);
         let thinner = first.thinned + second.thinned;
@@ -252,6 +247,5 @@ fn velocity<S: Simd, T: TangentialLaw>(
     if !T::ACTIVE {
         return slide;
     }
-    let roll = vector(simd, &seen.w, i) * arms[0] + vector(simd, &seen.w, j) * arms[1];
-    slide - roll.cross(normal)
+    surface_velocity(slide, [i, j].map(|p| vector(simd, &seen.w, p)), arms, normal)
 }

@@ -10,12 +10,14 @@
 //! up ([`SecondSides`]). Each chunk has memory of its own ([`store`]).
 
 mod block;
+mod elsewhere;
 mod kernel;
+pub mod meeting;
 pub mod second;
 mod store;
 
 use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
-use super::stage::{Contacts, closing};
+use super::stage::{Contacts, Elsewhere, closing};
 use crate::base::lanes::BLOCK;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::PairList;
@@ -300,6 +302,19 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         self.deepest = from.take()?;
         self.index(state);
         Ok(())
+    }
+
+    fn elsewhere(&self) -> Option<&dyn Elsewhere> {
+        Some(self)
+    }
+
+    fn elsewhere_mut(&mut self) -> Option<&mut dyn Elsewhere> {
+        Some(self)
+    }
+
+    fn look_anew(&mut self) {
+        let blocks = self.stores.iter_mut().flat_map(|store| &mut store.blocks);
+        blocks.for_each(|block| (block.acts, block.quiet_until) = (false, 0.0));
     }
 
     fn bytes(&self, particles: usize) -> Bytes {

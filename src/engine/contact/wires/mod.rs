@@ -31,7 +31,7 @@ mod store;
 
 use super::pair::{Laws, foreseen_stiffness, leave};
 use super::spheres::second::SecondSides;
-use super::stage::{Contacts, closing};
+use super::stage::{Contacts, Elsewhere, closing};
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::{PairList, apart};
 use crate::engine::saved::{Reader, Unfit, Writer};
@@ -347,6 +347,16 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         self.spread.resize(state.len());
         Ok(())
     }
+
+    fn elsewhere(&self) -> Option<&dyn Elsewhere> {
+        None
+    }
+
+    fn elsewhere_mut(&mut self) -> Option<&mut dyn Elsewhere> {
+        None
+    }
+
+    fn look_anew(&mut self) {}
 
     fn bytes(&self, particles: usize) -> Bytes {
         let sizes = |size: fn(&Store<N, T>) -> usize| self.stores.iter().map(size).sum::<usize>();
