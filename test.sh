@@ -8,10 +8,12 @@ need_rust
 get_vulkan || printf '\n%s\nTests of frames will be SKIPPED.\n' "$WITHOUT_VULKAN"
 get_browser || printf '\nNo Chromium is here and none can be installed; tests of pages in a browser will be SKIPPED.\n'
 get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that need it will be SKIPPED.\n'
+get_batch_systems || printf '\nSlurm or GNU Parallel cannot be installed here; tests that need them will be SKIPPED.\n'
 get_readers || printf '\nPrograms that read exports cannot be installed here; tests that need them will be SKIPPED.\n'
 
 say "Shell syntax"
-for script in demo.sh test.sh .ci/run .ci/features .ci/prepare.sh examples/peers/compare.sh examples/long_tests.sh examples/mutants.sh; do
+for script in demo.sh test.sh .ci/run .ci/features .ci/prepare.sh examples/peers/compare.sh examples/long_tests.sh examples/mutants.sh examples/gpu_checks.sh \
+    tests/cluster/slurm.sh; do
     bash -n "$script"
 done
 

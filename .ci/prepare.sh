@@ -78,6 +78,12 @@ get_readers() {
     export READERS_PYTHON="$PWD/.venv/bin/python"
 }
 
+# Whether batch systems are there or could be installed. Daemons of Slurm need root.
+get_batch_systems() {
+    { command -v slurmctld && command -v munged && command -v parallel; } >/dev/null ||
+        install_packages "For tests of studies on clusters: installing Slurm and GNU Parallel" slurm-wlm munge parallel
+}
+
 # Rerun's own tool in .venv, in the version that Cargo.lock names; sets RERUN_CLI when it is there.
 get_rerun() {
     local version

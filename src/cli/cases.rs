@@ -7,6 +7,7 @@ use crate::base::regular;
 use crate::run::DeviceChoice;
 use crate::run::lock::Lock;
 use crate::study::runner::{CaseRunner, CaseStore, Progress, Status, Unfinished, cores};
+use crate::study::sweep::cluster::quoted;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 
@@ -173,11 +174,22 @@ pub fn time(seconds: f64) -> String {
     if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
 }
 
+/// What the user typed after the name of the program, but for an option and its value.
+pub fn words_without(option: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut typed = std::env::args().skip(1);
+    while let Some(word) = typed.next() {
+        if word == option {
+            typed.next();
+        } else if word.strip_prefix(option).is_none_or(|rest| !rest.starts_with('=')) {
+            words.push(word);
+        }
+    }
+    words
+}
+
 /// What the user typed.
 pub fn command() -> String {
-    let words = std::env::args().skip(1).map(|word| {
-        let plain = word.chars().all(|c| c.is_ascii_alphanumeric() || "-_./=,%+:".contains(c));
-        if plain { word } else { format!("'{}'", word.replace('\'', "'\\''")) }
-    });
+    let words = std::env::args().skip(1).map(|word| quoted(&word));
     std::iter::once("strandsnap".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }

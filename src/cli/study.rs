@@ -6,10 +6,13 @@ use super::interrupt;
 use super::say::{self, say};
 use super::values::{Seeds, name_or_path, quality};
 use crate::base::error::{Error, Result};
+use crate::base::regular;
 use crate::base::wording::counted;
+use crate::observe::files::write_whole;
 use crate::run::{DeviceChoice, folder};
 use crate::scene::quality::Quality;
 use crate::study::runner::{CaseRunner, CaseStore, all_outputs, cores};
+use crate::study::sweep::cluster::{Array, BatchSystem, quoted};
 use crate::study::sweep::report::{self, Findings};
 use crate::study::sweep::{self, CaseResult, Changes, Cost, Definition, Gathered, definition};
 use crate::study::tensile::TensileOutcome;
@@ -50,6 +53,9 @@ pub struct Args {
     /// Gather the cases that are there, and run nothing
     #[arg(long, conflicts_with = "fresh")]
     collect: bool,
+    /// Write scripts that run the cases which are missing as the array of a batch system, and gather them; run nothing
+    #[arg(long, value_name = "slurm|hq|gnu-parallel", conflicts_with_all = ["case", "collect", "dry_run", "fresh", "jobs"])]
+    emit: Option<BatchSystem>,
     /// List the studies that come with the program
     #[arg(long)]
     list: bool,
@@ -72,6 +78,9 @@ pub fn study(args: &Args) -> Result<Ended> {
     let jobs = args.jobs.map_or_else(cores, usize::from);
     if args.dry_run {
         return dry_run(&definition, &out, &args.device, jobs);
+    }
+    if let Some(system) = args.emit {
+        return emit(&definition, &out, &args.device, system);
     }
     if args.collect {
         let store = CaseStore::of(&out).on(&args.device);
@@ -128,6 +137,44 @@ fn dry_run(definition: &Definition, out: &Path, device: &DeviceChoice, jobs: usi
         "{}, {done} of them done; about {left} for the others, {jobs} at a time, {by}.",
         counted(costs.cases.len(), "case")
     );
+    Ok(Ended::Well)
+}
+
+/// Writes scripts that run the cases that are missing on a cluster.
+fn emit(definition: &Definition, out: &Path, device: &DeviceChoice, system: BatchSystem) -> Result<Ended> {
+    let store = CaseStore::of(out).on(device);
+    let gathered = Gathered::read(definition, &store);
+    let costs = sweep::costs(definition, &gathered, &|_| {})?;
+    let missing: Vec<usize> = gathered.cases.iter().filter(|case| case.outcome.is_none()).map(|case| case.number).collect();
+    if missing.is_empty() {
+        say!("All {} are there; gather them with --collect.", counted(gathered.cases.len(), "case"));
+        return Ok(Ended::Well);
+    }
+    let absolute = |path: &Path| std::path::absolute(path).map_err(|e| Error::io("cannot find", path, e));
+    let program = std::env::current_exe().map_err(|e| Error::io("cannot find", "this program", e))?;
+    let folder = absolute(&out.join("cluster"))?;
+    // What first steps say is a quarter of what a case takes at most, what finished cases say about half.
+    let margin = if costs.ratio.is_some() { 2.0 } else { 4.0 };
+    let takes = costs.cases.iter().filter_map(|cost| if let Cost::Takes(seconds) = cost { Some(*seconds) } else { None });
+    let array = Array {
+        name: &definition.name,
+        cases: &missing,
+        command: &[vec![program.to_string_lossy().into_owned()], cases::words_without("--emit")].concat(),
+        directory: &absolute(Path::new("."))?,
+        folder: &absolute(out)?,
+        seconds: takes.reduce(f64::max).map(|seconds| margin * seconds),
+        bytes: sweep::memory(definition),
+    };
+    regular::make_folder(&folder)?;
+    regular::make_folder(&out.join("log"))?;
+    let scripts = array.scripts(system);
+    for (name, text) in &scripts.files {
+        write_whole(&folder.join(name), text)?;
+    }
+    let files: Vec<&str> = scripts.files.iter().map(|(name, _)| *name).collect();
+    say!("{} to run; written into {}: {}. Now type", counted(missing.len(), "case"), folder.display(), files.join(", "));
+    say!("  cd {}", quoted(&folder.to_string_lossy()));
+    scripts.commands.iter().for_each(|command| say!("  {command}"));
     Ok(Ended::Well)
 }
 

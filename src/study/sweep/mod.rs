@@ -5,6 +5,7 @@
 pub mod axis;
 pub mod breaks;
 mod changes;
+pub mod cluster;
 pub mod comparison;
 mod conflicts;
 pub mod definition;
@@ -20,6 +21,7 @@ pub use gather::{CaseResult, Gathered};
 use crate::base::error::{Error, Result};
 use crate::run::{assemble, estimate, in_pool};
 use crate::scene::Scene;
+use crate::strand::size::Size;
 use crate::study::runner::{CaseRunner, CaseStore, Record, Status};
 use crate::study::tensile::TensileOutcome;
 
@@ -88,6 +90,12 @@ fn expected(scene: &Scene) -> Cost {
     let estimate = assemble(scene).and_then(|assembly| estimate::estimate(&scene.spec, &scene.plan, assembly));
     let wall = estimate.ok().and_then(|estimate| Some(estimate.steps? * estimate.step_wall));
     wall.map_or(Cost::Unknown, Cost::Takes)
+}
+
+/// Memory that the largest case needs (bytes).
+pub fn memory(definition: &Definition) -> f64 {
+    let scenes = definition.scenes.iter().flatten();
+    scenes.map(|scene| Size::of(&scene.spec).memory).fold(0.0, f64::max)
 }
 
 /// Runs all cases that are missing.
