@@ -12,7 +12,7 @@ get_batch_systems || printf '\nSlurm or GNU Parallel cannot be installed here; t
 get_readers || printf '\nPrograms that read exports cannot be installed here; tests that need them will be SKIPPED.\n'
 
 say "Shell syntax"
-for script in demo.sh test.sh .ci/run .ci/features .ci/prepare.sh examples/peers/compare.sh examples/long_tests.sh examples/mutants.sh examples/gpu_checks.sh \
+for script in demo.sh test.sh .ci/run .ci/features .ci/deb .ci/prepare.sh examples/peers/compare.sh examples/long_tests.sh examples/mutants.sh examples/gpu_checks.sh \
     tests/cluster/slurm.sh; do
     bash -n "$script"
 done
