@@ -46,7 +46,8 @@ fn a_study_runs_side_by_side_with_gnu_parallel_and_what_failed_is_tried_again() 
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("many.toml"), MANY).unwrap();
     let study = |rest: &[&str]| {
-        let ran = Command::new(PROGRAM).args(["study", "many.toml"]).args(rest).current_dir(folder.path()).output().unwrap();
+        let ran =
+            Command::new(PROGRAM).args(["study", "many.toml"]).args(rest).current_dir(folder.path()).output().unwrap();
         assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
         String::from_utf8(ran.stdout).unwrap()
     };

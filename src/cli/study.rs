@@ -145,7 +145,8 @@ fn emit(definition: &Definition, out: &Path, device: &DeviceChoice, system: Batc
     let store = CaseStore::of(out).on(device);
     let gathered = Gathered::read(definition, &store);
     let costs = sweep::costs(definition, &gathered, &|_| {})?;
-    let missing: Vec<usize> = gathered.cases.iter().filter(|case| case.outcome.is_none()).map(|case| case.number).collect();
+    let missing: Vec<usize> =
+        gathered.cases.iter().filter(|case| case.outcome.is_none()).map(|case| case.number).collect();
     if missing.is_empty() {
         say!("All {} are there; gather them with --collect.", counted(gathered.cases.len(), "case"));
         return Ok(Ended::Well);
@@ -155,7 +156,8 @@ fn emit(definition: &Definition, out: &Path, device: &DeviceChoice, system: Batc
     let folder = absolute(&out.join("cluster"))?;
     // What first steps say is a quarter of what a case takes at most, what finished cases say about half.
     let margin = if costs.ratio.is_some() { 2.0 } else { 4.0 };
-    let takes = costs.cases.iter().filter_map(|cost| if let Cost::Takes(seconds) = cost { Some(*seconds) } else { None });
+    let takes =
+        costs.cases.iter().filter_map(|cost| if let Cost::Takes(seconds) = cost { Some(*seconds) } else { None });
     let array = Array {
         name: &definition.name,
         cases: &missing,
@@ -172,7 +174,12 @@ fn emit(definition: &Definition, out: &Path, device: &DeviceChoice, system: Batc
         write_whole(&folder.join(name), text)?;
     }
     let files: Vec<&str> = scripts.files.iter().map(|(name, _)| *name).collect();
-    say!("{} to run; written into {}: {}. Now type", counted(missing.len(), "case"), folder.display(), files.join(", "));
+    say!(
+        "{} to run; written into {}: {}. Now type",
+        counted(missing.len(), "case"),
+        folder.display(),
+        files.join(", ")
+    );
     say!("  cd {}", quoted(&folder.to_string_lossy()));
     scripts.commands.iter().for_each(|command| say!("  {command}"));
     Ok(Ended::Well)

@@ -10,6 +10,7 @@ use super::layout::{Shape, room};
 use crate::base::error::{Error, Result};
 use crate::engine::elsewhere::{Block, Outcome, StepFunctions};
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
@@ -67,6 +68,9 @@ pub enum Response {
     /// Everything has to be brought, for the device has been laid out anew.
     Anew(Block),
 }
+
+/// What came of requests, by who brought them.
+type Answers = Vec<(usize, Result<Response>)>;
 
 impl Together {
     /// Those on `device` whose steps are `functions`, with these names of the numbers of a step; begun where there are none.
@@ -170,8 +174,45 @@ impl Together {
         let epoch = state.epoch;
         drop(state);
 
+        let asked: Vec<usize> = requests.keys().copied().collect();
+        let worked = catch_unwind(AssertUnwindSafe(|| self.answer(kept, shapes, order, requests, epoch)));
+        // Nobody must wait for the answer of a thread that is no more.
+        let panicked =
+            |_: &usize| Err(Error::Missing { what: "a thread that drove this adapter panicked".into(), help: None });
+        let (batch, responses, panic) = match worked {
+            Ok((batch, responses)) => (batch, responses, None),
+            Err(panic) => (None, asked.iter().map(|number| (*number, panicked(number))).collect(), Some(panic)),
+        };
+
+        let mut state = self.state();
+        // Somebody may have come or gone meanwhile.
+        let same = batch.as_ref().is_some_and(|(_, order)| state.members.keys().eq(order));
+        state.batch = batch.filter(|_| same);
+        for (number, response) in responses {
+            if let Some(member) = state.members.get_mut(&number) {
+                member.response = Some(response);
+            }
+        }
+        (state.running, state.last) = (false, begun.elapsed());
+        self.changed.notify_all();
+        if let Some(panic) = panic {
+            drop(state);
+            resume_unwind(panic);
+        }
+        state
+    }
+
+    /// The answers to all requests, and the batch that is then on the device.
+    fn answer(
+        &self,
+        kept: Option<(Batch, Vec<usize>)>,
+        shapes: Vec<(Shape, u32)>,
+        order: Vec<usize>,
+        requests: BTreeMap<usize, Request>,
+        epoch: u64,
+    ) -> (Option<(Batch, Vec<usize>)>, Answers) {
         let batch = kept.map_or_else(|| self.program.batch(shapes).map(|batch| (batch, order)), Ok);
-        let (batch, responses) = match batch {
+        match batch {
             Ok((mut batch, order)) => {
                 let (requests, mut responses) = separate(requests, epoch);
                 match self.run(&mut batch, &order, requests, epoch) {
@@ -186,31 +227,17 @@ impl Together {
                 }
             }
             Err(error) => (None, requests.into_keys().map(|number| (number, Err(again(&error)))).collect()),
-        };
-
-        let mut state = self.state();
-        // Somebody may have come or gone meanwhile.
-        let same = batch.as_ref().is_some_and(|(_, order)| state.members.keys().eq(order));
-        state.batch = batch.filter(|_| same);
-        for (number, response) in responses {
-            if let Some(member) = state.members.get_mut(&number) {
-                member.response = Some(response);
-            }
         }
-        (state.running, state.last) = (false, begun.elapsed());
-        self.changed.notify_all();
-        state
     }
 
     /// Runs the blocks that were brought, and none of others; who brought them comes with an error.
-    #[allow(clippy::type_complexity)]
     fn run(
         &self,
         batch: &mut Batch,
         order: &[usize],
         mut requests: BTreeMap<usize, Request>,
         epoch: u64,
-    ) -> std::result::Result<Vec<(usize, Result<Response>)>, (Vec<usize>, Error)> {
+    ) -> std::result::Result<Answers, (Vec<usize>, Error)> {
         let none = Block::default();
         let mut news: Vec<Option<News>> =
             order.iter().map(|number| requests.get_mut(number).and_then(|request| request.news.take())).collect();
@@ -230,11 +257,7 @@ impl Together {
 }
 
 /// Requests that can be done in this batch, and the answers to the others.
-#[allow(clippy::type_complexity)]
-fn separate(
-    requests: BTreeMap<usize, Request>,
-    epoch: u64,
-) -> (BTreeMap<usize, Request>, Vec<(usize, Result<Response>)>) {
+fn separate(requests: BTreeMap<usize, Request>, epoch: u64) -> (BTreeMap<usize, Request>, Answers) {
     let (fit, others): (BTreeMap<_, _>, BTreeMap<_, _>) =
         requests.into_iter().partition(|(_, request)| request.news.is_some() || request.epoch == epoch);
     (fit, others.into_iter().map(|(number, request)| (number, Ok(Response::Anew(request.block)))).collect())

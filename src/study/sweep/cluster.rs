@@ -32,7 +32,10 @@ impl FromStr for BatchSystem {
         let found = Self::ALL.iter().find(|(name, _)| *name == text);
         let names = Self::ALL.map(|(name, _)| name).join(", ");
         found.map(|(_, system)| *system).ok_or_else(|| {
-            Error::input(format!("`{text}` is no batch system that scripts are written for"), format!("those are {names}"))
+            Error::input(
+                format!("`{text}` is no batch system that scripts are written for"),
+                format!("those are {names}"),
+            )
         })
     }
 }
@@ -229,8 +232,15 @@ mod tests {
         let command = ["/opt/strandsnap", "study", "a b.toml", "--seeds", "1..3"].map(str::to_owned);
         let (directory, folder) = (Path::new("/home/it's me"), Path::new("/data/out/study/many"));
         let cases = [1, 2, 3, 7, 9, 10];
-        let array =
-            Array { name: "many", cases: &cases, command: &command, directory, folder, seconds: Some(500.0), bytes: 3e8 };
+        let array = Array {
+            name: "many",
+            cases: &cases,
+            command: &command,
+            directory,
+            folder,
+            seconds: Some(500.0),
+            bytes: 3e8,
+        };
         array.scripts(system.parse().unwrap())
     }
 
