@@ -71,6 +71,9 @@ impl Engine {
             what: format!("steps of this scene cannot be recorded: {what}"),
             help: Some("run it on the processor".into()),
         };
+        if self.spec.has_several_materials() {
+            return Err(refused("its bodies are of several materials"));
+        }
         if self.contacts.is_some() || self.plan.contacts == ContactPlan::Present {
             return Err(refused("it has contacts"));
         }

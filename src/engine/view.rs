@@ -27,6 +27,10 @@ pub struct RunInfo {
     pub about: String,
     /// Layer names, inside out.
     pub layers: Vec<String>,
+    /// Names of the materials; one where all bodies are of the same.
+    pub materials: Vec<String>,
+    /// Index into `materials` of each free sphere.
+    pub sphere_material: Vec<usize>,
     /// Wires in order; wire `w` is shown to people as number `w + 1`.
     pub wires: Vec<WireInfo>,
     /// Number of particles in wires; free spheres follow.
@@ -63,6 +67,11 @@ impl RunInfo {
         self.gauge.is_some() && self.strain_end.is_some()
     }
 
+    /// Whether bodies are of more than one material.
+    pub fn has_several_materials(&self) -> bool {
+        self.materials.len() > 1
+    }
+
     /// Whether particle `i` lies in a grip before loading.
     pub fn in_grip(&self, i: usize) -> bool {
         let z = self.rest_position[i][2];
@@ -87,6 +96,8 @@ impl BondState {
 pub struct WireInfo {
     /// Index into [`RunInfo::layers`].
     pub layer: usize,
+    /// Index into [`RunInfo::materials`].
+    pub material: usize,
     /// First particle.
     pub first: usize,
     /// Number of particles.
@@ -96,6 +107,11 @@ pub struct WireInfo {
 }
 
 impl WireInfo {
+    /// Its section before loading (m²).
+    pub fn area(&self) -> f64 {
+        std::f64::consts::FRAC_PI_4 * self.diameter * self.diameter
+    }
+
     /// Its particles.
     pub fn particles(&self) -> std::ops::Range<usize> {
         self.first..self.first + self.len
@@ -129,6 +145,8 @@ pub struct Sample {
     /// Nominal axial stress of each wire at mid-gauge (Pa): the mean over its bonds in the middle twentieth of the gauge, of
     /// which broken ones carry nothing.
     pub wire_stress: Vec<f64>,
+    /// Part of the force of each wire along z at mid-gauge (N), where wires are of several materials; empty elsewhere.
+    pub wire_pull: Vec<f64>,
     /// Wires broken so far.
     pub wires_broken: usize,
     /// Bonds broken so far.

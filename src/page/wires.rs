@@ -9,8 +9,7 @@ use super::source::Source;
 use crate::base::error::Result;
 use crate::base::units::{mpa, percent};
 use crate::engine::view::Sample;
-use crate::observe::tables::layer_name;
-use crate::observe::wording::wire_number;
+use crate::observe::wording::{layer_label, wire_number};
 use maud::{Markup, html};
 use serde_json::{Value, json};
 
@@ -70,7 +69,7 @@ fn chart(source: &Source, id: &'static str, rows: &[&Sample], range: Option<[f64
     let abscissa = Abscissa::of(source);
     let x = || numbers(rows.iter().map(|row| abscissa.value(row)));
     let wires = source.info.wires.iter().enumerate().map(|(w, wire)| {
-        let layer = literal(layer_name(&source.info, wire.layer));
+        let layer = literal(&layer_label(&source.info, wire.layer));
         json!({
             "type": "scatter", "mode": "lines", "showlegend": false, "legendgroup": layer, "opacity": 0.45,
             "line": { "color": layer_colour(wire.layer), "width": 1 }, "x": x(),
@@ -79,7 +78,7 @@ fn chart(source: &Source, id: &'static str, rows: &[&Sample], range: Option<[f64
         })
     });
     let layers = (0..source.info.layers.len()).map(|layer| {
-        let name = literal(layer_name(&source.info, layer));
+        let name = literal(&layer_label(&source.info, layer));
         json!({
             "type": "scatter", "mode": "lines", "name": format!("{name} layer"), "legendgroup": name,
             "line": { "color": layer_colour(layer), "width": 3 }, "x": x(),

@@ -1,19 +1,23 @@
 //! A scene as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference
 //! of all keys, each with its unit, its default and its meaning, which `strandsnap scene keys` prints
-//! ([`super::keys`]); those of grips and holds stand in `raw/drive.rs`, those of outputs in `raw/output.rs`.
+//! ([`super::keys`]); those of named materials stand in `raw/materials.rs`, those of grips and holds in `raw/drive.rs`, those
+//! of outputs in `raw/output.rs`.
 //!
 //! A quantity is text with a unit, `"39 mm"`; any unit of the right kind will do. A ratio may be a plain number or
 //! per cent, `0.12` or `"12 %"`. Unknown keys are refused.
 
 mod drive;
+mod materials;
 mod output;
 mod scalar;
 
 pub use drive::*;
+pub use materials::*;
 pub use output::*;
 pub use scalar::*;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// A whole scene file.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -34,9 +38,12 @@ pub struct RawScene {
     /// Which stages run.
     #[schemars(extend("x-default" = "auto"))]
     pub plan: Option<RawPlan>,
-    /// The wire material.
+    /// The material of bodies that name none.
     pub material: Option<RawMaterial>,
-    /// Bonds along the wires. Absent: elastic, undamped, unbreakable.
+    /// `[materials.NAME]`: named materials, each with the bonds of its wires; layers, wires and spheres name theirs.
+    #[serde(default)]
+    pub materials: BTreeMap<String, RawNamedMaterial>,
+    /// Bonds along the wires that name no material. Absent: elastic, undamped, unbreakable.
     pub bond: Option<RawBond>,
     /// Contacts between surfaces. Absent: none at all.
     pub contact: Option<RawContact>,
@@ -220,6 +227,9 @@ pub struct RawContact {
     /// Coulomb friction coefficient. Without effect when `tangential = "none"`.
     #[schemars(extend("x-unit" = "-", "x-default" = "0.2"))]
     pub friction: Option<Scalar>,
+    /// `[[contact.pair]]`: friction between bodies of two named materials.
+    #[serde(default)]
+    pub pair: Vec<RawContactPair>,
     /// Shape of a wire in contact.
     #[schemars(extend("x-default" = "sphere"))]
     pub shape: Option<RawShape>,
@@ -290,6 +300,9 @@ pub struct RawStrand {
     /// Lay direction of layers that give none.
     #[schemars(extend("x-default" = "right"))]
     pub lay: Option<RawLay>,
+    /// Name of the material of layers that name none.
+    #[schemars(extend("x-otherwise" = "that of [material] and [bond]"))]
+    pub material: Option<String>,
     /// Instead of `[[strand.layer]]`: the wires of each layer from the inside out, such as [5, 11, 18], or `auto` for
     /// full rings of copper nearest to `area`; lay radii are least, and all layers have the strand's wire diameter,
     /// pitch and lay.
@@ -340,6 +353,9 @@ pub struct RawLayer {
     /// Angle of the first wire at z = 0.
     #[schemars(extend("x-unit" = "deg", "x-default" = "0 deg"))]
     pub phase: Option<Scalar>,
+    /// Name of its material.
+    #[schemars(extend("x-otherwise" = "strand.material"))]
+    pub material: Option<String>,
 }
 
 /// Lay direction.
@@ -372,6 +388,9 @@ pub struct RawWire {
     /// Name of the layer it is counted in.
     #[schemars(extend("x-otherwise" = "the centreline file's, else wire"))]
     pub layer: Option<String>,
+    /// Name of its material.
+    #[schemars(extend("x-otherwise" = "that of [material] and [bond]"))]
+    pub material: Option<String>,
     /// First point of a straight wire, three lengths.
     #[schemars(extend("x-unit" = "mm", "x-required-when" = "there is no file"))]
     pub from: Option<Triple>,
@@ -402,6 +421,9 @@ pub struct RawSphere {
     /// Diameter.
     #[schemars(extend("x-unit" = "mm", "x-required" = true))]
     pub diameter: Option<Scalar>,
+    /// Name of its material.
+    #[schemars(extend("x-otherwise" = "that of [material] and [bond]"))]
+    pub material: Option<String>,
     /// Centre, three lengths.
     #[schemars(extend("x-unit" = "mm", "x-required" = true))]
     pub position: Option<Triple>,

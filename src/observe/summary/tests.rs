@@ -4,11 +4,13 @@ use crate::engine::view::{RuptureCause, WireInfo};
 use crate::observe::peaks::Peak;
 
 fn info() -> Arc<RunInfo> {
-    let wire = |layer| WireInfo { layer, first: 0, len: 2, diameter: 0.4 };
+    let wire = |layer| WireInfo { layer, material: 0, first: 0, len: 2, diameter: 0.4 };
     Arc::new(RunInfo {
         name: "two layers".into(),
         about: String::new(),
         layers: vec!["core".into(), "outer".into()],
+        materials: vec!["default".into()],
+        sphere_material: Vec::new(),
         wires: vec![wire(0), wire(1), wire(1)],
         wire_particles: 6,
         particles: 6,
