@@ -4,7 +4,7 @@ use super::estimates::{last_rupture_strain, negligible_energy, nominal_stress, r
 use super::view::{RunInfo, WireInfo};
 use crate::reference::helix;
 use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, OneMaterial, Spec};
-use crate::strand::assembly::Assembly;
+use crate::strand::assembly::{Assembly, Wire};
 
 /// What does not change during a run; `gauge` is z of the two grip faces before loading (m), alike when there are none.
 pub fn info(spec: &Spec, assembly: &Assembly, gauge: [f64; 2]) -> RunInfo {
@@ -50,6 +50,7 @@ impl Body<'_> {
             speed_range: [0.0, self.greatest_speed()],
             contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
             strain_end: self.strain_end(),
+            body_stress_end: self.spec.has_several_materials().then(|| self.body_stress_end()),
             negligible_energy: negligible_energy(self.spec, a),
             wave_passage: wave_passage(self.spec, a),
         }
@@ -75,6 +76,23 @@ impl Body<'_> {
         let ends_broken = self.spec.stop.stress_fraction.is_some() || self.spec.stop.strain_after_drop.is_some();
         let end = if ends_broken { stop.min(1.1 * last_rupture_strain(self.spec)) } else { stop };
         end.is_finite().then_some(end)
+    }
+
+    /// Greatest nominal stress of the body (Pa) if all wires are strained as it is, and those of a material carry nothing beyond
+    /// the strain at which its bonds break.
+    fn body_stress_end(&self) -> f64 {
+        let a = self.assembly;
+        let end = self.strain_end().unwrap_or(0.0).max(0.0);
+        let force = |strain: f64| {
+            let of = |wire: &Wire| {
+                let one = self.spec.material_at(wire.material);
+                let carries = strain <= rupture_strain_of(one);
+                if carries { nominal_stress(one, strain) * wire.area() } else { 0.0 }
+            };
+            a.wires.iter().map(of).sum::<f64>()
+        };
+        let most = (0..=200).map(|k| force(end * f64::from(k) / 200.0)).fold(0.0, f64::max);
+        if most > 0.0 { round_up(most / a.area) } else { 0.0 }
     }
 
     /// Fixed ranges of true axial stress (Pa) and plastic strain (-) that the run will not leave.

@@ -54,6 +54,9 @@ pub struct RunInfo {
     pub contact_pressure_range: [f64; 2],
     /// The strain at which the run is expected to end (-), for axes and progress; `None` when unknown.
     pub strain_end: Option<f64>,
+    /// Greatest nominal stress that the body is expected to reach (Pa), where wires are of several materials; of one it
+    /// follows from `stress_range`.
+    pub body_stress_end: Option<f64>,
     /// An energy that is nothing (J): no ratio means anything of energies below it.
     pub negligible_energy: f64,
     /// Time in which an elastic wave runs along the body (s).

@@ -37,7 +37,8 @@ impl Group {
     pub fn stress(self, info: &RunInfo, sample: &Sample) -> Option<f64> {
         let wires = info.wires.iter().zip(&sample.wire_stress).filter(|(wire, _)| self.has(wire));
         let force: f64 = wires.map(|(wire, stress)| stress * wire.area()).sum();
-        (!sample.wire_stress.is_empty()).then(|| force / self.area(info))
+        let area = self.area(info);
+        (!sample.wire_stress.is_empty() && area > 0.0).then(|| force / area)
     }
 }
 

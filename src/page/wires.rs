@@ -9,6 +9,7 @@ use super::source::Source;
 use crate::base::error::Result;
 use crate::base::units::{mpa, percent};
 use crate::engine::view::Sample;
+use crate::observe::materials::{Share, Shares};
 use crate::observe::wording::{layer_label, wire_number};
 use maud::{Markup, html};
 use serde_json::{Value, json};
@@ -32,7 +33,9 @@ pub fn section(source: &Source) -> Result<Section> {
             Some(most) if most < LEAST => {
                 html! { p { "No wire carried axial stress: it stayed below " (LEAST) " MPa." } }
             }
-            Some(_) => charts(source),
+            Some(_) => {
+                html! { (charts(source)) @if let Some(told) = &source.summary.shares_at_greatest_stress { (shares(told)) } }
+            }
         }
     };
     Ok(Section { id: "wires", title: "Stress in layers and wires", body })
@@ -62,6 +65,35 @@ fn charts(source: &Source) -> Markup {
                 }).markup())
             }
         }
+    }
+}
+
+/// Who carried how much when the body carried most.
+fn shares(told: &Shares) -> Markup {
+    let rows = |what: &'static str, shares: &[Share]| {
+        html! {
+            @for share in shares {
+                tr {
+                    th { (share.name) } td { (what) } td.number { (format!("{:.3}", share.area_mm2)) }
+                    td.number { (format!("{:.1}", share.force_n)) }
+                    td.number { (format!("{:.1}", 100.0 * share.force_n / told.force_n)) }
+                    td.number { (format!("{:.1}", share.stress_mpa)) }
+                }
+            }
+        }
+    };
+    html! {
+        div.scroll { table {
+            caption {
+                "Who carried the greatest force, " (format!("{:.1} N at {:.3} %", told.force_n, told.strain_percent))
+                ": forces along the axis, stresses along the wires"
+            }
+            thead { tr {
+                th { "" } th { "" } th.number { "section (mm²)" } th.number { "force (N)" } th.number { "share (%)" }
+                th.number { "mean nominal stress (MPa)" }
+            } }
+            tbody { (rows("material", &told.materials)) (rows("layer", &told.layers)) }
+        } }
     }
 }
 

@@ -11,7 +11,7 @@ use super::style::Rgb;
 use crate::base::ticks::{label, ticks};
 use crate::base::units::mm;
 use crate::engine::view::{BondState, WireInfo};
-use crate::observe::{materials, unrolled};
+use crate::observe::unrolled;
 
 /// Breaks nearer together than this, in units, are numbered as one group: beside it there must be room for the
 /// columns of the next.
@@ -98,9 +98,7 @@ fn layers(canvas: &mut Canvas, panel: Rect, rows: &Rows, data: &Data) {
     for layer in &rows.map.layers {
         let middle = rows.area.y + rows.height * layer.row as f32;
         canvas.text(x, middle - u, name, &data.info.layers[layer.layer]);
-        let material = materials::of_layer(data.info, layer.layer);
-        let below = material.map_or(layer.numbers(), |material| format!("{}, {material}", layer.numbers()));
-        canvas.text(x, middle + 12.0 * u, detail, &below);
+        canvas.text(x, middle + 12.0 * u, detail, &layer.numbers());
     }
 }
 

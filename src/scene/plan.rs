@@ -163,14 +163,19 @@ fn rupture_component(spec: &Spec, rupture: bool) -> Component {
     Component { name: "rupture", state: on(rupture), reason }
 }
 
+/// A strain (-) in per cent, without the rounding of the factor.
+fn per_cent(strain: f64) -> f64 {
+    (1e12 * strain).round() / 1e10
+}
+
 fn criterion(rupture: &RuptureSpec) -> String {
     use super::spec::RuptureCriterion as C;
     match rupture.criterion {
-        C::PlasticStrain { strain } => format!("plastic-strain at {} %", 100.0 * strain),
+        C::PlasticStrain { strain } => format!("plastic-strain at {} %", per_cent(strain)),
         C::BeamStress { tensile, shear, .. } => {
             format!("beam-stress at {} MPa tension, {} MPa shear", tensile / 1e6, shear / 1e6)
         }
-        C::FibreStrain { strain } => format!("fibre-strain at {} %", 100.0 * strain),
+        C::FibreStrain { strain } => format!("fibre-strain at {} %", per_cent(strain)),
     }
 }
 

@@ -118,6 +118,7 @@ fn info() -> RunInfo {
         speed_range: [0.0, 10.0],
         contact_pressure_range: [0.0, 40e6],
         strain_end: Some(STRAIN_END),
+        body_stress_end: None,
         negligible_energy: 1e-12,
         wave_passage: 3e-5,
     }

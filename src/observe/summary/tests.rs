@@ -22,6 +22,7 @@ fn info() -> Arc<RunInfo> {
         speed_range: [0.0, 10.0],
         contact_pressure_range: [0.0, 1.0],
         strain_end: Some(0.3),
+        body_stress_end: None,
         negligible_energy: 1e-12,
         wave_passage: 3e-5,
     })
