@@ -2,44 +2,7 @@
 //! not; the others of a scene with several stand in [`Spec::further`]. A material's number is its place in that order, which
 //! is the order in which bodies name them: layers from the inside out, wires, spheres.
 
-use super::spec::{BondSpec, ContactSpec, Hardness, Material, NormalSpec, RuptureSpec, Spec};
-
-/// A material beside the first one of a scene.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MaterialSpec {
-    /// Its name; `None` for that of `[material]` and `[bond]`.
-    pub name: Option<String>,
-    /// Elastic constants and density.
-    pub material: Material,
-    /// What bonds of it do.
-    pub bond: BondSpec,
-    /// Limiting contact pressure p_y (Pa); `None` where contacts are elastic, or where there are none.
-    pub limiting_pressure: Option<f64>,
-    /// By which rule that comes from the hardening law; `None` where it is given.
-    pub hardness: Option<Hardness>,
-}
-
-/// Friction between bodies of two materials, which may be the same.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PairSpec {
-    /// Numbers of the two materials, the lower one first.
-    pub materials: [usize; 2],
-    /// Coulomb friction coefficient (-).
-    pub friction: f64,
-}
-
-/// One of the materials of a scene, wherever it stands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OneMaterial<'a> {
-    /// Its name; `None` for that of `[material]` and `[bond]`.
-    pub name: Option<&'a str>,
-    /// Elastic constants and density.
-    pub material: &'a Material,
-    /// What bonds of it do.
-    pub bond: &'a BondSpec,
-    /// Limiting contact pressure p_y (Pa); `None` where contacts are elastic, or where there are none.
-    pub limiting_pressure: Option<f64>,
-}
+use super::spec::{BondSpec, ContactSpec, NormalSpec, OneMaterial, RuptureSpec, Spec};
 
 impl OneMaterial<'_> {
     /// Name of the material of `[material]` and `[bond]` beside others.

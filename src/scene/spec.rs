@@ -2,7 +2,6 @@
 
 /// Pictures are described by the words that people write.
 pub use super::look::{ColourBy, Theme, View};
-pub use super::materials::{MaterialSpec, OneMaterial, PairSpec};
 /// The hardening law is stated as it is computed.
 pub use crate::law::bond::hardening::Hardening as HardeningSpec;
 use glam::DVec3;
@@ -74,6 +73,43 @@ impl Material {
     pub fn shear(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))
     }
+}
+
+/// A material beside the first one of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialSpec {
+    /// Its name; `None` for that of `[material]` and `[bond]`.
+    pub name: Option<String>,
+    /// Elastic constants and density.
+    pub material: Material,
+    /// What bonds of it do.
+    pub bond: BondSpec,
+    /// Limiting contact pressure p_y (Pa); `None` where contacts are elastic, or where there are none.
+    pub limiting_pressure: Option<f64>,
+    /// By which rule that comes from the hardening law; `None` where it is given.
+    pub hardness: Option<Hardness>,
+}
+
+/// Friction between bodies of two materials, which may be the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairSpec {
+    /// Numbers of the two materials, the lower one first.
+    pub materials: [usize; 2],
+    /// Coulomb friction coefficient (-).
+    pub friction: f64,
+}
+
+/// One of the materials of a scene, wherever it stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OneMaterial<'a> {
+    /// Its name; `None` for that of `[material]` and `[bond]`.
+    pub name: Option<&'a str>,
+    /// Elastic constants and density.
+    pub material: &'a Material,
+    /// What bonds of it do.
+    pub bond: &'a BondSpec,
+    /// Limiting contact pressure p_y (Pa); `None` where contacts are elastic, or where there are none.
+    pub limiting_pressure: Option<f64>,
 }
 
 /// Bonds: law, rupture, damping.

@@ -1,7 +1,7 @@
 //! Bonds of several materials: a stage of each, with its own law, damping and rupture, which leaves the bonds of the others
 //! alone. So every loop stays monomorphic over one law, whichever laws meet in a scene.
 
-use super::Bonds;
+use super::stage::Bonds;
 use crate::base::lanes::BLOCK;
 use crate::base::recorder::Function;
 use crate::engine::bytes::{Bytes, behind};
