@@ -43,10 +43,13 @@ fn state<'a>(plan: &'a Plan, name: &str) -> &'a str {
 
 /// Bonds, rotations, plastic state, rupture, scatter, contacts, friction, grips of each built-in scene: `+` runs,
 /// `-` left out, `r` from the first rupture on.
-const TABLE: [(&str, &str); 7] = [
+const TABLE: [(&str, &str); 10] = [
     ("ka4", "++++++++"),
     ("jaw-grip", "++++++++"),
     ("strand-1x7", "++++++++"),
+    ("strand-1x19", "++++++++"),
+    ("hard-drawn-7", "++++++++"),
+    ("acsr", "++++++++"),
     ("single-wire", "+-+++--+"),
     ("cantilever", "++-----+"),
     ("torsion", "+++----+"),

@@ -103,7 +103,17 @@ fn good_scenes_are_read_and_written_back_equal() {
 #[test]
 fn shipped_scenes_are_read_and_written_back_equal() {
     let names: Vec<&str> = builtin::list().iter().map(|(name, _)| *name).collect();
-    for name in ["ka4", "single-wire", "strand-1x7", "two-spheres", "cantilever", "torsion", "jaw-grip"] {
+    for name in [
+        "ka4",
+        "single-wire",
+        "strand-1x7",
+        "strand-1x19",
+        "hard-drawn-7",
+        "acsr",
+        "two-spheres",
+        "torsion",
+        "jaw-grip",
+    ] {
         assert!(names.contains(&name), "{name} is not shipped");
     }
     for (name, text) in builtin::list() {

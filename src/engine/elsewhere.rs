@@ -96,6 +96,9 @@ impl Engine {
             what: format!("steps of this scene cannot be recorded: {what}"),
             help: Some("run it on the processor".into()),
         };
+        if self.spec.has_several_materials() {
+            return Err(refused("its bodies are of several materials"));
+        }
         let unrecordable = |reason: Unrecordable| refused(&reason.to_string());
         let mut pairs = None;
         if let Some(contacts) = &self.contacts {

@@ -1,10 +1,10 @@
 //! What those who draw and record must know before the first step: names, sizes, and ranges that a run will not leave.
 
-use super::estimates::{negligible_energy, nominal_stress, rupture_strain, wave_passage};
+use super::estimates::{last_rupture_strain, negligible_energy, nominal_stress, rupture_strain_of, wave_passage};
 use super::view::{RunInfo, WireInfo};
 use crate::reference::helix;
-use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, Spec};
-use crate::strand::assembly::Assembly;
+use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, OneMaterial, Spec};
+use crate::strand::assembly::{Assembly, Wire};
 
 /// What does not change during a run; `gauge` is z of the two grip faces before loading (m), alike when there are none.
 pub fn info(spec: &Spec, assembly: &Assembly, gauge: [f64; 2]) -> RunInfo {
@@ -27,10 +27,18 @@ impl Body<'_> {
             name: self.spec.name.clone(),
             about: self.spec.about.clone(),
             layers: a.layers.iter().map(|l| l.name.clone()).collect(),
+            sphere_material: a.sphere_material.clone(),
+            materials: self.spec.materials().map(|one| one.label().to_owned()).collect(),
             wires: a
                 .wires
                 .iter()
-                .map(|w| WireInfo { layer: w.layer, first: w.first, len: w.len, diameter: w.diameter })
+                .map(|w| WireInfo {
+                    layer: w.layer,
+                    material: w.material,
+                    first: w.first,
+                    len: w.len,
+                    diameter: w.diameter,
+                })
                 .collect(),
             wire_particles: a.wire_particles,
             particles: a.len(),
@@ -42,6 +50,7 @@ impl Body<'_> {
             speed_range: [0.0, self.greatest_speed()],
             contact_pressure_range: [0.0, self.contact_pressure_range(stress_range[1])],
             strain_end: self.strain_end(),
+            body_stress_end: self.spec.has_several_materials().then(|| self.body_stress_end()),
             negligible_energy: negligible_energy(self.spec, a),
             wave_passage: wave_passage(self.spec, a),
         }
@@ -65,22 +74,47 @@ impl Body<'_> {
             return stop.is_finite().then_some(-stop);
         }
         let ends_broken = self.spec.stop.stress_fraction.is_some() || self.spec.stop.strain_after_drop.is_some();
-        let end = if ends_broken { stop.min(1.1 * rupture_strain(self.spec)) } else { stop };
+        let end = if ends_broken { stop.min(1.1 * last_rupture_strain(self.spec)) } else { stop };
         end.is_finite().then_some(end)
+    }
+
+    /// Greatest nominal stress of the body (Pa) if all wires are strained as it is, and those of a material carry nothing beyond
+    /// the strain at which its bonds break.
+    fn body_stress_end(&self) -> f64 {
+        let a = self.assembly;
+        let end = self.strain_end().unwrap_or(0.0).max(0.0);
+        let force = |strain: f64| {
+            let of = |wire: &Wire| {
+                let one = self.spec.material_at(wire.material);
+                let carries = strain <= rupture_strain_of(one);
+                if carries { nominal_stress(one, strain) * wire.area() } else { 0.0 }
+            };
+            a.wires.iter().map(of).sum::<f64>()
+        };
+        let most = (0..=200).map(|k| force(end * f64::from(k) / 200.0)).fold(0.0, f64::max);
+        if most > 0.0 { round_up(most / a.area) } else { 0.0 }
     }
 
     /// Fixed ranges of true axial stress (Pa) and plastic strain (-) that the run will not leave.
     fn ranges(&self) -> ([f64; 2], [f64; 2]) {
-        let strain = self.strain_end().unwrap_or(0.0).min(rupture_strain(self.spec));
-        match &self.spec.bond.law {
+        let each = self.spec.materials().map(|one| self.ranges_of(one));
+        let wider = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
+        each.reduce(|(stress, plastic), (more, further)| (wider(stress, more), wider(plastic, further)))
+            .unwrap_or_default()
+    }
+
+    /// The same of one material.
+    fn ranges_of(&self, one: OneMaterial) -> ([f64; 2], [f64; 2]) {
+        let strain = self.strain_end().unwrap_or(0.0).min(rupture_strain_of(one));
+        let OneMaterial { material, bond, .. } = one;
+        match &bond.law {
             BondLawSpec::ElastoPlastic(h) => {
                 let p = if strain > 0.0 { strain.ln_1p() } else { 0.01 };
                 ([0.0, round_up(h.stress(p))], [0.0, round_up(p)])
             }
             BondLawSpec::Elastic => {
-                let impact = self.spec.material.young * self.greatest_speed()
-                    / (self.spec.material.young / self.spec.material.density).sqrt();
-                let pulled = self.spec.material.young * strain.abs();
+                let impact = material.young * self.greatest_speed() / (material.young / material.density).sqrt();
+                let pulled = material.young * strain.abs();
                 let top = round_up(pulled.max(impact).max(1e6));
                 ([-top, top], [0.0, 1.0])
             }
@@ -96,15 +130,21 @@ impl Body<'_> {
     /// own pressure.
     fn contact_pressure_range(&self, stress: f64) -> f64 {
         let a = self.assembly;
-        let end = self.strain_end().unwrap_or(0.0).min(rupture_strain(self.spec)).max(0.0);
-        let pressing = |strain: f64| nominal_stress(self.spec, strain) / (1.0 + strain).powf(1.5);
-        let tension = (0..=50).map(|k| pressing(end * f64::from(k) / 50.0)).fold(0.0, f64::max);
+        let tension = |number: usize| {
+            let one = self.spec.material_at(number);
+            let end = self.strain_end().unwrap_or(0.0).min(rupture_strain_of(one)).max(0.0);
+            let pressing = |strain: f64| nominal_stress(one, strain) / (1.0 + strain).powf(1.5);
+            (0..=50).map(|k| pressing(end * f64::from(k) / 50.0)).fold(0.0, f64::max)
+        };
         let (mut press, mut deepest) = (0.0, 0.0f64);
         for (k, layer) in a.layers.iter().enumerate().rev() {
             let wires = a.wires.iter().filter(|w| w.layer == k);
             let (count, Some(wire)) = (wires.clone().count(), wires.clone().next()) else { continue };
             if layer.lay_radius > 0.0 && layer.pitch.is_finite() {
-                press += count as f64 * tension * wire.area() * helix::curvature(layer.lay_radius, layer.pitch);
+                press += count as f64
+                    * tension(wire.material)
+                    * wire.area()
+                    * helix::curvature(layer.lay_radius, layer.pitch);
             }
             deepest = deepest.max(2.0 * press / (count as f64 * wire.diameter));
         }

@@ -6,7 +6,7 @@
 //! wave, slow where wires flow, and leave plastic strain uneven behind it. So the whole field is sped up and slowed down
 //! together, as it is started, and the work of that is booked ([`super::grips::Holds`]).
 
-use super::estimates::{nominal_stress, rupture_strain};
+use super::estimates::passage;
 use super::state::State;
 use crate::scene::spec::{AdaptiveSpec, DriveSpec, Spec};
 
@@ -57,7 +57,7 @@ impl Rule {
         else {
             return None;
         };
-        let passage = length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt();
+        let passage = passage(spec, length);
         Some(Self {
             slow,
             from: *from,
@@ -127,18 +127,18 @@ impl LoadingRate {
         self.acceleration = needed.min(self.rule.acceleration);
     }
 
-    /// Time that the pull is expected to take from here to `strain` (s), by the law of the bonds alone: each wire strained as
-    /// the body, ruptures where the criterion puts them. `now` is where it stands, `area` the body's (m²).
-    pub fn time_to(&self, strain: f64, now: Ahead, spec: &Spec, area: f64) -> f64 {
+    /// Time that the pull is expected to take from here to `strain` (s), by the laws of the bonds alone: each wire strained as
+    /// the body, the first rupture at the strain `breaks` (-). `now` is where it stands, `force` what the body carries at a
+    /// strain (N).
+    pub fn time_to(&self, strain: f64, now: Ahead, breaks: f64, force: impl Fn(f64) -> f64) -> f64 {
         let rule = &self.rule;
         let part = (strain - now.strain) / f64::from(PARTS);
-        let volume = area * rule.length;
         let (mut work, mut time) = (now.work, 0.0);
         for k in 0..PARTS {
             let middle = now.strain + (f64::from(k) + 0.5) * part;
-            let left = (rupture_strain(spec) - middle).max(0.0);
+            let left = (breaks - middle).max(0.0);
             time += (part * rule.length).abs() / rule.speed(Ahead { work, strain: middle, left });
-            work += nominal_stress(spec, middle) * part * volume;
+            work += force(middle) * part * rule.length;
         }
         time
     }

@@ -158,6 +158,14 @@ impl Measures {
         if self.area > 0.0 { self.mean(FORCE + 1) / self.area } else { 0.0 }
     }
 
+    /// Part along z of the force of a wire (N): that of [`Self::wire_force`], `slope` being the cosine between a bond and z (-).
+    pub fn wire_pull(&self, wire: usize, whole: &[bool], slope: impl Fn(usize) -> f64) -> f64 {
+        let range = self.of_wire[wire].clone();
+        let count = range.len().max(1) as f64;
+        let holds = range.filter(|i| whole[self.middle[*i]]);
+        holds.map(|i| self.mean(BONDS + i) * slope(self.middle[i])).sum::<f64>() / count
+    }
+
     /// Axial force of a wire (N): mean over the bonds in the middle of the gauge, in which a broken one counts with zero
     /// from the moment at which it broke, whatever it carried before.
     pub fn wire_force(&self, wire: usize, whole: &[bool]) -> f64 {

@@ -110,8 +110,12 @@ impl Engine {
     /// nothing; damping and rupture are the scene's.
     ///
     /// # Errors
-    /// As for [`Engine::new`].
+    /// As for [`Engine::new`], and where the scene has several materials.
     pub fn with_law<L: BondLaw>(spec: &Spec, plan: &Plan, assembly: Assembly, law: L) -> Result<Self> {
+        if spec.has_several_materials() {
+            let help = "such a law is that of all wires: let them be of one material";
+            return Err(Error::input("a bond law of one's own, and several materials", help));
+        }
         Self::set_up(spec, plan, assembly, |spec, plan, assembly| bonds::with_law(law, spec, plan, assembly))
     }
 
@@ -161,11 +165,13 @@ impl Engine {
 
     /// Adds the contact stage; between two steps.
     fn add_contacts(&mut self) {
-        let Some(contact) = &self.spec.contact else { return };
+        let (Some(contact), Some(stage)) = (&self.spec.contact, contact::build(&self.spec, &self.assembly)) else {
+            return;
+        };
         let diameter = 2.0 * self.assembly.radius.iter().copied().fold(0.0, f64::max);
         self.state.make_room_for_contacts();
         self.contacts = Some(ContactPart {
-            stage: contact::build(contact, &self.spec.material, &self.assembly),
+            stage,
             neighbours: Neighbours::new(&self.assembly, contact.skin * diameter, contact.shape),
             stale: true,
         });
@@ -310,7 +316,7 @@ impl Engine {
 
     /// Whether wires thin as they stretch.
     fn thins(&self) -> bool {
-        matches!(self.spec.bond.law, BondLawSpec::ElastoPlastic(_))
+        self.spec.materials().any(|one| matches!(one.bond.law, BondLawSpec::ElastoPlastic(_)))
     }
 
     /// Breaks what has reached its limit and books it.
@@ -494,7 +500,14 @@ impl Engine {
     /// any other drive.
     pub fn adaptive_time(&self, strain: f64) -> Option<f64> {
         let now = Ahead { work: self.holds.work, strain: self.holds.strain(), left: 0.0 };
-        Some(self.holds.loading_rate.as_ref()?.time_to(strain, now, &self.spec, self.assembly.area))
+        let stress = |strain: f64| estimates::body_stress(&self.spec, &self.assembly, strain);
+        let breaks = estimates::rupture_strain(&self.spec);
+        Some(
+            self.holds
+                .loading_rate
+                .as_ref()?
+                .time_to(strain, now, breaks, |strain| stress(strain) * self.assembly.area),
+        )
     }
 
     /// Notices since the last call, in order.

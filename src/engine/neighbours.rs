@@ -435,6 +435,7 @@ mod tests {
             inertia: vec![1.0; n],
             rest_length: vec![0.0; n],
             wire_of: vec![u32::MAX; n],
+            sphere_material: vec![0; n],
             length: 0.0,
             area: 0.0,
             position,

@@ -97,10 +97,10 @@ fn impact_step(view: &StepView) -> f64 {
     if view.contacts.is_none() || spheres.is_empty() {
         return f64::INFINITY;
     }
-    let Material { young, poisson, .. } = view.spec.material;
-    let modulus = effective_modulus(young, poisson, young, poisson);
     let speed = 2.0 * view.fastest();
     let impact = |p: usize| {
+        let Material { young, poisson, .. } = *view.spec.material_at(view.assembly.material_of(p)).material;
+        let modulus = effective_modulus(young, poisson, young, poisson);
         let mass = 0.5 * view.state.mass[p];
         2.868 * (mass * mass / (view.state.radius[p] * modulus * modulus * speed)).powf(0.2)
     };

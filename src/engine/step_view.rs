@@ -105,6 +105,7 @@ impl StepView<'_> {
             torque: self.measures.torque(),
             layer_stress,
             wire_stress,
+            wire_pull: self.wire_pull(),
             wires_broken: self.measures.wires_broken(),
             bonds_broken: self.ruptures,
             contacts: self.contacts.map_or(0, |c| c.active()),
@@ -117,6 +118,17 @@ impl StepView<'_> {
     /// which those that are broken carry nothing. A wire that broke there reports what its pieces still carry by friction.
     pub fn wire_stress(&self, wire: usize) -> f64 {
         self.measures.wire_force(wire, &self.state.whole) / self.assembly.wires[wire].area()
+    }
+
+    /// [`Sample::wire_pull`] (N).
+    fn wire_pull(&self) -> Vec<f64> {
+        let x = &self.state.x;
+        let slope = |slot: usize| {
+            let along = x.get(slot + 1) - x.get(slot);
+            along.z / along.length()
+        };
+        let wires = 0..if self.spec.has_several_materials() { self.assembly.wires.len() } else { 0 };
+        wires.map(|wire| self.measures.wire_pull(wire, &self.state.whole, slope)).collect()
     }
 
     /// The energy ledger now.

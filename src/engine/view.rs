@@ -27,6 +27,10 @@ pub struct RunInfo {
     pub about: String,
     /// Layer names, inside out.
     pub layers: Vec<String>,
+    /// Names of the materials; one where all bodies are of the same.
+    pub materials: Vec<String>,
+    /// Index into `materials` of each free sphere.
+    pub sphere_material: Vec<usize>,
     /// Wires in order; wire `w` is shown to people as number `w + 1`.
     pub wires: Vec<WireInfo>,
     /// Number of particles in wires; free spheres follow.
@@ -50,6 +54,9 @@ pub struct RunInfo {
     pub contact_pressure_range: [f64; 2],
     /// The strain at which the run is expected to end (-), for axes and progress; `None` when unknown.
     pub strain_end: Option<f64>,
+    /// Greatest nominal stress that the body is expected to reach (Pa), where wires are of several materials; of one it
+    /// follows from `stress_range`.
+    pub body_stress_end: Option<f64>,
     /// An energy that is nothing (J): no ratio means anything of energies below it.
     pub negligible_energy: f64,
     /// Time in which an elastic wave runs along the body (s).
@@ -61,6 +68,11 @@ impl RunInfo {
     /// wire that is only turned has none.
     pub fn is_pulled(&self) -> bool {
         self.gauge.is_some() && self.strain_end.is_some()
+    }
+
+    /// Whether bodies are of more than one material.
+    pub fn has_several_materials(&self) -> bool {
+        self.materials.len() > 1
     }
 
     /// Whether particle `i` lies in a grip before loading.
@@ -87,6 +99,8 @@ impl BondState {
 pub struct WireInfo {
     /// Index into [`RunInfo::layers`].
     pub layer: usize,
+    /// Index into [`RunInfo::materials`].
+    pub material: usize,
     /// First particle.
     pub first: usize,
     /// Number of particles.
@@ -96,6 +110,11 @@ pub struct WireInfo {
 }
 
 impl WireInfo {
+    /// Its section before loading (m²).
+    pub fn area(&self) -> f64 {
+        std::f64::consts::FRAC_PI_4 * self.diameter * self.diameter
+    }
+
     /// Its particles.
     pub fn particles(&self) -> std::ops::Range<usize> {
         self.first..self.first + self.len
@@ -129,6 +148,8 @@ pub struct Sample {
     /// Nominal axial stress of each wire at mid-gauge (Pa): the mean over its bonds in the middle twentieth of the gauge, of
     /// which broken ones carry nothing.
     pub wire_stress: Vec<f64>,
+    /// Part of the force of each wire along z at mid-gauge (N), where wires are of several materials; empty elsewhere.
+    pub wire_pull: Vec<f64>,
     /// Wires broken so far.
     pub wires_broken: usize,
     /// Bonds broken so far.

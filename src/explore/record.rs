@@ -306,6 +306,7 @@ fn scale(info: &RunInfo, by: ColourBy) -> Value {
     let stops = (0..STOPS).map(|k| hex(scale.at(k as f64 / (STOPS - 1) as f64)));
     let categories = match by {
         ColourBy::Layer => info.layers.len(),
+        ColourBy::Material => info.materials.len(),
         ColourBy::Wire => info.wires.len(),
         _ => 0,
     };

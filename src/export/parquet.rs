@@ -149,7 +149,7 @@ impl Writer {
         self.create(info, "curve.parquet", &curve)?.filled(&curve, &open.samples)?;
         let ruptures = tables::ruptures(info);
         self.create(info, "ruptures.parquet", &ruptures)?.filled(&ruptures, &open.ruptures)?;
-        let wires = tables::wires();
+        let wires = tables::wires(info);
         let rows: Vec<_> = open.wires.rows().collect();
         self.create(info, "wires.parquet", &wires)?.filled(&wires, &rows)?;
         let series = wire_series();

@@ -12,7 +12,7 @@ pub fn range(info: &RunInfo, by: ColourBy) -> Option<[f64; 2]> {
         ColourBy::Utilisation => Some([0.0, 1.0]),
         ColourBy::ContactPressure => Some(info.contact_pressure_range),
         ColourBy::Velocity => Some(info.speed_range),
-        ColourBy::Layer | ColourBy::Wire => None,
+        ColourBy::Layer | ColourBy::Wire | ColourBy::Material => None,
     }
 }
 
@@ -21,6 +21,6 @@ pub fn shown(by: ColourBy, value: f64) -> f64 {
     match by {
         ColourBy::Stress | ColourBy::ContactPressure => mpa(value),
         ColourBy::PlasticStrain | ColourBy::Utilisation => percent(value),
-        ColourBy::Velocity | ColourBy::Layer | ColourBy::Wire => value,
+        ColourBy::Velocity | ColourBy::Layer | ColourBy::Wire | ColourBy::Material => value,
     }
 }

@@ -6,6 +6,7 @@ pub mod column;
 pub mod files;
 pub mod guard;
 pub mod limits;
+pub mod materials;
 pub mod origin;
 pub mod partial;
 pub mod peaks;

@@ -1,5 +1,6 @@
 //! The short report at the end of a run, in plain words.
 
+use super::materials::{Share, Shares};
 use super::summary::{Break, Extreme, ExtremeKind, RunSummary};
 use crate::base::wording::counted;
 use std::fmt::Write;
@@ -19,6 +20,12 @@ pub fn report(summary: &RunSummary) -> String {
         };
         line(kind.name(), format!("{stress_mpa:.2} MPa{remark}"));
         line(there, format!("{strain_percent:.2} %"));
+    }
+    if let Some(force) = summary.breaking_force_n {
+        line("breaking force", newton(force));
+    }
+    if let Some(shares) = &summary.shares_at_greatest_stress {
+        line("  carried by", carried(shares));
     }
     if let Some(drop) = summary.elongation_at_20_percent_drop_percent {
         line("  at 20 % drop", format!("{drop:.2} %"));
@@ -83,14 +90,26 @@ pub fn one_line(summary: &RunSummary) -> String {
     format!("{}: {}; {}", summary.scene, parts.join(", "), summary.stopped_because)
 }
 
+/// A force in N, or in kN where that is shorter.
+fn newton(force: f64) -> String {
+    if force.abs() < 1e4 { format!("{force:.1} N") } else { format!("{:.3} kN", force * 1e-3) }
+}
+
+/// What each material carried at the greatest stress.
+fn carried(shares: &Shares) -> String {
+    let one = |share: &Share| format!("{} {} ({:.1} MPa)", share.name, newton(share.force_n), share.stress_mpa);
+    shares.materials.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
 /// Of one draw of the scatter it is said that the place is that of this strand.
 fn first_rupture(first: Option<&Break>, one_draw: bool) -> String {
     let Some(b) = first else { return "none".into() };
     format!(
-        "{}wire {}, {} layer, at z = {:.1} mm ({:.1} mm before loading), strain {:.2} %, {:.0} MPa ({})",
+        "{}wire {}, {} layer{}, at z = {:.1} mm ({:.1} mm before loading), strain {:.2} %, {:.0} MPa ({})",
         if one_draw { "in this strand " } else { "" },
         b.wire,
         b.layer,
+        b.material.iter().map(|material| format!(", {material}")).collect::<String>(),
         b.z_mm,
         b.rest_z_mm,
         b.strain_percent,

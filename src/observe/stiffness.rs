@@ -2,8 +2,9 @@
 
 use crate::base::finding::{Finding, StiffnessCause};
 use crate::base::units::{gpa, percent};
+use crate::engine::estimates;
 use crate::engine::view::Sample;
-use crate::scene::spec::{BondLawSpec, RuptureCriterion, Shape, Spec};
+use crate::scene::spec::{BondLawSpec, OneMaterial, RuptureCriterion, Shape, Spec};
 use crate::strand::theory::Theory;
 use serde::{Deserialize, Serialize};
 
@@ -123,17 +124,22 @@ pub fn passage(spec: &Spec) -> Option<f64> {
         (None, Some(crate::scene::spec::PathSpec::Straight { from, to })) => from.distance(*to),
         _ => return None,
     };
-    Some(length / (spec.material.young / (spec.material.density * spec.time.mass_scale)).sqrt())
+    Some(estimates::passage(spec, length))
 }
 
 /// Strain up to which rows are elastic (-).
 fn elastic_strain(spec: &Spec) -> f64 {
-    let young = spec.material.young;
-    let yields = match &spec.bond.law {
+    spec.materials().map(elastic_strain_of).fold(f64::INFINITY, f64::min)
+}
+
+/// The same of one material.
+fn elastic_strain_of(one: OneMaterial) -> f64 {
+    let young = one.material.young;
+    let yields = match &one.bond.law {
         BondLawSpec::Elastic => f64::INFINITY,
         BondLawSpec::ElastoPlastic(hardening) => hardening.stress(0.0) / young,
     };
-    let breaks = match spec.bond.rupture.as_ref().map(|r| &r.criterion) {
+    let breaks = match one.bond.rupture.as_ref().map(|r| &r.criterion) {
         Some(RuptureCriterion::BeamStress { tensile, .. }) => tensile / young,
         Some(RuptureCriterion::FibreStrain { strain }) => *strain,
         Some(RuptureCriterion::PlasticStrain { .. }) | None => f64::INFINITY,

@@ -51,5 +51,5 @@ pub fn mark(rupture: &Rupture) -> [f64; 2] {
 pub fn expected(info: &RunInfo) -> [f64; 2] {
     let end = info.strain_end.unwrap_or(0.0);
     // True stress over stretch is nominal stress.
-    place(end, info.stress_range[1] / (1.0 + end))
+    place(end, info.body_stress_end.unwrap_or(info.stress_range[1] / (1.0 + end)))
 }

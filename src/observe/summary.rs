@@ -3,6 +3,7 @@
 use super::Observer;
 use super::guard::QuasiStatic;
 use super::limits::Limits;
+use super::materials::{Shares, of_wire};
 use super::peaks::{Monitor, Peaks};
 use super::stiffness::{Rows, Stiffness};
 use super::tables::{cause, layer_name};
@@ -12,7 +13,7 @@ use crate::base::error::Result;
 use crate::base::finding::{Failure, Finding, Instant, Notice, StopReason, Stopped};
 use crate::base::units::{mm, mpa, percent};
 use crate::base::worst::renew;
-use crate::engine::view::{Energy, RunInfo, Rupture, Sample};
+use crate::engine::view::{Energy, RunInfo, Rupture, Sample, WireInfo};
 use crate::scene::spec::{DriveSpec, Spec};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -30,12 +31,18 @@ pub struct RunSummary {
     /// Greatest nominal stress of all steps (MPa), of a body that failed: a bond broke, and stress fell 20 % below its peak.
     /// `None` for any other, whose strength the run does not know, however it ended.
     pub tensile_strength_mpa: Option<f64>,
+    /// The same as a force: that of the upper grip (N).
+    #[serde(default)]
+    pub breaking_force_n: Option<f64>,
     /// Strain at the tensile strength (%); `None` without one.
     pub fracture_elongation_percent: Option<f64>,
     /// Strain at which the stress has fallen 20 % below its peak (%); `None` when it never did.
     pub elongation_at_20_percent_drop_percent: Option<f64>,
     /// Greatest nominal stress of all steps (MPa), whether the body failed or not; `None` unless it was pulled.
     pub greatest_stress_mpa: Option<f64>,
+    /// The same as a force: that of the upper grip (N).
+    #[serde(default)]
+    pub greatest_force_n: Option<f64>,
     /// Strain at the greatest stress (%).
     pub strain_at_greatest_stress_percent: Option<f64>,
     /// Least nominal stress of all steps (MPa), tension positive, so that it is negative; `None` unless the body was pushed.
@@ -59,6 +66,9 @@ pub struct RunSummary {
     /// Initial stiffness beside strand theory; `None` where that has nothing to say.
     #[serde(default)]
     pub stiffness: Option<Stiffness>,
+    /// Who carried how much in the row of the greatest stress; `None` where wires are of one material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shares_at_greatest_stress: Option<Shares>,
     /// Energy ledger at the end (J).
     pub energy: Energy,
     /// What the ledger does not account for, over the work done (%); `None` when the work is negligible.
@@ -210,6 +220,9 @@ pub struct Break {
     pub wire: usize,
     /// Layer.
     pub layer: String,
+    /// Material of the wire, where wires are of several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// Where it broke, stretched (mm).
     pub z_mm: f64,
     /// Where that was before loading (mm).
@@ -261,6 +274,8 @@ pub struct Summariser {
     rows: Monitor,
     /// What was seen at every step.
     peaks: Option<Peaks>,
+    /// Who carried how much in the row of the greatest force so far.
+    shares: Option<Shares>,
     /// Rows that tell the initial stiffness.
     elastic: Rows,
     last: Sample,
@@ -286,6 +301,7 @@ impl Summariser {
         let energy = self.last.energy;
         let negligible = self.info.as_ref().map_or(0.0, |info| info.negligible_energy);
         let firsts = self.first_breaks();
+        let area: f64 = self.info.iter().flat_map(|info| &info.wires).map(WireInfo::area).sum();
         let stiffness = self.elastic.stiffness(spec);
         let off = stiffness.as_ref().and_then(|s| s.finding(spec));
         let at = Instant { step: self.last.step, time: self.last.time, strain: gripped.then_some(self.last.strain) };
@@ -298,9 +314,11 @@ impl Summariser {
             stopped: closing.stopped,
             stopped_because: because(&closing, notices.first()),
             tensile_strength_mpa: strength.map(|peak| mpa(peak.stress)),
+            breaking_force_n: strength.map(|peak| peak.stress * area),
             fracture_elongation_percent: strength.map(|peak| percent(peak.strain)),
             elongation_at_20_percent_drop_percent: drop.map(percent),
             greatest_stress_mpa: tension.map(|peak| mpa(peak.stress)),
+            greatest_force_n: tension.map(|peak| peak.stress * area),
             strain_at_greatest_stress_percent: tension.map(|peak| percent(peak.strain)),
             compressive_peak_mpa: compression.map(|peak| mpa(peak.stress)),
             strain_at_compressive_peak_percent: compression.map(|peak| percent(peak.strain)),
@@ -312,6 +330,7 @@ impl Summariser {
             final_strain_percent: measured(Some(percent(self.last.strain))),
             residual_stress_mpa: measured(Some(mpa(self.last.stress))),
             stiffness,
+            shares_at_greatest_stress: self.shares.clone().filter(|_| tension.is_some()),
             energy,
             energy_residual_percent: (energy.work.abs() > negligible).then(|| percent(energy.residual() / energy.work)),
             quasi_static: closing.quasi_static,
@@ -335,6 +354,7 @@ impl Summariser {
             order: rupture.order,
             wire: rupture.wire + 1,
             layer: layer.to_string(),
+            material: self.info.as_ref().and_then(|info| of_wire(info, rupture.wire)).map(str::to_owned),
             z_mm: mm(rupture.position[2]),
             rest_z_mm: mm(rupture.rest_z),
             strain_percent: percent(rupture.strain),
@@ -424,6 +444,10 @@ impl Observer for Summariser {
     fn sample(&mut self, sample: &Sample) -> Result<()> {
         self.rows.see(sample.strain, sample.stress, sample.wire_stress.iter().copied());
         self.elastic.add(sample);
+        let info = self.info.as_ref().filter(|info| info.has_several_materials());
+        if let Some(info) = info.filter(|_| self.shares.as_ref().is_none_or(|s| sample.grip_force[1] > s.force_n)) {
+            self.shares = Shares::of(info, sample);
+        }
         self.last = sample.clone();
         Ok(())
     }

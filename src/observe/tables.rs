@@ -6,6 +6,7 @@
 use super::Observer;
 use super::column::{Column, Value};
 use super::files::LiveTable;
+use super::materials::Group;
 use super::peaks::{Peak, Peaks};
 use crate::base::error::Result;
 use crate::base::units::{mm, mpa, newton_mm, percent};
@@ -122,7 +123,7 @@ impl Observer for Tables {
         let Some(open) = self.open.take() else {
             return Ok(());
         };
-        let mut wires = table(self.folder.join(FILES[1]), wires())?;
+        let mut wires = table(self.folder.join(FILES[1]), wires(&open.wires.info))?;
         open.wires.rows().try_for_each(|wire| row(&mut wires, &wire))?;
         open.curve.0.finish()?;
         wires.0.finish()?;
@@ -207,6 +208,9 @@ pub fn curve(info: &RunInfo) -> Vec<Column<'static, Sample>> {
         // Free bodies have layers but no gauge to measure a stress in: the cell stays empty.
         Column::described(column, "MPa", about, move |s: &S| s.layer_stress.get(layer).map(|stress| mpa(*stress)))
     }));
+    if info.has_several_materials() {
+        columns.extend(carried(info));
+    }
     columns.extend([
         Column::described("wires_broken", "", "wires broken so far", |s: &S| s.wires_broken),
         Column::described("bonds_broken", "", "bonds broken so far", |s: &S| s.bonds_broken),
@@ -218,12 +222,39 @@ pub fn curve(info: &RunInfo) -> Vec<Column<'static, Sample>> {
     columns
 }
 
+/// What layers and materials carry, where wires are of several materials.
+fn carried(info: &RunInfo) -> Vec<Column<'static, Sample>> {
+    type S = Sample;
+    let info = Arc::new(info.clone());
+    let force = |name: String, about: String, group: Group| {
+        let info = info.clone();
+        Column::described(name, "N", about, move |s: &S| group.force(&info, s))
+    };
+    let stress = |name: String, about: String, group: Group| {
+        let info = info.clone();
+        Column::described(name, "MPa", about, move |s: &S| group.stress(&info, s).map(mpa))
+    };
+    let mut columns = Vec::new();
+    for (k, name) in info.layers.iter().enumerate() {
+        let about = format!("force along z at mid-gauge of the wires of layer {name}");
+        columns.push(force(format!("force_{}_n", name.replace(' ', "_")), about, Group::Layer(k)));
+    }
+    let wires_of = |k: usize| info.wires.iter().any(|wire| wire.material == k);
+    for (k, name) in info.materials.iter().enumerate().filter(|(k, _)| wires_of(*k)) {
+        let about = format!("mean nominal stress at mid-gauge, by section, of the wires of {name}");
+        columns.push(stress(format!("material_{name}_mpa"), about, Group::Material(k)));
+        let about = format!("force along z at mid-gauge of the wires of {name}");
+        columns.push(force(format!("material_{name}_n"), about, Group::Material(k)));
+    }
+    columns
+}
+
 /// The columns of `ruptures.csv`.
 pub fn ruptures(info: &RunInfo) -> Vec<Column<'static, Rupture>> {
     type R = Rupture;
     let layers = info.layers.clone();
     let layer = move |r: &R| layers.get(r.layer).cloned().unwrap_or_default();
-    vec![
+    let mut columns = vec![
         Column::described("order", "", "order of the rupture in the run, from 1", |r: &R| r.order),
         Column::described("step", "", "step of the engine", |r: &R| r.step),
         Column::described("time_s", "s", "simulated time", |r: &R| r.time),
@@ -238,19 +269,25 @@ pub fn ruptures(info: &RunInfo) -> Vec<Column<'static, Rupture>> {
         Column::described("body_stress_mpa", "MPa", "nominal stress of the body just before", |r: &R| {
             mpa(r.body_stress)
         }),
-    ]
+    ];
+    if info.has_several_materials() {
+        let names: Vec<String> = material_of_wires(info);
+        let material = move |r: &R| names.get(r.wire).cloned().unwrap_or_default();
+        columns.insert(6, Column::described("material", "", "material of the wire", material));
+    }
+    columns
 }
 
 /// The columns of `wires.csv`. The greatest stress is that of the wire at mid-gauge: a wire that broke elsewhere, or not at
 /// all, may carry more.
-pub fn wires<'a>() -> Vec<Column<'static, WireRow<'a>>> {
+pub fn wires<'a>(info: &RunInfo) -> Vec<Column<'static, WireRow<'a>>> {
     fn peak(of: fn(&Peak) -> f64) -> impl Fn(&WireRow) -> Option<f64> {
         move |row| row.peak.map(of)
     }
     fn first<T>(of: fn(&Rupture) -> T) -> impl Fn(&WireRow) -> Option<T> {
         move |row| row.first_rupture.map(of)
     }
-    vec![
+    let mut columns = vec![
         Column::described("wire", "", "number of the wire, from 1", |w: &WireRow| w.number + 1),
         Column::described("layer", "", "its layer", |w: &WireRow| w.layer.to_owned()),
         Column::described("diameter_mm", "mm", "its diameter before loading", |w: &WireRow| mm(w.wire.diameter)),
@@ -271,5 +308,20 @@ pub fn wires<'a>() -> Vec<Column<'static, WireRow<'a>>> {
         Column::described("first_rupture_strain_percent", "%", "strain of the body then", first(|r| percent(r.strain))),
         Column::described("first_rupture_order", "", "order of that rupture in the run", first(|r| r.order)),
         Column::described("first_rupture_cause", "", "why it broke", first(|r| cause(r.cause))),
-    ]
+    ];
+    if info.has_several_materials() {
+        let names = material_of_wires(info);
+        let material = move |w: &WireRow| names[w.number].clone();
+        columns.insert(2, Column::described("material", "", "its material", material));
+        let force = peak(|p| p.stress);
+        let force = move |w: &WireRow| force(w).map(|stress| stress * w.wire.area());
+        columns.insert(5, Column::described("greatest_force_n", "N", "its force at that stress", force));
+    }
+    columns
+}
+
+/// Name of the material of each wire.
+fn material_of_wires(info: &RunInfo) -> Vec<String> {
+    let name = |wire: &WireInfo| info.materials.get(wire.material).cloned().unwrap_or_default();
+    info.wires.iter().map(name).collect()
 }

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 const MAGIC: [u8; 12] = *b"strandsnap\0T";
 /// Raised whenever what is written changes its meaning or order.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 /// No record is this long (bytes); a length above it is damage.
 const LONGEST_RECORD: u32 = 1 << 30;
 
@@ -253,18 +253,23 @@ fn is_whole(info: &RunInfo) -> bool {
     let n = info.particles;
     let wire = |w: &WireInfo| {
         let end = w.first.checked_add(w.len);
-        w.layer < info.layers.len() && w.len > 1 && end.is_some_and(|end| end <= info.wire_particles)
+        let known = w.layer < info.layers.len() && w.material < info.materials.len();
+        known && w.len > 1 && end.is_some_and(|end| end <= info.wire_particles)
     };
     n > 0
         && info.wire_particles <= n
         && (info.radius.len(), info.rest_position.len()) == (n, n)
+        && info.sphere_material.len() == n - info.wire_particles
+        && info.sphere_material.iter().all(|material| *material < info.materials.len())
         && info.wires.iter().all(wire)
 }
 
 /// Whether a record is one of this body's.
 fn fits(record: &Record, info: &RunInfo) -> bool {
     let row = |s: &Sample| {
-        [0, info.layers.len()].contains(&s.layer_stress.len()) && [0, info.wires.len()].contains(&s.wire_stress.len())
+        let of_wires = [s.wire_stress.len(), s.wire_pull.len()];
+        [0, info.layers.len()].contains(&s.layer_stress.len())
+            && of_wires.iter().all(|n| [0, info.wires.len()].contains(n))
     };
     match record {
         Record::Sample(sample) => row(sample),

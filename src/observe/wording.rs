@@ -1,5 +1,6 @@
 //! How a run is put into words for people: one place, so that log, tables and pictures agree.
 
+use super::materials;
 use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{RunInfo, Rupture};
 use crate::scene::spec::Spec;
@@ -13,11 +14,25 @@ pub fn wire_number(wire: usize) -> usize {
 /// What the first break of a run is called: another strand has another.
 pub const FIRST_BREAK: &str = "first break in this strand";
 
-/// A layer as people say it: "outer layer"; one without a name by its number.
+/// A layer's name where it stands alone, with its material where there are several: "outer (steel)".
+pub fn layer_label(info: &RunInfo, layer: usize) -> String {
+    let name = info.layers.get(layer).map_or("", String::as_str);
+    match materials::of_layer(info, layer) {
+        Some(material) => format!("{name} ({material})").trim_start().to_owned(),
+        None => name.to_owned(),
+    }
+}
+
+/// A layer as people say it: "outer layer"; one without a name by its number. Its material is named where there are
+/// several: "outer layer (steel)".
 pub fn layer_words(info: &RunInfo, layer: usize) -> String {
-    match info.layers[layer].as_str() {
+    let words = match info.layers[layer].as_str() {
         "" => format!("layer {}", layer + 1),
         name => format!("{name} layer"),
+    };
+    match materials::of_layer(info, layer) {
+        Some(material) => format!("{words} ({material})"),
+        None => words,
     }
 }
 
@@ -26,9 +41,10 @@ pub fn layer_words(info: &RunInfo, layer: usize) -> String {
 /// strain of the body, true axial stress of the bond just before.
 pub fn rupture_line(info: &RunInfo, rupture: &Rupture) -> String {
     format!(
-        "wire {}, {} layer, snapped at z = {:.1} mm, strain {:.1} %, {:.0} MPa",
+        "wire {}, {} layer{}, snapped at z = {:.1} mm, strain {:.1} %, {:.0} MPa",
         wire_number(rupture.wire),
         info.layers[rupture.layer],
+        materials::of_wire(info, rupture.wire).map(|material| format!(", {material}")).unwrap_or_default(),
         mm(rupture.position[2]),
         percent(rupture.strain),
         mpa(rupture.stress),
@@ -40,14 +56,14 @@ pub fn rupture_line(info: &RunInfo, rupture: &Rupture) -> String {
 pub struct OneDraw {
     /// Seed of the scatter.
     pub seed: u64,
-    /// Weibull modulus of the rupture value from bond to bond (-).
+    /// Weibull modulus of the rupture value from bond to bond (-), the least of all materials.
     pub weibull_modulus: f64,
 }
 
 impl OneDraw {
     /// Of a scene; `None` where every bond is as strong as the other, or nothing can break.
     pub fn of(spec: &Spec) -> Option<Self> {
-        let weibull_modulus = spec.bond.rupture.as_ref()?.weibull_modulus;
+        let weibull_modulus = spec.ruptures().map(|rupture| rupture.weibull_modulus).fold(f64::INFINITY, f64::min);
         weibull_modulus.is_finite().then_some(Self { seed: spec.seed, weibull_modulus })
     }
 

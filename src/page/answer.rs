@@ -9,8 +9,7 @@ use crate::base::units::{mm, mpa};
 use crate::base::wording::counted;
 use crate::engine::view::Rupture;
 use crate::observe::summary::RunSummary;
-use crate::observe::tables::layer_name;
-use crate::observe::wording::wire_number;
+use crate::observe::wording::{layer_label, wire_number};
 use maud::{Markup, html};
 
 /// Wires in the row of chips at most.
@@ -58,7 +57,7 @@ pub fn headline(source: &Source) -> Markup {
 fn first_rupture(source: &Source, first: &Rupture) -> Markup {
     let abscissa = Abscissa::of(source);
     html! {
-        strong { "Wire " (wire_number(first.wire)) ", " (layer_name(&source.info, first.layer)) " layer," } " snapped first" @if source.summary.one_draw.is_some() { " in this strand" } ", at z = "
+        strong { "Wire " (wire_number(first.wire)) ", " (layer_label(&source.info, first.layer)) " layer," } " snapped first" @if source.summary.one_draw.is_some() { " in this strand" } ", at z = "
         strong { (format!("{:.1} mm", mm(first.rest_z))) } " before loading (" (format!("{:.1} mm", mm(first.position[2])))
         " when it snapped), at " strong { (abscissa.moment(abscissa.at(first))) }
         @if source.info.is_pulled() { " and " strong { (format!("{:.1} MPa", mpa(first.body_stress))) } " nominal stress" }
@@ -141,11 +140,11 @@ fn sequence(source: &Source) -> Markup {
         h3 { "How failure ran" }
         p.key {
             "Wires in the order in which they broke. "
-            @for (layer, name) in source.info.layers.iter().enumerate() { (chip(layer, name)) " " }
+            @for layer in 0..source.info.layers.len() { (chip(layer, &layer_label(&source.info, layer))) " " }
         }
         ol.chips {
             @for rupture in shown {
-                li.chip style=(colour(rupture.layer)) title=(layer_name(&source.info, rupture.layer)) { (wire_number(rupture.wire)) }
+                li.chip style=(colour(rupture.layer)) title=(layer_label(&source.info, rupture.layer)) { (wire_number(rupture.wire)) }
             }
         }
         @if shown.len() < firsts.len() { p.remark { "The first " (shown.len()) " of " (firsts.len()) "." } }
@@ -174,7 +173,7 @@ fn layers(source: &Source) -> Markup {
             } }
             tbody { @for (layer, name) in source.info.layers.iter().enumerate() {
                 tr {
-                    td { (chip(layer, name)) }
+                    td { (chip(layer, &layer_label(&source.info, layer))) }
                     @let count = broken.get(name).copied().unwrap_or_default();
                     td.number { (count.broken) } td.number { (count.of) }
                     (first_of(source, layer, abscissa))

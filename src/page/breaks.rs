@@ -7,8 +7,8 @@ use crate::base::error::Result;
 use crate::base::ticks::label;
 use crate::base::units::{mm, mpa, ms, percent};
 use crate::engine::view::Rupture;
-use crate::observe::tables::{cause, layer_name};
-use crate::observe::wording::wire_number;
+use crate::observe::tables::cause;
+use crate::observe::wording::{layer_label, wire_number};
 use maud::{Markup, html};
 
 /// Rows at most; all of them are in `ruptures.csv`.
@@ -52,7 +52,7 @@ fn table(source: &Source) -> Markup {
 fn row(source: &Source, r: &Rupture, pulled: bool) -> Markup {
     html! {
         tr {
-            td.number { (r.order) } td.number { (wire_number(r.wire)) } td { (chip(r.layer, layer_name(&source.info, r.layer))) }
+            td.number { (r.order) } td.number { (wire_number(r.wire)) } td { (chip(r.layer, &layer_label(&source.info, r.layer))) }
             td.number { (format!("{:.2}", mm(r.rest_z))) } td.number { (format!("{:.2}", mm(r.position[2]))) }
             @if let Some(mid) = source.mid_length() { td.number { (label(mm(r.rest_z) - mid, 2)) } }
             @if pulled { td.number { (format!("{:.3}", percent(r.strain))) } } @else { td.number { (format!("{:.4}", ms(r.time))) } }

@@ -9,8 +9,8 @@ use crate::base::error::Result;
 use crate::base::units::{mm, mpa, ms, newton_mm, percent};
 use crate::engine::view::{Rupture, Sample};
 use crate::observe::stress_strain::{STRAIN, STRESS, mark, place};
-use crate::observe::tables::{cause, layer_name};
-use crate::observe::wording::wire_number;
+use crate::observe::tables::cause;
+use crate::observe::wording::{layer_label, wire_number};
 use maud::{Markup, html};
 use serde_json::{Value, json};
 
@@ -95,7 +95,7 @@ fn ticks(source: &Source, layer: usize, height: impl Fn(&Rupture) -> f64) -> Opt
     let abscissa = Abscissa::of(source);
     (!of.is_empty()).then(|| {
         json!({
-            "type": "scatter", "mode": "markers", "name": format!("{} breaks", literal(layer_name(&source.info, layer))),
+            "type": "scatter", "mode": "markers", "name": format!("{} breaks", literal(&layer_label(&source.info, layer))),
             "marker": { "symbol": "line-ns-open", "size": 18, "color": layer_colour(layer), "line": { "width": 2, "color": layer_colour(layer) } },
             "x": numbers(of.iter().map(|r| abscissa.at(r))), "y": numbers(of.iter().map(|r| height(r))),
             "text": of.iter().map(|r| told(source, r)).collect::<Vec<_>>(),
@@ -111,7 +111,7 @@ pub fn told(source: &Source, rupture: &Rupture) -> String {
         "<b>break {}: wire {}</b>, {} layer<br>z = {:.1} mm before loading, {:.1} mm then<br>{}, body at {:.1} MPa<br>wire at {:.0} MPa (true), {}",
         rupture.order,
         wire_number(rupture.wire),
-        literal(layer_name(&source.info, rupture.layer)),
+        literal(&layer_label(&source.info, rupture.layer)),
         mm(rupture.rest_z),
         mm(rupture.position[2]),
         abscissa.moment(abscissa.at(rupture)),

@@ -6,9 +6,8 @@ use super::source::Source;
 use super::source::State;
 use crate::base::units::mpa;
 use crate::engine::view::WireInfo;
-use crate::observe::tables::layer_name;
 use crate::observe::unrolled::{Unrolled, bonds, place};
-use crate::observe::wording::wire_number;
+use crate::observe::wording::{layer_label, wire_number};
 use maud::html;
 use serde_json::{Value, json};
 
@@ -85,7 +84,7 @@ impl<'a> Map<'a> {
     }
 
     fn heat(&self, row: &Row) -> Value {
-        let layer = literal(layer_name(&self.source.info, self.source.info.wires[row.wire].layer));
+        let layer = literal(&layer_label(&self.source.info, self.source.info.wires[row.wire].layer));
         json!({
             "type": "heatmap", "coloraxis": "coloraxis", "ygap": 1, "hoverongaps": false,
             "x": numbers(row.x.iter().copied()), "y": [row.y],
@@ -149,7 +148,7 @@ impl<'a> Map<'a> {
             .iter()
             .map(|of| {
                 json!({
-                    "text": format!("<b>{} layer</b>", literal(layer_name(info, of.layer))), "showarrow": false, "xref": "paper", "x": 0,
+                    "text": format!("<b>{} layer</b>", literal(&layer_label(info, of.layer))), "showarrow": false, "xref": "paper", "x": 0,
                     "xanchor": "left", "yref": "y", "y": height(&self.map, of.wires[1]), "yanchor": "bottom", "yshift": 8, "font": { "size": 12 },
                 })
             })

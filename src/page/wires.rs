@@ -9,8 +9,8 @@ use super::source::Source;
 use crate::base::error::Result;
 use crate::base::units::{mpa, percent};
 use crate::engine::view::Sample;
-use crate::observe::tables::layer_name;
-use crate::observe::wording::wire_number;
+use crate::observe::materials::{Share, Shares};
+use crate::observe::wording::{layer_label, wire_number};
 use maud::{Markup, html};
 use serde_json::{Value, json};
 
@@ -33,7 +33,9 @@ pub fn section(source: &Source) -> Result<Section> {
             Some(most) if most < LEAST => {
                 html! { p { "No wire carried axial stress: it stayed below " (LEAST) " MPa." } }
             }
-            Some(_) => charts(source),
+            Some(_) => {
+                html! { (charts(source)) @if let Some(told) = &source.summary.shares_at_greatest_stress { (shares(told)) } }
+            }
         }
     };
     Ok(Section { id: "wires", title: "Stress in layers and wires", body })
@@ -66,11 +68,40 @@ fn charts(source: &Source) -> Markup {
     }
 }
 
+/// Who carried how much when the body carried most.
+fn shares(told: &Shares) -> Markup {
+    let rows = |what: &'static str, shares: &[Share]| {
+        html! {
+            @for share in shares {
+                tr {
+                    th { (share.name) } td { (what) } td.number { (format!("{:.3}", share.area_mm2)) }
+                    td.number { (format!("{:.1}", share.force_n)) }
+                    td.number { (format!("{:.1}", 100.0 * share.force_n / told.force_n)) }
+                    td.number { (format!("{:.1}", share.stress_mpa)) }
+                }
+            }
+        }
+    };
+    html! {
+        div.scroll { table {
+            caption {
+                "Who carried the greatest force, " (format!("{:.1} N at {:.3} %", told.force_n, told.strain_percent))
+                ": forces along the axis, stresses along the wires"
+            }
+            thead { tr {
+                th { "" } th { "" } th.number { "section (mm²)" } th.number { "force (N)" } th.number { "share (%)" }
+                th.number { "mean nominal stress (MPa)" }
+            } }
+            tbody { (rows("material", &told.materials)) (rows("layer", &told.layers)) }
+        } }
+    }
+}
+
 fn chart(source: &Source, id: &'static str, rows: &[&Sample], range: Option<[f64; 2]>, caption: Markup) -> Figure {
     let abscissa = Abscissa::of(source);
     let x = || numbers(rows.iter().map(|row| abscissa.value(row)));
     let wires = source.info.wires.iter().enumerate().map(|(w, wire)| {
-        let layer = literal(layer_name(&source.info, wire.layer));
+        let layer = literal(&layer_label(&source.info, wire.layer));
         json!({
             "type": "scatter", "mode": "lines", "showlegend": false, "legendgroup": layer, "opacity": 0.45,
             "line": { "color": layer_colour(wire.layer), "width": 1 }, "x": x(),
@@ -79,7 +110,7 @@ fn chart(source: &Source, id: &'static str, rows: &[&Sample], range: Option<[f64
         })
     });
     let layers = (0..source.info.layers.len()).map(|layer| {
-        let name = literal(layer_name(&source.info, layer));
+        let name = literal(&layer_label(&source.info, layer));
         json!({
             "type": "scatter", "mode": "lines", "name": format!("{name} layer"), "legendgroup": name,
             "line": { "color": layer_colour(layer), "width": 3 }, "x": x(),

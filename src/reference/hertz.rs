@@ -27,6 +27,16 @@ impl Pair {
         }
     }
 
+    /// Two spheres, each of radius (m), Young's modulus (Pa), Poisson's ratio (-) and density (kg/m³).
+    pub fn spheres(both: [[f64; 4]; 2]) -> Self {
+        let sum = |of: &dyn Fn([f64; 4]) -> f64| 1.0 / both.into_iter().map(of).sum::<f64>();
+        Self {
+            modulus: sum(&|[_, young, poisson, _]| (1.0 - poisson * poisson) / young),
+            radius: sum(&|[radius, ..]| 1.0 / radius),
+            mass: sum(&|[radius, _, _, density]| 1.0 / (density * 4.0 / 3.0 * PI * radius.powi(3))),
+        }
+    }
+
     /// Normal force at overlap `overlap` δ ≥ 0 (m), (4/3) E* √R* δ^(3/2) (N).
     pub fn force(&self, overlap: f64) -> f64 {
         4.0 / 3.0 * self.modulus * self.radius.sqrt() * overlap.powf(1.5)

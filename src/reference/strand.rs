@@ -112,6 +112,12 @@ pub fn stiffness_factor(layers: &[Layer]) -> f64 {
     mean_over_section(layers, |_, layer| layer.lay_angle().cos().powi(3))
 }
 
+/// Force per strain of a strand of several materials when the lay radii stay (N): Σ n A E cos³β (Hruska 1951), `young` being E
+/// of each layer (Pa).
+pub fn stiffness_sum(layers: &[Layer], young: &[f64]) -> f64 {
+    layers.iter().zip(young).map(|(layer, young)| young * layer.area() * layer.lay_angle().cos().powi(3)).sum()
+}
+
 /// E_strand/E when wires thin by Poisson's ratio `poisson` ν (-) and each layer, listed from the inside out, rests on
 /// the one below; the wires' own bending and torsion are counted as the textbook does (-) (Costello 1997, chapter 3).
 pub fn stiffness_factor_contracting(layers: &[Layer], poisson: f64) -> f64 {
@@ -123,10 +129,16 @@ pub fn stiffness_factor_contracting(layers: &[Layer], poisson: f64) -> f64 {
 ///
 /// [`Wire::Extensible`] is what a strand should show; the textbook's formula gives 4 to 5 % less torque.
 pub fn elastic(layers: &[Layer], young: f64, poisson: f64, wire: Wire) -> Wrench {
-    let responses = contracting_responses(layers, poisson);
+    elastic_of_materials(layers, &vec![[young, poisson]; layers.len()], wire)
+}
+
+/// [`elastic`] of layers that are each of a material of their own: [E (Pa), ν (-)].
+pub fn elastic_of_materials(layers: &[Layer], materials: &[[f64; 2]], wire: Wire) -> Wrench {
+    let poisson: Vec<f64> = materials.iter().map(|[_, poisson]| *poisson).collect();
+    let responses = responses_of_materials(layers, &poisson);
     let zero = Wrench { force: 0.0, torque: 0.0 };
-    layers.iter().zip(responses).fold(zero, |sum, (layer, response)| {
-        let one = layer.wrench(response, young, poisson, wire);
+    layers.iter().zip(materials).zip(responses).fold(zero, |sum, ((layer, [young, poisson]), response)| {
+        let one = layer.wrench(response, *young, *poisson, wire);
         Wrench { force: sum.force + one.force, torque: sum.torque + one.torque }
     })
 }
@@ -166,11 +178,17 @@ pub struct Response {
 /// Wire strain x = cos²β + (ΔR/R) sin²β, with ΔR = ΔR_below − ν (x_below d_below + x d)/2; the bore of a strand without a
 /// core wire keeps its radius (Costello 1997, linearised, for hollow and cored strands alike).
 pub fn contracting_responses(layers: &[Layer], poisson: f64) -> Vec<Response> {
+    responses_of_materials(layers, &vec![poisson; layers.len()])
+}
+
+/// [`contracting_responses`] of layers with a Poisson's ratio each (-).
+fn responses_of_materials(layers: &[Layer], poisson: &[f64]) -> Vec<Response> {
     // Inward motion of the surface that the next layer rests on, per unit of strand strain [m].
     let mut inward = 0.0;
     layers
         .iter()
-        .map(|layer| {
+        .zip(poisson)
+        .map(|(layer, poisson)| {
             let thinning = poisson * layer.diameter / 2.0;
             if layer.radius == 0.0 {
                 // A core wire's centre does not move; its surface does by half its thinning.

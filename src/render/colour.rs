@@ -61,6 +61,7 @@ impl ColourScale {
             ColourBy::Velocity => "speed (m/s)",
             ColourBy::Layer => "layer",
             ColourBy::Wire => "wire",
+            ColourBy::Material => "material",
         }
     }
 
@@ -75,7 +76,8 @@ impl ColourScale {
         match self.by {
             ColourBy::Stress => [self.range[0] >= 0.0, false],
             ColourBy::ContactPressure | ColourBy::Velocity => [false, true],
-            ColourBy::PlasticStrain | ColourBy::Utilisation | ColourBy::Layer | ColourBy::Wire => [false, false],
+            ColourBy::PlasticStrain | ColourBy::Utilisation => [false, false],
+            ColourBy::Layer | ColourBy::Wire | ColourBy::Material => [false, false],
         }
     }
 
@@ -112,6 +114,7 @@ impl ColourScale {
                     ColourBy::Velocity => self.of_value(snapshot.speed[i]),
                     ColourBy::Layer => Self::category(wire.layer),
                     ColourBy::Wire => Self::category(number),
+                    ColourBy::Material => Self::category(wire.material),
                 };
             }
         }
@@ -120,6 +123,7 @@ impl ColourScale {
             match self.by {
                 ColourBy::Velocity => *colour = self.of_value(snapshot.speed[i]),
                 ColourBy::ContactPressure => *colour = self.of_value(snapshot.contact_pressure[i]),
+                ColourBy::Material => *colour = Self::category(info.sphere_material[k]),
                 ColourBy::Wire | ColourBy::Layer => *colour = Self::category(info.wires.len() + k),
                 // Spheres carry no axial stress: told apart when there is nothing else, grey beside wires.
                 ColourBy::Stress | ColourBy::PlasticStrain | ColourBy::Utilisation => {

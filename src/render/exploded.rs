@@ -9,6 +9,7 @@ use super::panel::{Panel, Shot};
 use super::sides::{Side, sides};
 use super::style::Rgb;
 use super::wires::Looks;
+use crate::observe::wording::layer_label;
 use crate::scene::spec::View;
 use glam::Vec3;
 
@@ -122,10 +123,11 @@ fn annotate(canvas: &mut Canvas, camera: &Camera, data: &Data, layer: usize) {
     }
     let top = if outermost { panel.y + 24.0 * u } else { panel.y + 2.0 * u };
     let width = |name: &str| canvas.fonts.width(name, 11.0 * u, Weight::Bold) + 10.0 * u;
-    let room = data.info.layers.iter().map(|name| width(name)).fold(0.0, f32::max) + 14.0 * u;
-    let name = &data.info.layers[layer];
-    let at = [panel.x + 7.0 * u + 0.5 * width(name), top + 9.0 * u];
-    labels::word(canvas, at, data, name);
+    let names = (0..data.info.layers.len()).map(|layer| layer_label(data.info, layer));
+    let room = names.map(|name| width(&name)).fold(0.0, f32::max) + 14.0 * u;
+    let name = layer_label(data.info, layer);
+    let at = [panel.x + 7.0 * u + 0.5 * width(&name), top + 9.0 * u];
+    labels::word(canvas, at, data, &name);
     let shift = shift(data.body, layer);
     let marks: Vec<Mark> = data
         .first_breaks()

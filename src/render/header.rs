@@ -226,6 +226,9 @@ fn legend(canvas: &mut Canvas, area: Rect, data: &Data) {
         ColourBy::Layer => {
             data.info.layers.iter().enumerate().map(|(k, name)| (name.clone(), ColourScale::category(k))).collect()
         }
+        ColourBy::Material => {
+            data.info.materials.iter().enumerate().map(|(k, name)| (name.clone(), ColourScale::category(k))).collect()
+        }
         _ => vec![("coloured by wire".to_owned(), data.style.text)],
     };
     if !data.info.wires.is_empty() {

@@ -5,7 +5,7 @@ use crate::engine::Engine;
 use crate::scene::Scene;
 use crate::scene::caution;
 use crate::scene::plan::Plan;
-use crate::scene::spec::{BondLawSpec, DriveSpec, Spec};
+use crate::scene::spec::{BondLawSpec, DriveSpec, OneMaterial, Spec};
 use crate::strand;
 use crate::strand::assembly::Assembly;
 
@@ -70,18 +70,18 @@ fn end_strain(spec: &Spec, assembly: &Assembly, foreseen: Option<f64>) -> Option
 
 /// Elastic energy in wires that are all strained as the body is (J): the most that the load can store.
 fn elastic_energy(spec: &Spec, assembly: &Assembly, strain: f64) -> f64 {
-    let young = spec.material.young;
-    let elastic = young * strain;
-    let stress = match &spec.bond.law {
-        BondLawSpec::Elastic => elastic,
-        BondLawSpec::ElastoPlastic(law) => elastic.min(law.stress(strain.ln_1p())),
+    let of = |(number, one): (usize, OneMaterial)| {
+        let young = one.material.young;
+        let elastic = young * strain;
+        let stress = match &one.bond.law {
+            BondLawSpec::Elastic => elastic,
+            BondLawSpec::ElastoPlastic(law) => elastic.min(law.stress(strain.ln_1p())),
+        };
+        let wires = assembly.wires.iter().filter(|wire| wire.material == number);
+        let volume = wires.map(|wire| wire.area() * wire.bonds().map(|slot| assembly.rest_length[slot]).sum::<f64>());
+        0.5 * stress * stress / young * volume.sum::<f64>()
     };
-    let volume: f64 = assembly
-        .wires
-        .iter()
-        .map(|wire| wire.area() * wire.bonds().map(|slot| assembly.rest_length[slot]).sum::<f64>())
-        .sum();
-    0.5 * stress * stress / young * volume
+    spec.materials().enumerate().map(of).sum()
 }
 
 fn capitalised(text: &str) -> String {

@@ -176,7 +176,7 @@ pub(super) fn drive(
         end,
         state,
         audience: Audience { observers, started: 0, time: Duration::ZERO, keeper },
-        breaks: spec.bond.rupture.is_some(),
+        breaks: spec.breaks(),
         begin: Instant::now(),
         broke: false,
     };

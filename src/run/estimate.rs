@@ -8,7 +8,7 @@ use crate::base::wording::counted;
 use crate::engine::Engine;
 use crate::engine::memory::StageBytes;
 use crate::scene::plan::Plan;
-use crate::scene::spec::{BondLawSpec, BondSpec, DriveSpec, Spec};
+use crate::scene::spec::{BondLawSpec, DriveSpec, Spec};
 use crate::strand::assembly::Assembly;
 use crate::strand::discretise;
 use crate::strand::size::Size;
@@ -112,12 +112,14 @@ pub fn under_load(spec: &Spec, assembly: Assembly) -> Option<f64> {
 
 /// The same run in that state, in which a strand comes after `settling` steps and time.
 fn loaded(spec: &Spec, assembly: Assembly, settling: (u64, Duration)) -> Option<Engine> {
-    let flows = matches!(spec.bond.law, BondLawSpec::ElastoPlastic(_)) && spec.grip.is_some();
+    let flows =
+        spec.grip.is_some() && spec.materials().any(|one| matches!(one.bond.law, BondLawSpec::ElastoPlastic(_)));
     let touches = spec.contact.is_some() && assembly.wires.len() > 1;
     if !flows && !touches {
         return None;
     }
-    let mut loaded = Spec { bond: BondSpec { rupture: None, ..spec.bond.clone() }, ..spec.clone() };
+    let mut loaded = spec.clone();
+    loaded.bonds_mut().for_each(|bond| bond.rupture = None);
     let closed = if touches { closed(spec) } else { None };
     let is_strand = closed.is_some();
     let mut assembly = closed.unwrap_or(assembly);
@@ -126,9 +128,13 @@ fn loaded(spec: &Spec, assembly: Assembly, settling: (u64, Duration)) -> Option<
     }
     if is_strand {
         // What is not damped at all may be left out of a run, and costs nothing there.
-        let contact = loaded.contact.iter_mut().map(|contact| &mut contact.damping);
-        let damped = loaded.bond.damping.iter_mut().chain(contact).filter(|damping| **damping > 0.0);
-        damped.for_each(|damping| *damping = LOADED_DAMPING);
+        let damp = |damping: &mut f64| {
+            if *damping > 0.0 {
+                *damping = LOADED_DAMPING;
+            }
+        };
+        loaded.contact.iter_mut().for_each(|contact| damp(&mut contact.damping));
+        loaded.bonds_mut().for_each(|bond| bond.damping.iter_mut().for_each(damp));
         let step = Engine::new(&loaded, &Plan::new(&loaded), assembly.clone()).ok()?.time_step();
         let rate = DRAWN_TOGETHER / (DRAWN_IN * step);
         for particle in 0..assembly.wire_particles {

@@ -59,7 +59,7 @@ impl Output {
     /// Of a run of `spec` with so many particles and wires.
     pub fn of(spec: &Spec, particles: usize, wires: usize) -> Self {
         let output = &spec.output;
-        let snapshots = most_snapshots(output, spec.bond.rupture.is_some()) as f64;
+        let snapshots = most_snapshots(output, spec.breaks()) as f64;
         let rows = output.samples as f64 + snapshots;
         let [width, height] = output.frame_size.map(f64::from);
         Self {

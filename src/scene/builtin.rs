@@ -11,8 +11,18 @@ macro_rules! scenes {
 }
 
 /// Name and text of each, the main one first.
-const SCENES: &[(&str, &str)] =
-    scenes!["ka4", "jaw-grip", "strand-1x7", "single-wire", "cantilever", "torsion", "two-spheres"];
+const SCENES: &[(&str, &str)] = scenes![
+    "ka4",
+    "jaw-grip",
+    "strand-1x7",
+    "strand-1x19",
+    "hard-drawn-7",
+    "acsr",
+    "single-wire",
+    "cantilever",
+    "torsion",
+    "two-spheres"
+];
 
 /// Name and text of the scenes that `strandsnap verify` runs, in alphabetical order.
 const VERIFICATION: &[(&str, &str)] = scenes![
@@ -47,6 +57,8 @@ const VERIFICATION: &[(&str, &str)] = scenes![
     "verify/thornton",
     "verify/tip-load",
     "verify/torque",
+    "verify/unlike-spheres",
+    "verify/unlike-wires",
 ];
 
 /// Scenes of `strandsnap verify`: name, which starts with `verify/`, and TOML text.

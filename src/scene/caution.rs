@@ -1,6 +1,6 @@
 //! What a scene can be known to get wrong before it runs, for `plan` and `scene check`.
 
-use super::spec::{BondLawSpec, DriveSpec, RuptureCriterion, Shape, Spec};
+use super::spec::{BondLawSpec, BondSpec, DriveSpec, RuptureCriterion, Shape, Spec};
 
 /// Plastic strain (-) beyond which no wire is followed.
 const FAR: f64 = 1.0;
@@ -17,8 +17,14 @@ pub fn cautions(spec: &Spec) -> Vec<String> {
 /// Plastic strain at which the hardening law reaches the maximum load of a bond in tension, dσ/dp ≤ σ (Considère 1885),
 /// if it does so before bonds break and before the body has reached `strain` (-).
 pub fn considere(spec: &Spec, strain: f64) -> Option<f64> {
-    let BondLawSpec::ElastoPlastic(hardening) = &spec.bond.law else { return None };
-    let breaks = match spec.bond.rupture.as_ref().map(|r| &r.criterion) {
+    let each = spec.materials().filter_map(|one| considere_of(one.bond, strain));
+    each.min_by(f64::total_cmp)
+}
+
+/// [`considere`] of one material.
+pub fn considere_of(bond: &BondSpec, strain: f64) -> Option<f64> {
+    let BondLawSpec::ElastoPlastic(hardening) = &bond.law else { return None };
+    let breaks = match bond.rupture.as_ref().map(|r| &r.criterion) {
         Some(RuptureCriterion::PlasticStrain { strain }) => *strain,
         Some(RuptureCriterion::FibreStrain { strain }) => strain.ln_1p(),
         Some(RuptureCriterion::BeamStress { tensile, .. }) => reaches(|p| hardening.stress(p) >= *tensile),

@@ -6,6 +6,7 @@
 
 use super::at::{At, Range};
 use super::raw::{RawConstruction, RawLay, RawStrand};
+use super::resolve_materials::Materials;
 use super::spec::LayerSpec;
 use crate::base::error::Result;
 use crate::base::lay::least_radius_of_layer;
@@ -23,7 +24,12 @@ const SLACK: f64 = 0.002;
 const NEAR: f64 = 0.02;
 
 /// The layers of a strand that gives a construction instead of `[[strand.layer]]`.
-pub(super) fn layers(at: &At, raw: &RawStrand, given: &RawConstruction) -> Result<Vec<LayerSpec>> {
+pub(super) fn layers(
+    at: &At,
+    raw: &RawStrand,
+    given: &RawConstruction,
+    materials: &Materials,
+) -> Result<Vec<LayerSpec>> {
     if !raw.layer.is_empty() {
         let what = "the strand has both `construction` and [[strand.layer]]";
         return Err(at.key("construction").error(what, "remove one; --set strand.layer= removes the layers"));
@@ -44,7 +50,9 @@ pub(super) fn layers(at: &At, raw: &RawStrand, given: &RawConstruction) -> Resul
             listed(&at.key("construction"), wires)?
         }
     };
+    let material = materials.number(at, raw.material.as_ref())?;
     let layer = |(k, count): (usize, &usize)| LayerSpec {
+        material,
         name: name(k, wires.len(), *count),
         wires: *count,
         wire_diameter: diameter,

@@ -96,7 +96,8 @@ fn keys(raw: &RawScene, spec: &Spec, plan: &Plan) -> Vec<Idle> {
     of_bonds(&mut found, raw, spec);
     of_contact(&mut found, raw, plan);
     of_grip(&mut found, raw, spec);
-    let rupture = spec.bond.rupture.is_some();
+    of_materials(&mut found, raw, spec);
+    let rupture = spec.breaks();
     let density = raw.output.rupture_density.is_some();
     found.silent(density && !rupture, "output.rupture_density", "no bond of this scene can break");
     let fixed = spec.time.step.is_some();
@@ -145,7 +146,42 @@ fn of_bonds(found: &mut Found, raw: &RawScene, spec: &Spec) {
         spec.bond.law,
         BondLawSpec::ElastoPlastic(HardeningSpec::Voce { saturation, rate, .. }) if saturation == 0.0 && rate != 0.0
     );
-    found.told(no_saturation, "bond.hardening.rate", "there is no saturation that it leads to");
+    found.told(
+        no_saturation && spec.material_name.is_none(),
+        "bond.hardening.rate",
+        "there is no saturation that it leads to",
+    );
+}
+
+/// Materials that no body is of, and what they would say.
+fn of_materials(found: &mut Found, raw: &RawScene, spec: &Spec) {
+    let used = |name: Option<&str>| spec.materials().any(|one| one.name == name);
+    for name in raw.materials.keys().filter(|name| !used(Some(name))) {
+        found.told(true, format!("materials.{name}"), "no body is of this material");
+    }
+    let pairs = raw.contact.iter().flat_map(|contact| contact.pair.iter().enumerate());
+    for (index, pair) in pairs {
+        let here = pair.materials.iter().flatten().all(|name| used(Some(name)));
+        found.told(!here, format!("contact.pair.{index}"), "no body is of one of the two materials");
+    }
+    if used(None) {
+        return;
+    }
+    let why = "every body names its material";
+    found.told(raw.material.is_some(), "material", why);
+    if let Some(bond) = &raw.bond {
+        found.told(bond.law.is_some(), "bond.law", why);
+        found.told(bond.hardening.is_some(), "bond.hardening", why);
+        found.told(bond.rupture.is_some(), "bond.rupture", why);
+        let own = raw.materials.values().all(|material| material.damping.is_some());
+        found.told(bond.damping.is_some() && own, "bond.damping", "every material has its own");
+    }
+    if let Some(contact) = &raw.contact {
+        let named = || raw.materials.values();
+        let pressure = named().all(|m| m.limiting_pressure.is_some() || m.hardness_factor.is_some());
+        let why = "every material has its own limiting pressure";
+        found.told(contact.limiting_pressure.is_some() && pressure, "contact.limiting_pressure", why);
+    }
 }
 
 fn of_contact(found: &mut Found, raw: &RawScene, plan: &Plan) {
@@ -154,6 +190,7 @@ fn of_contact(found: &mut Found, raw: &RawScene, plan: &Plan) {
         let given = [
             ("tangential", contact.tangential.is_some()),
             ("friction", contact.friction.is_some()),
+            ("pair", !contact.pair.is_empty()),
             ("shape", contact.shape.is_some()),
             ("hardness_factor", contact.hardness_factor.is_some()),
             ("hardness_strain", contact.hardness_strain.is_some()),
@@ -175,6 +212,7 @@ fn of_contact(found: &mut Found, raw: &RawScene, plan: &Plan) {
     let frictionless = contact.tangential == Some(RawTangential::None);
     let why = "contact.tangential = \"none\" leaves friction out";
     found.silent(frictionless && contact.friction.is_some(), "contact.friction", why);
+    found.silent(frictionless && !contact.pair.is_empty(), "contact.pair", why);
 }
 
 fn of_grip(found: &mut Found, raw: &RawScene, spec: &Spec) {
@@ -187,6 +225,6 @@ fn of_grip(found: &mut Found, raw: &RawScene, spec: &Spec) {
     found.add(adaptive.fastest == speed, "grip.adaptive", why, InFile::Told, AsOption::Told);
     let raw = raw.grip.as_ref().and_then(|grip| grip.adaptive.as_ref());
     let passages = raw.is_some_and(|raw| raw.passages.is_some());
-    let unbreakable = spec.bond.rupture.is_none();
+    let unbreakable = !spec.breaks();
     found.silent(passages && unbreakable, "grip.adaptive.passages", "no bond of this scene can break");
 }

@@ -9,7 +9,8 @@ use serde_json::Value;
 /// A key of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Key {
-    /// Its path, such as `strand.layer[].pitch`; `[]` stands after a table that may be repeated.
+    /// Its path, such as `strand.layer[].pitch`; `[]` stands after a table that may be repeated, `NAME` for a name that the
+    /// scene gives.
     pub key: String,
     /// What is written there.
     pub kind: Kind,
@@ -63,7 +64,11 @@ pub fn keys() -> Vec<Key> {
 pub fn is_meant(key: &str, wanted: &str) -> bool {
     let plain = |path: &str| {
         let path = path.to_lowercase().replace("[]", "");
-        let names: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+        let mut names: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+        // The name of a material stands for itself.
+        if let ["materials", name, ..] = &mut names[..] {
+            *name = "name";
+        }
         names.join(".")
     };
     let meant = plain(wanted);
@@ -78,7 +83,12 @@ fn walk(table: &Value, path: &str, found: &mut Vec<Key>) {
         let choices = choices(value);
         let tables: Vec<(&Value, bool)> = choices.iter().filter_map(|choice| table_of(choice)).collect();
         let repeated = tables.iter().any(|(_, repeated)| *repeated);
-        let key = if repeated { format!("{key}[]") } else { key };
+        let named = choices.iter().any(|choice| choice["additionalProperties"]["properties"].is_object());
+        let key = match (repeated, named) {
+            (true, _) => format!("{key}[]"),
+            (false, true) => format!("{key}.NAME"),
+            (false, false) => key,
+        };
         let extra = |name: &str| value[name].as_str().map(str::to_owned);
         found.push(Key {
             key: key.clone(),
@@ -107,7 +117,9 @@ fn table_of(value: &Value) -> Option<(&Value, bool)> {
     if value["properties"].is_object() {
         Some((value, false))
     } else {
-        value["items"]["properties"].is_object().then(|| (&value["items"], true))
+        let named = &value["additionalProperties"];
+        let of_items = || value["items"]["properties"].is_object().then(|| (&value["items"], true));
+        if named["properties"].is_object() { Some((named, false)) } else { of_items() }
     }
 }
 

@@ -79,6 +79,7 @@ words! {
         ContactPressure = "contact-pressure", "Contact pressure";
         Layer = "layer", "Layer";
         Wire = "wire", "Wire";
+        Material = "material", "Material";
         Velocity = "velocity", "Speed";
     }
 }

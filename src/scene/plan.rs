@@ -1,6 +1,9 @@
 //! `Plan`: what a scene needs, each component present or absent with its reason.
 
-use super::spec::{BondLawSpec, DriveSpec, GripKind, NormalSpec, PathSpec, PlanMode, Shape, Spec, TangentialSpec};
+use super::spec::{
+    BondLawSpec, BondSpec, DriveSpec, GripKind, NormalSpec, OneMaterial, PathSpec, PlanMode, RuptureSpec, Shape, Spec,
+    TangentialSpec,
+};
 use std::fmt;
 
 /// Whether contacts are computed.
@@ -49,11 +52,11 @@ impl Plan {
         let wires = spec.strand.as_ref().map_or(0, |s| s.layers.iter().map(|l| l.wires).sum()) + spec.wires.len();
         let bodies = wires + spec.spheres.len();
         let bonds = wires > 0;
-        let rupture = bonds && spec.bond.rupture.is_some();
-        let scatter = spec.bond.rupture.as_ref().is_some_and(|r| r.weibull_modulus.is_finite());
+        let rupture = bonds && spec.breaks();
+        let scatter = spec.ruptures().any(|r| r.weibull_modulus.is_finite());
         let contacts = contacts(spec, bodies, rupture, general);
         let rotations = rotations(spec, contacts.0, general);
-        let components = vec![
+        let mut components = vec![
             bond_component(spec, bonds),
             Component { name: "rotations", state: on(rotations.0), reason: rotations.1.clone() },
             plastic_component(spec, bonds),
@@ -61,8 +64,11 @@ impl Plan {
             Component {
                 name: "scatter",
                 state: on(scatter),
-                reason: match &spec.bond.rupture {
-                    Some(r) if scatter => format!("Weibull modulus {}", r.weibull_modulus),
+                reason: match spec.ruptures().next() {
+                    Some(_) if scatter => of_each(spec, |one| {
+                        let modulus = one.bond.rupture.as_ref().map_or(f64::INFINITY, |r| r.weibull_modulus);
+                        if modulus.is_finite() { format!("Weibull modulus {modulus}") } else { "none".into() }
+                    }),
                     Some(_) => "Weibull modulus is infinite: every bond has the stated rupture value".into(),
                     None => "bonds never break".into(),
                 },
@@ -85,6 +91,9 @@ impl Plan {
             },
             Component { name: "energy ledger", state: on(true), reason: "the tables ask for it".into() },
         ];
+        if spec.has_several_materials() {
+            components.insert(0, material_component(spec));
+        }
         Self { bonds, rotations: rotations.0, contacts: contacts.0, rupture, scatter, components }
     }
 }
@@ -93,17 +102,48 @@ fn on(yes: bool) -> String {
     if yes { "runs" } else { "left out" }.into()
 }
 
+/// What holds of each material: once where it is the same of all, else with the name of each.
+fn of_each(spec: &Spec, words: impl Fn(OneMaterial<'_>) -> String) -> String {
+    let all: Vec<String> = spec.materials().map(&words).collect();
+    if all.iter().all(|one| *one == all[0]) {
+        return all[0].clone();
+    }
+    let named = spec.materials().zip(&all).map(|(one, words)| format!("{}: {words}", one.label()));
+    named.collect::<Vec<_>>().join("; ")
+}
+
+/// Which bodies are of which material.
+fn material_component(spec: &Spec) -> Component {
+    let layers = spec.strand.iter().flat_map(|strand| &strand.layers);
+    let of_layers = layers.map(|layer| (layer.material, format!("layer {}", layer.name)));
+    let wires = spec.wires.iter().map(|wire| (wire.material, "single wires".to_owned()));
+    let spheres = spec.spheres.iter().map(|sphere| (sphere.material, "spheres".to_owned()));
+    let bodies: Vec<(usize, String)> = of_layers.chain(wires).chain(spheres).collect();
+    let words = spec.materials().enumerate().map(|(number, one)| {
+        let mut own: Vec<&str> = bodies.iter().filter(|(of, _)| *of == number).map(|(_, what)| what.as_str()).collect();
+        own.dedup();
+        format!("{}: {}", one.label(), own.join(", "))
+    });
+    let reason = words.collect::<Vec<_>>().join("; ");
+    Component { name: "materials", state: spec.materials().len().to_string(), reason }
+}
+
+fn is_plastic(bond: &BondSpec) -> bool {
+    matches!(bond.law, BondLawSpec::ElastoPlastic(_))
+}
+
 fn bond_component(spec: &Spec, bonds: bool) -> Component {
-    let law = match spec.bond.law {
-        BondLawSpec::Elastic => "elastic",
-        BondLawSpec::ElastoPlastic(_) => "elasto-plastic",
+    let law = of_each(spec, |one| if is_plastic(one.bond) { "elasto-plastic".into() } else { "elastic".into() });
+    let reason = match (bonds, law.contains(':')) {
+        (false, _) => "no wires".into(),
+        (true, false) => format!("wires with the {law} law"),
+        (true, true) => format!("wires with the law of their material; {law}"),
     };
-    let reason = if bonds { format!("wires with the {law} law") } else { "no wires".into() };
     Component { name: "bonds", state: on(bonds), reason }
 }
 
 fn plastic_component(spec: &Spec, bonds: bool) -> Component {
-    let plastic = bonds && matches!(spec.bond.law, BondLawSpec::ElastoPlastic(_));
+    let plastic = bonds && spec.materials().any(|one| is_plastic(one.bond));
     let reason = if plastic {
         "bonds harden and thin"
     } else if bonds {
@@ -115,19 +155,28 @@ fn plastic_component(spec: &Spec, bonds: bool) -> Component {
 }
 
 fn rupture_component(spec: &Spec, rupture: bool) -> Component {
-    use super::spec::RuptureCriterion as C;
-    let reason = match &spec.bond.rupture {
-        Some(r) if rupture => match r.criterion {
-            C::PlasticStrain { strain } => format!("plastic-strain at {} %", 100.0 * strain),
-            C::BeamStress { tensile, shear, .. } => {
-                format!("beam-stress at {} MPa tension, {} MPa shear", tensile / 1e6, shear / 1e6)
-            }
-            C::FibreStrain { strain } => format!("fibre-strain at {} %", 100.0 * strain),
-        },
+    let reason = match spec.ruptures().next() {
+        Some(_) if rupture => of_each(spec, |one| one.bond.rupture.as_ref().map_or("never".into(), criterion)),
         Some(_) => "no wires".into(),
         None => "the scene states no rupture criterion".into(),
     };
     Component { name: "rupture", state: on(rupture), reason }
+}
+
+/// A strain (-) in per cent, without the rounding of the factor.
+fn per_cent(strain: f64) -> f64 {
+    (1e12 * strain).round() / 1e10
+}
+
+fn criterion(rupture: &RuptureSpec) -> String {
+    use super::spec::RuptureCriterion as C;
+    match rupture.criterion {
+        C::PlasticStrain { strain } => format!("plastic-strain at {} %", per_cent(strain)),
+        C::BeamStress { tensile, shear, .. } => {
+            format!("beam-stress at {} MPa tension, {} MPa shear", tensile / 1e6, shear / 1e6)
+        }
+        C::FibreStrain { strain } => format!("fibre-strain at {} %", per_cent(strain)),
+    }
 }
 
 fn contacts(spec: &Spec, bodies: usize, rupture: bool, general: bool) -> (ContactPlan, String) {
@@ -161,8 +210,9 @@ fn contact_component(spec: &Spec, contacts: &(ContactPlan, String)) -> Component
         };
         match c.normal {
             NormalSpec::Hertz => format!("; {shape}, hertz"),
-            NormalSpec::Thornton { limiting_pressure } => {
-                format!("; {shape}, thornton with limiting pressure {:.4} MPa", limiting_pressure / 1e6)
+            NormalSpec::Thornton { .. } => {
+                let limits = of_each(spec, |one| format!("{:.4} MPa", one.limiting_pressure.unwrap_or_default() / 1e6));
+                format!("; {shape}, thornton with limiting pressure {limits}")
             }
         }
     });
@@ -171,16 +221,26 @@ fn contact_component(spec: &Spec, contacts: &(ContactPlan, String)) -> Component
 
 fn tangential_component(spec: &Spec, contacts: ContactPlan) -> Component {
     let law = spec.contact.as_ref().and_then(|c| c.tangential);
-    let smooth = spec.contact.as_ref().is_some_and(|contact| contact.friction == 0.0);
+    let smooth = spec.contact.as_ref().is_some_and(|c| c.tangential.is_some() && c.is_smooth(spec.materials().len()));
     let runs = contacts != ContactPlan::Absent && law.is_some() && !smooth;
     let reason: String = match law {
         _ if contacts == ContactPlan::Absent => "no contacts".into(),
         Some(_) if smooth => "the coefficient of friction is 0".into(),
-        Some(TangentialSpec::Mindlin) => "mindlin".into(),
-        Some(TangentialSpec::MindlinDeresiewicz) => "mindlin-deresiewicz".into(),
+        Some(TangentialSpec::Mindlin) => format!("mindlin{}", pairs(spec)),
+        Some(TangentialSpec::MindlinDeresiewicz) => format!("mindlin-deresiewicz{}", pairs(spec)),
         None => "frictionless".into(),
     };
     Component { name: "friction", state: on(runs), reason }
+}
+
+/// The pairs of materials that have a coefficient of their own.
+fn pairs(spec: &Spec) -> String {
+    let pairs = spec.contact.iter().flat_map(|contact| &contact.pairs);
+    let words = pairs.map(|pair| {
+        let [a, b] = pair.materials.map(|number| spec.material_at(number).label().to_owned());
+        format!("; {a} on {b}: coefficient {}", pair.friction)
+    });
+    words.collect()
 }
 
 /// Whether anything turns or pushes the bodies sideways.
@@ -204,14 +264,14 @@ fn rotations(spec: &Spec, contacts: ContactPlan, general: bool) -> (bool, String
     let straight = spec.wires.iter().all(along_z)
         && spec.strand.as_ref().is_none_or(|s| s.layers.iter().all(|l| l.pitch.is_infinite()));
     let spins = spec.spheres.iter().any(|s| s.spin.length() > 0.0);
-    let friction = spec.contact.as_ref().is_some_and(|c| c.tangential.is_some() && c.friction > 0.0);
+    let friction = spec.contact.as_ref().is_some_and(|c| !c.is_smooth(spec.materials().len()));
     if general {
         (true, "plan = \"general\"".into())
     } else if !straight {
         (true, "wires are curved: they bend and twist".into())
     } else if bends(spec) {
         (true, "holds, loads or drives can bend or turn the bodies".into())
-    } else if contacts == ContactPlan::Present && (friction || spec.bond.rupture.is_some() || !spec.wires.is_empty()) {
+    } else if contacts == ContactPlan::Present && (friction || spec.breaks() || !spec.wires.is_empty()) {
         (true, "contacts can turn particles".into())
     } else if spins {
         (true, "bodies spin".into())

@@ -1,19 +1,23 @@
 //! A scene as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference
 //! of all keys, each with its unit, its default and its meaning, which `strandsnap scene keys` prints
-//! ([`super::keys`]); those of grips and holds stand in `raw/drive.rs`, those of outputs in `raw/output.rs`.
+//! ([`super::keys`]); those of materials and bonds stand in `raw/materials.rs`, those of grips and holds in `raw/drive.rs`, those
+//! of outputs in `raw/output.rs`.
 //!
 //! A quantity is text with a unit, `"39 mm"`; any unit of the right kind will do. A ratio may be a plain number or
 //! per cent, `0.12` or `"12 %"`. Unknown keys are refused.
 
 mod drive;
+mod materials;
 mod output;
 mod scalar;
 
 pub use drive::*;
+pub use materials::*;
 pub use output::*;
 pub use scalar::*;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// A whole scene file.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -34,9 +38,12 @@ pub struct RawScene {
     /// Which stages run.
     #[schemars(extend("x-default" = "auto"))]
     pub plan: Option<RawPlan>,
-    /// The wire material.
+    /// The material of bodies that name none.
     pub material: Option<RawMaterial>,
-    /// Bonds along the wires. Absent: elastic, undamped, unbreakable.
+    /// `[materials.NAME]`: named materials, each with the bonds of its wires; layers, wires and spheres name theirs.
+    #[serde(default)]
+    pub materials: BTreeMap<String, RawNamedMaterial>,
+    /// Bonds along the wires that name no material. Absent: elastic, undamped, unbreakable.
     pub bond: Option<RawBond>,
     /// Contacts between surfaces. Absent: none at all.
     pub contact: Option<RawContact>,
@@ -78,135 +85,6 @@ pub enum RawPlan {
     General,
 }
 
-/// `[material]`. Defaults: annealed copper.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawMaterial {
-    /// Density.
-    #[schemars(extend("x-unit" = "kg/m^3", "x-default" = "8960 kg/m^3"))]
-    pub density: Option<Scalar>,
-    /// Young's modulus.
-    #[schemars(extend("x-unit" = "GPa", "x-default" = "115 GPa"))]
-    pub young: Option<Scalar>,
-    /// Poisson's ratio, above -1 and below 0.5.
-    #[schemars(extend("x-unit" = "-", "x-default" = "0.34"))]
-    pub poisson: Option<Scalar>,
-}
-
-/// `[bond]`.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawBond {
-    /// Law of the bonds.
-    #[schemars(extend("x-default" = "elastic"))]
-    pub law: Option<RawBondLaw>,
-    /// Damping as a fraction of critical: one number for all modes, or `{ axial, shear, bending, torsion }`.
-    #[schemars(extend("x-unit" = "-", "x-default" = "0"))]
-    pub damping: Option<RawDamping>,
-    /// Hardening of the elasto-plastic law; refused elsewhere.
-    #[schemars(extend("x-required-when" = "law = \"elasto-plastic\""))]
-    pub hardening: Option<RawHardening>,
-    /// When a bond breaks. Absent: never.
-    pub rupture: Option<RawRupture>,
-}
-
-/// `bond.law`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawBondLaw {
-    /// Linear in all modes.
-    Elastic,
-    /// Isotropic hardening, coupled section plasticity.
-    ElastoPlastic,
-}
-
-/// `bond.hardening`. Which keys belong to which form stands at each key.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawHardening {
-    /// Form of the law of hardening, true stress over true plastic strain p.
-    #[schemars(extend("x-required" = true))]
-    pub form: Option<RawForm>,
-    /// σ₀ of voce and ludwik.
-    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "form = \"voce\" or \"ludwik\""))]
-    pub yield_stress: Option<Scalar>,
-    /// Q of voce.
-    #[schemars(extend("x-unit" = "MPa", "x-default" = "0 MPa"))]
-    pub saturation: Option<Scalar>,
-    /// b of voce.
-    #[schemars(extend("x-unit" = "-", "x-default" = "0", "x-required-when" = "form = \"voce\" has a saturation"))]
-    pub rate: Option<Scalar>,
-    /// H of voce.
-    #[schemars(extend("x-unit" = "MPa", "x-default" = "0 MPa"))]
-    pub linear: Option<Scalar>,
-    /// K of swift and ludwik.
-    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "form = \"swift\" or \"ludwik\""))]
-    pub strength: Option<Scalar>,
-    /// ε₀ of swift.
-    #[schemars(extend("x-unit" = "-", "x-required-when" = "form = \"swift\""))]
-    pub prestrain: Option<Scalar>,
-    /// n of swift and ludwik.
-    #[schemars(extend("x-unit" = "-", "x-required-when" = "form = \"swift\" or \"ludwik\""))]
-    pub exponent: Option<Scalar>,
-    /// Points [strain, stress]. `table`: true plastic strain, from 0 on, and true stress. `engineering-curve`: the
-    /// engineering curve of a single wire, straight between its points, converted with Young's modulus and A =
-    /// A₀e^(−p).
-    #[schemars(extend("x-required-when" = "form = \"table\" or \"engineering-curve\""))]
-    pub points: Option<Vec<[Scalar; 2]>>,
-}
-
-/// `bond.hardening.form`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawForm {
-    /// σ₀ + Q (1 − e^(−b p)) + H p.
-    Voce,
-    /// K (ε₀ + p)^n.
-    Swift,
-    /// σ₀ + K p^n.
-    Ludwik,
-    /// True stress over true plastic strain, straight between points.
-    Table,
-    /// Engineering stress over engineering strain of a single wire, converted.
-    EngineeringCurve,
-}
-
-/// `bond.rupture`. Which keys belong to which criterion stands at each key.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawRupture {
-    /// What breaks a bond.
-    #[schemars(extend("x-required" = true))]
-    pub criterion: Option<RawCriterion>,
-    /// Rupture strain of plastic-strain and fibre-strain.
-    #[schemars(extend("x-unit" = "-", "x-required-when" = "criterion = \"plastic-strain\" or \"fibre-strain\""))]
-    pub strain: Option<Scalar>,
-    /// σ_c of beam-stress.
-    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "criterion = \"beam-stress\""))]
-    pub tensile: Option<Scalar>,
-    /// τ_c of beam-stress.
-    #[schemars(extend("x-unit" = "MPa", "x-required-when" = "criterion = \"beam-stress\""))]
-    pub shear: Option<Scalar>,
-    /// β_m of beam-stress, 0 to 1.
-    #[schemars(extend("x-unit" = "-", "x-default" = "1"))]
-    pub moment_share: Option<Scalar>,
-    /// Weibull modulus of the scatter of the rupture value from bond to bond; "inf": no scatter.
-    #[schemars(extend("x-unit" = "-", "x-default" = "inf", "x-word" = "inf"))]
-    pub weibull_modulus: Option<Scalar>,
-}
-
-/// `bond.rupture.criterion`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum RawCriterion {
-    /// Equivalent plastic strain; needs the elasto-plastic law.
-    PlasticStrain,
-    /// Beam stresses at the surface.
-    BeamStress,
-    /// Strain of the outermost fibre.
-    FibreStrain,
-}
-
 /// `[contact]`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -220,6 +98,9 @@ pub struct RawContact {
     /// Coulomb friction coefficient. Without effect when `tangential = "none"`.
     #[schemars(extend("x-unit" = "-", "x-default" = "0.2"))]
     pub friction: Option<Scalar>,
+    /// `[[contact.pair]]`: friction between bodies of two named materials.
+    #[serde(default)]
+    pub pair: Vec<RawContactPair>,
     /// Shape of a wire in contact.
     #[schemars(extend("x-default" = "sphere"))]
     pub shape: Option<RawShape>,
@@ -290,6 +171,9 @@ pub struct RawStrand {
     /// Lay direction of layers that give none.
     #[schemars(extend("x-default" = "right"))]
     pub lay: Option<RawLay>,
+    /// Name of the material of layers that name none.
+    #[schemars(extend("x-otherwise" = "that of [material] and [bond]"))]
+    pub material: Option<String>,
     /// Instead of `[[strand.layer]]`: the wires of each layer from the inside out, such as [5, 11, 18], or `auto` for
     /// full rings of copper nearest to `area`; lay radii are least, and all layers have the strand's wire diameter,
     /// pitch and lay.
@@ -340,6 +224,9 @@ pub struct RawLayer {
     /// Angle of the first wire at z = 0.
     #[schemars(extend("x-unit" = "deg", "x-default" = "0 deg"))]
     pub phase: Option<Scalar>,
+    /// Name of its material.
+    #[schemars(extend("x-otherwise" = "strand.material"))]
+    pub material: Option<String>,
 }
 
 /// Lay direction.
@@ -372,6 +259,9 @@ pub struct RawWire {
     /// Name of the layer it is counted in.
     #[schemars(extend("x-otherwise" = "the centreline file's, else wire"))]
     pub layer: Option<String>,
+    /// Name of its material.
+    #[schemars(extend("x-otherwise" = "that of [material] and [bond]"))]
+    pub material: Option<String>,
     /// First point of a straight wire, three lengths.
     #[schemars(extend("x-unit" = "mm", "x-required-when" = "there is no file"))]
     pub from: Option<Triple>,
@@ -402,6 +292,9 @@ pub struct RawSphere {
     /// Diameter.
     #[schemars(extend("x-unit" = "mm", "x-required" = true))]
     pub diameter: Option<Scalar>,
+    /// Name of its material.
+    #[schemars(extend("x-otherwise" = "that of [material] and [bond]"))]
+    pub material: Option<String>,
     /// Centre, three lengths.
     #[schemars(extend("x-unit" = "mm", "x-required" = true))]
     pub position: Option<Triple>,

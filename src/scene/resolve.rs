@@ -4,22 +4,15 @@
 use super::at::{At, Range};
 use super::look::{FRAME_SIDE, ZOOM};
 use super::raw::*;
+use super::resolve_materials::{self, GivenHardness, Materials};
 use super::spec::*;
-use super::{hardening, resolve_bodies, resolve_drive};
+use super::{resolve_bodies, resolve_drive};
 use crate::base::error::{Error, Result};
 use crate::base::units::{Dimension, shortest};
 use std::path::Path;
 
-/// Young's modulus of annealed copper where a scene gives none (Pa).
-const COPPER_YOUNG: f64 = 115e9;
-/// Density of copper where a scene gives none (kg/m³).
-const COPPER_DENSITY: f64 = 8960.0;
-/// Poisson's ratio of copper where a scene gives none (-).
-const COPPER_POISSON: f64 = 0.34;
 /// Friction between bare copper wires where a scene gives none (-) (the reference paper's).
 const FRICTION: f64 = 0.2;
-/// Limiting contact pressure over yield stress (-) (Tabor 1951: hardness is 2.8 to 3 times the flow stress).
-const HARDNESS_FACTOR: f64 = 2.8;
 /// Neighbour skin over the largest diameter (-).
 const SKIN: f64 = 0.15;
 /// Δt √(k/m*) of a contact (-): eight steps to a half period.
@@ -31,18 +24,21 @@ const SNAPSHOTS_IF_IT_BREAKS: usize = 60;
 
 /// Resolves a scene. `name` is that of its file, `folder` where its centreline files are looked for.
 pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Result<Spec> {
-    let material = material(&at.key("material"), raw.material.as_ref())?;
-    let bond = bond(&at.key("bond"), raw.bond.as_ref(), &material)?;
-    let strand = raw.strand.as_ref().map(|raw| resolve_bodies::strand(&at.key("strand"), raw)).transpose()?;
-    let wires = resolve_bodies::wires(&at.key("wire"), &raw.wire, folder)?;
-    let spheres = resolve_bodies::spheres(&at.key("sphere"), &raw.sphere)?;
+    let materials = Materials::new(at, raw)?;
+    let strand =
+        raw.strand.as_ref().map(|raw| resolve_bodies::strand(&at.key("strand"), raw, &materials)).transpose()?;
+    let wires = resolve_bodies::wires(&at.key("wire"), &raw.wire, folder, &materials)?;
+    let spheres = resolve_bodies::spheres(&at.key("sphere"), &raw.sphere, &materials)?;
     if strand.is_none() && wires.is_empty() && spheres.is_empty() {
         return Err(at.error("the scene has no body", "add a [strand], a [[wire]] or a [[sphere]]"));
     }
     let bodies = resolve_bodies::count(strand.as_ref(), &wires, &spheres);
     let extent = resolve_bodies::extent(strand.as_ref(), &wires);
     let spacing = at.ratio_or("spacing", &raw.spacing, 1.0, Range::Positive)?;
-    let contact = contact(&at.key("contact"), raw.contact.as_ref(), &bond)?;
+    let mut used = materials.of_bodies();
+    let contact = contact(&at.key("contact"), raw.contact.as_ref(), &materials, &mut used)?;
+    let (first, further) = resolve_materials::in_order(used);
+    let breaks = first.bond.rupture.is_some() || further.iter().any(|further| further.bond.rupture.is_some());
     let wire_count = strand.as_ref().map_or(0, |s| s.layers.iter().map(|l| l.wires).sum()) + wires.len();
     if wire_count > 1 {
         refuse_gaps(at, spacing, contact.as_ref())?;
@@ -56,14 +52,16 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
         spacing,
         holds: resolve_drive::holds(&at.key("hold"), &raw.hold, bodies)?,
         time: time(&at.key("time"), &raw.time)?,
-        stop: resolve_drive::stop(&at.key("stop"), &raw.stop, grip.as_ref(), bond.rupture.is_some())?,
-        output: output(&at.key("output"), &raw.output, bond.rupture.is_some())?,
+        stop: resolve_drive::stop(&at.key("stop"), &raw.stop, grip.as_ref(), breaks)?,
+        output: output(&at.key("output"), &raw.output, breaks)?,
         plan: match raw.plan {
             None | Some(RawPlan::Auto) => PlanMode::Auto,
             Some(RawPlan::General) => PlanMode::General,
         },
-        material,
-        bond,
+        material_name: first.name,
+        material: first.material,
+        bond: first.bond,
+        further,
         strand,
         wires,
         spheres,
@@ -105,100 +103,21 @@ fn about(at: &At, raw: &RawScene) -> Result<String> {
     }
 }
 
-fn material(at: &At, raw: Option<&RawMaterial>) -> Result<Material> {
-    let none = RawMaterial::default();
-    let raw = raw.unwrap_or(&none);
-    let density = at.optional("density", &raw.density, Dimension::Density, Range::Positive)?;
-    let young = at.optional("young", &raw.young, Dimension::Pressure, Range::Positive)?;
-    Ok(Material {
-        density: density.unwrap_or(COPPER_DENSITY),
-        young: young.unwrap_or(COPPER_YOUNG),
-        poisson: at.ratio_or("poisson", &raw.poisson, COPPER_POISSON, Range::Poisson)?,
-    })
-}
-
-fn bond(at: &At, raw: Option<&RawBond>, material: &Material) -> Result<BondSpec> {
-    let none = RawBond::default();
-    let raw = raw.unwrap_or(&none);
-    let law = match raw.law.unwrap_or(RawBondLaw::Elastic) {
-        RawBondLaw::Elastic => {
-            at.refuse("hardening", &raw.hardening, "has no effect under the elastic bond law")?;
-            BondLawSpec::Elastic
-        }
-        RawBondLaw::ElastoPlastic => {
-            let example = "{ form = \"voce\", yield_stress = \"90 MPa\" }";
-            let given = raw.hardening.as_ref().ok_or_else(|| at.missing("hardening", example))?;
-            BondLawSpec::ElastoPlastic(hardening::resolve(&at.key("hardening"), given, material.young)?)
-        }
-    };
-    let rupture = raw.rupture.as_ref().map(|raw| rupture(&at.key("rupture"), raw, &law)).transpose()?;
-    Ok(BondSpec { damping: damping(at, raw.damping.as_ref())?, law, rupture })
-}
-
-fn damping(at: &At, raw: Option<&RawDamping>) -> Result<[f64; 4]> {
-    match raw {
-        None => Ok([0.0; 4]),
-        Some(RawDamping::All(raw)) => {
-            let value = at.key("damping").quantity(raw, Dimension::Ratio, Range::NotNegative)?;
-            Ok([value; 4])
-        }
-        Some(RawDamping::Modes(raw)) => {
-            let at = at.key("damping");
-            let mode = |name, raw| at.ratio_or(name, raw, 0.0, Range::NotNegative);
-            Ok([
-                mode("axial", &raw.axial)?,
-                mode("shear", &raw.shear)?,
-                mode("bending", &raw.bending)?,
-                mode("torsion", &raw.torsion)?,
-            ])
-        }
-    }
-}
-
-fn rupture(at: &At, raw: &RawRupture, law: &BondLawSpec) -> Result<RuptureSpec> {
-    let form = raw.criterion.ok_or_else(|| at.missing("criterion", "\"plastic-strain\""))?;
-    let beam = form == RawCriterion::BeamStress;
-    if beam {
-        at.refuse(
-            "strain",
-            &raw.strain,
-            "does not belong to beam-stress, which takes tensile, shear and moment_share",
-        )?;
-    } else {
-        let why = "belongs to beam-stress only; this criterion takes strain";
-        at.refuse("tensile", &raw.tensile, why)?;
-        at.refuse("shear", &raw.shear, why)?;
-        at.refuse("moment_share", &raw.moment_share, why)?;
-    }
-    if form == RawCriterion::PlasticStrain && *law == BondLawSpec::Elastic {
-        let help = "set bond.law = \"elasto-plastic\", or take beam-stress or fibre-strain";
-        return Err(at.key("criterion").error("plastic-strain never holds under the elastic bond law", help));
-    }
-    let strain = || at.required("strain", &raw.strain, Dimension::Ratio, Range::Positive);
-    let stress = |name, raw| at.required(name, raw, Dimension::Pressure, Range::Positive);
-    let criterion = match form {
-        RawCriterion::PlasticStrain => RuptureCriterion::PlasticStrain { strain: strain()? },
-        RawCriterion::FibreStrain => RuptureCriterion::FibreStrain { strain: strain()? },
-        RawCriterion::BeamStress => RuptureCriterion::BeamStress {
-            tensile: stress("tensile", &raw.tensile)?,
-            shear: stress("shear", &raw.shear)?,
-            moment_share: at.ratio_or("moment_share", &raw.moment_share, 1.0, Range::UnitInterval)?,
-        },
-    };
-    let modulus = at.ratio_or("weibull_modulus", &raw.weibull_modulus, f64::INFINITY, Range::PositiveOrInfinite)?;
-    Ok(RuptureSpec { criterion, weibull_modulus: modulus })
-}
-
-fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<ContactSpec>> {
+/// Resolves `[contact]`, and the limiting pressures of the materials in `used`.
+fn contact(
+    at: &At,
+    raw: Option<&RawContact>,
+    materials: &Materials,
+    used: &mut [MaterialSpec],
+) -> Result<Option<ContactSpec>> {
     let Some(raw) = raw else { return Ok(None) };
     // Values are checked even where `normal = "none"` leaves them without effect: switching contacts off for one run
     // must not need the rest of the table to go.
     let friction = at.ratio_or("friction", &raw.friction, FRICTION, Range::NotNegative)?;
     let damping = at.ratio_or("damping", &raw.damping, 0.0, Range::NotNegative)?;
     let skin = at.ratio_or("skin", &raw.skin, SKIN, Range::Positive)?;
-    at.optional("hardness_factor", &raw.hardness_factor, Dimension::Ratio, Range::Positive)?;
-    at.optional("hardness_strain", &raw.hardness_strain, Dimension::Ratio, Range::NotNegative)?;
-    at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?;
+    let given = GivenHardness::of_contact(at, raw)?;
+    let pairs = materials.pairs(&at.key("pair"), &raw.pair)?;
     let mut hardness = None;
     let normal = match raw.normal.ok_or_else(|| at.missing("normal", "\"thornton\""))? {
         RawNormal::None => return Ok(None),
@@ -207,12 +126,13 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
             at.refuse("hardness_factor", &raw.hardness_factor, why)?;
             at.refuse("hardness_strain", &raw.hardness_strain, why)?;
             at.refuse("limiting_pressure", &raw.limiting_pressure, why)?;
+            materials.refuse_hardness(why)?;
             NormalSpec::Hertz
         }
         RawNormal::Thornton => {
-            let (limiting_pressure, rule) = limiting_pressure(at, raw, bond)?;
-            hardness = rule;
-            NormalSpec::Thornton { limiting_pressure }
+            materials.limit_pressures(at, &given, used)?;
+            hardness = used[0].hardness;
+            NormalSpec::Thornton { limiting_pressure: used[0].limiting_pressure.unwrap_or(f64::INFINITY) }
         }
     };
     Ok(Some(ContactSpec {
@@ -224,6 +144,7 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
             RawTangential::None => None,
         },
         friction,
+        pairs,
         shape: match raw.shape.unwrap_or(RawShape::Sphere) {
             RawShape::Sphere => Shape::Sphere,
             RawShape::Wire => Shape::Wire,
@@ -231,26 +152,6 @@ fn contact(at: &At, raw: Option<&RawContact>, bond: &BondSpec) -> Result<Option<
         damping,
         skin,
     }))
-}
-
-/// Thornton's p_y (Pa): given, or by the rule that comes with it.
-fn limiting_pressure(at: &At, raw: &RawContact, bond: &BondSpec) -> Result<(f64, Option<Hardness>)> {
-    if let Some(pressure) =
-        at.optional("limiting_pressure", &raw.limiting_pressure, Dimension::Pressure, Range::Positive)?
-    {
-        let why = "has no effect beside limiting_pressure";
-        at.refuse("hardness_factor", &raw.hardness_factor, why)?;
-        at.refuse("hardness_strain", &raw.hardness_strain, why)?;
-        return Ok((pressure, None));
-    }
-    let BondLawSpec::ElastoPlastic(law) = &bond.law else {
-        return Err(at.missing("limiting_pressure", "\"600 MPa\" (under an elastic bond law there is no yield stress)"));
-    };
-    let hardness = Hardness {
-        factor: at.ratio_or("hardness_factor", &raw.hardness_factor, HARDNESS_FACTOR, Range::Positive)?,
-        strain: at.ratio_or("hardness_strain", &raw.hardness_strain, 0.0, Range::NotNegative)?,
-    };
-    Ok((hardness.limiting_pressure(law), Some(hardness)))
 }
 
 fn time(at: &At, raw: &RawTime) -> Result<TimeSpec> {

@@ -4,11 +4,13 @@ use super::at::{At, Range};
 use super::centreline_text::{self, CentrelineWire};
 use super::construction;
 use super::raw::{RawLay, RawLayer, RawSphere, RawStrand, RawWire, Scalar};
+use super::resolve_materials::Materials;
 use super::spec::{LayerSpec, PathSpec, SphereSpec, StrandSpec, WireSpec};
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::base::units::{self, Dimension};
 use crate::base::wording::{counted, ordinal};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 
 /// Relative difference up to which two diameters are one, written with other units (-).
@@ -17,10 +19,10 @@ const SAME_DIAMETER: f64 = 1e-9;
 const DEFAULT_LAYER: &str = "wire";
 
 /// Resolves `[strand]`.
-pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
+pub(super) fn strand(at: &At, raw: &RawStrand, materials: &Materials) -> Result<StrandSpec> {
     let length = at.required("length", &raw.length, Dimension::Length, Range::Positive)?;
     if let Some(given) = &raw.construction {
-        return Ok(StrandSpec { length, layers: construction::layers(at, raw, given)? });
+        return Ok(StrandSpec { length, layers: construction::layers(at, raw, given, materials)? });
     }
     at.refuse("area", &raw.area, "has no effect without construction = \"auto\"")?;
     if raw.layer.is_empty() {
@@ -32,7 +34,7 @@ pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
     let mut layers: Vec<LayerSpec> = Vec::with_capacity(raw.layer.len());
     for (index, layer) in raw.layer.iter().enumerate() {
         let here = at.key("layer").element(index);
-        let layer = self::layer(&here, at, layer, raw, index)?;
+        let layer = self::layer(&here, at, layer, raw, index, materials)?;
         if layers.iter().any(|before| before.name == layer.name) {
             let what = format!("two layers are named {:?}", layer.name);
             return Err(here.key("name").error(what, "give each layer its own name"));
@@ -42,7 +44,14 @@ pub(super) fn strand(at: &At, raw: &RawStrand) -> Result<StrandSpec> {
     Ok(StrandSpec { length, layers })
 }
 
-fn layer(at: &At, strand: &At, raw: &RawLayer, defaults: &RawStrand, index: usize) -> Result<LayerSpec> {
+fn layer(
+    at: &At,
+    strand: &At,
+    raw: &RawLayer,
+    defaults: &RawStrand,
+    index: usize,
+    materials: &Materials,
+) -> Result<LayerSpec> {
     let wires = raw.wires.ok_or_else(|| at.missing("wires", "6"))?;
     let wires = at.key("wires").count_within(wires, 1, construction::MOST_WIRES as u64)? as usize;
     let lay_radius = lay_radius(at, raw.lay_radius.as_ref(), wires, index)?;
@@ -54,7 +63,12 @@ fn layer(at: &At, strand: &At, raw: &RawLayer, defaults: &RawStrand, index: usiz
     };
     let diameter =
         layer_or_strand(at, strand, "wire_diameter", &raw.wire_diameter, &defaults.wire_diameter, Range::Positive)?;
+    let material = match &raw.material {
+        Some(_) => materials.number(at, raw.material.as_ref())?,
+        None => materials.number(strand, defaults.material.as_ref())?,
+    };
     Ok(LayerSpec {
+        material,
         name: raw.name.clone().unwrap_or_else(|| ordinal(index + 1)),
         wires,
         wire_diameter: diameter.ok_or_else(|| at.missing("wire_diameter", "\"0.39 mm\""))?,
@@ -101,19 +115,20 @@ fn lay_radius(at: &At, raw: Option<&Scalar>, wires: usize, index: usize) -> Resu
 }
 
 /// Resolves all `[[wire]]`; one that takes all wires of a file becomes as many.
-pub(super) fn wires(at: &At, raw: &[RawWire], folder: &Path) -> Result<Vec<WireSpec>> {
+pub(super) fn wires(at: &At, raw: &[RawWire], folder: &Path, materials: &Materials) -> Result<Vec<WireSpec>> {
     let mut wires = Vec::new();
     for (index, raw) in raw.iter().enumerate() {
         let here = at.element(index);
+        let material = materials.number(&here, raw.material.as_ref())?;
         match &raw.file {
-            Some(file) => wires.extend(wires_of_file(&here, raw, file, folder)?),
-            None => wires.push(straight_wire(&here, raw)?),
+            Some(file) => wires.extend(wires_of_file(&here, raw, file, folder, material)?),
+            None => wires.push(straight_wire(&here, raw, material)?),
         }
     }
     Ok(wires)
 }
 
-fn straight_wire(at: &At, raw: &RawWire) -> Result<WireSpec> {
+fn straight_wire(at: &At, raw: &RawWire, material: usize) -> Result<WireSpec> {
     let why = "has no effect without `file`";
     at.refuse("index", &raw.index, why)?;
     at.refuse("all", &raw.all, why)?;
@@ -128,20 +143,25 @@ fn straight_wire(at: &At, raw: &RawWire) -> Result<WireSpec> {
         return Err(at.key("to").error("the wire has no length: `to` is the same point as `from`", ""));
     }
     let diameter = at.required("diameter", &raw.diameter, Dimension::Length, Range::Positive)?;
-    wire(at, raw, DEFAULT_LAYER, diameter, PathSpec::Straight { from, to })
+    let path = PathSpec::Straight { from, to };
+    wire(
+        at,
+        raw,
+        WireSpec { layer: DEFAULT_LAYER.into(), material, diameter, path, velocity: DVec3::ZERO, spin: DVec3::ZERO },
+    )
 }
 
-fn wire(at: &At, raw: &RawWire, layer: &str, diameter: f64, path: PathSpec) -> Result<WireSpec> {
+/// The wire `own` with what `raw` says of every wire.
+fn wire(at: &At, raw: &RawWire, own: WireSpec) -> Result<WireSpec> {
     Ok(WireSpec {
-        layer: raw.layer.clone().unwrap_or_else(|| layer.to_owned()),
-        diameter,
-        path,
+        layer: raw.layer.clone().unwrap_or(own.layer),
         velocity: at.vector_or_zero("velocity", &raw.velocity, Dimension::Velocity)?,
         spin: at.vector_or_zero("spin", &raw.spin, Dimension::AngularVelocity)?,
+        ..own
     })
 }
 
-fn wires_of_file(at: &At, raw: &RawWire, file: &str, folder: &Path) -> Result<Vec<WireSpec>> {
+fn wires_of_file(at: &At, raw: &RawWire, file: &str, folder: &Path, material: usize) -> Result<Vec<WireSpec>> {
     at.refuse("from", &raw.from, "has no effect beside `file`")?;
     at.refuse("to", &raw.to, "has no effect beside `file`")?;
     let (path, centrelines) = read_centrelines(at, file, folder)?;
@@ -153,7 +173,8 @@ fn wires_of_file(at: &At, raw: &RawWire, file: &str, folder: &Path) -> Result<Ve
             refuse_two_diameters(at, given, *diameter, index)?;
             let diameter = given.or(*diameter).ok_or_else(|| at.missing("diameter", "\"0.39 mm\""))?;
             let path = PathSpec::File { file: path.clone(), index, points: points.clone() };
-            wire(at, raw, layer, diameter, path)
+            let (layer, velocity, spin) = (layer.clone(), DVec3::ZERO, DVec3::ZERO);
+            wire(at, raw, WireSpec { layer, material, diameter, path, velocity, spin })
         })
         .collect()
 }
@@ -211,14 +232,15 @@ fn chosen_wires(at: &At, raw: &RawWire, len: usize) -> Result<std::ops::Range<us
 }
 
 /// Resolves all `[[sphere]]`.
-pub(super) fn spheres(at: &At, raw: &[RawSphere]) -> Result<Vec<SphereSpec>> {
-    raw.iter().enumerate().map(|(index, raw)| sphere(&at.element(index), raw)).collect()
+pub(super) fn spheres(at: &At, raw: &[RawSphere], materials: &Materials) -> Result<Vec<SphereSpec>> {
+    raw.iter().enumerate().map(|(index, raw)| sphere(&at.element(index), raw, materials)).collect()
 }
 
-fn sphere(at: &At, raw: &RawSphere) -> Result<SphereSpec> {
+fn sphere(at: &At, raw: &RawSphere, materials: &Materials) -> Result<SphereSpec> {
     let example = "[\"0 mm\", \"0 mm\", \"5 mm\"]";
     let position = raw.position.as_ref().ok_or_else(|| at.missing("position", example))?;
     Ok(SphereSpec {
+        material: materials.number(at, raw.material.as_ref())?,
         diameter: at.required("diameter", &raw.diameter, Dimension::Length, Range::Positive)?,
         position: at.key("position").vector(position, Dimension::Length)?,
         velocity: at.vector_or_zero("velocity", &raw.velocity, Dimension::Velocity)?,

@@ -16,10 +16,14 @@ pub struct Spec {
     pub about: String,
     /// Seed of the scatter (-).
     pub seed: u64,
-    /// The wire material.
+    /// Name of the first material; `None` for that of `[material]` and `[bond]`.
+    pub material_name: Option<String>,
+    /// The first material, of most scenes the only one ([`Spec::materials`]).
     pub material: Material,
-    /// Bonds along wires.
+    /// Bonds along wires of it.
     pub bond: BondSpec,
+    /// The other materials of which there are bodies.
+    pub further: Vec<MaterialSpec>,
     /// Contacts; `None` when the scene says `contact.normal = "none"`.
     pub contact: Option<ContactSpec>,
     /// A strand laid up in helical layers.
@@ -69,6 +73,43 @@ impl Material {
     pub fn shear(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))
     }
+}
+
+/// A material beside the first one of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialSpec {
+    /// Its name; `None` for that of `[material]` and `[bond]`.
+    pub name: Option<String>,
+    /// Elastic constants and density.
+    pub material: Material,
+    /// What bonds of it do.
+    pub bond: BondSpec,
+    /// Limiting contact pressure p_y (Pa); `None` where contacts are elastic, or where there are none.
+    pub limiting_pressure: Option<f64>,
+    /// By which rule that comes from the hardening law; `None` where it is given.
+    pub hardness: Option<Hardness>,
+}
+
+/// Friction between bodies of two materials, which may be the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairSpec {
+    /// Numbers of the two materials, the lower one first.
+    pub materials: [usize; 2],
+    /// Coulomb friction coefficient (-).
+    pub friction: f64,
+}
+
+/// One of the materials of a scene, wherever it stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OneMaterial<'a> {
+    /// Its name; `None` for that of `[material]` and `[bond]`.
+    pub name: Option<&'a str>,
+    /// Elastic constants and density.
+    pub material: &'a Material,
+    /// What bonds of it do.
+    pub bond: &'a BondSpec,
+    /// Limiting contact pressure p_y (Pa); `None` where contacts are elastic, or where there are none.
+    pub limiting_pressure: Option<f64>,
 }
 
 /// Bonds: law, rupture, damping.
@@ -127,14 +168,16 @@ pub enum RuptureCriterion {
 /// Contacts between surfaces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSpec {
-    /// Normal law.
+    /// Normal law, with the limiting pressure of the first material.
     pub normal: NormalSpec,
     /// Where the limiting pressure comes from the hardening law of the bonds: by which rule; `None` where it is given.
     pub hardness: Option<Hardness>,
     /// Tangential law; `None` means frictionless.
     pub tangential: Option<TangentialSpec>,
-    /// Coulomb friction coefficient (-).
+    /// Coulomb friction coefficient (-) of pairs of materials that have none of their own.
     pub friction: f64,
+    /// Pairs of materials with a friction of their own.
+    pub pairs: Vec<PairSpec>,
     /// Shape of a wire in contact.
     pub shape: Shape,
     /// Viscous damping of the normal contact motion, fraction of critical (-); friction damps the tangential one.
@@ -215,6 +258,8 @@ pub struct LayerSpec {
     pub lay: f64,
     /// Phase φ_k (rad).
     pub phase: f64,
+    /// Number of its material ([`Spec::materials`]).
+    pub material: usize,
 }
 
 /// A wire on its own.
@@ -222,6 +267,8 @@ pub struct LayerSpec {
 pub struct WireSpec {
     /// Name of the layer the wire is counted in.
     pub layer: String,
+    /// Number of its material ([`Spec::materials`]).
+    pub material: usize,
     /// Wire diameter d (m).
     pub diameter: f64,
     /// Its centre line.
@@ -256,6 +303,8 @@ pub enum PathSpec {
 /// A free sphere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SphereSpec {
+    /// Number of its material ([`Spec::materials`]).
+    pub material: usize,
     /// Diameter (m).
     pub diameter: f64,
     /// Centre (m).

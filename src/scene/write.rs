@@ -14,12 +14,11 @@ pub fn to_toml(spec: &Spec) -> String {
     out.entry("seed", spec.seed.to_string());
     out.entry("spacing", number(spec.spacing));
     out.entry("plan", text(plan_name(spec.plan)));
-    material(&mut out, &spec.material);
-    bond(&mut out, &spec.bond);
-    contact(&mut out, spec.contact.as_ref());
-    strand(&mut out, spec.strand.as_ref());
-    spec.wires.iter().for_each(|wire| self::wire(&mut out, wire));
-    spec.spheres.iter().for_each(|sphere| self::sphere(&mut out, sphere));
+    materials(&mut out, spec);
+    contact(&mut out, spec);
+    strand(&mut out, spec);
+    spec.wires.iter().for_each(|wire| self::wire(&mut out, spec, wire));
+    spec.spheres.iter().for_each(|sphere| self::sphere(&mut out, spec, sphere));
     grip(&mut out, spec.grip.as_ref());
     spec.holds.iter().for_each(|hold| self::hold(&mut out, hold));
     time(&mut out, &spec.time);
@@ -87,15 +86,67 @@ fn plan_name(plan: PlanMode) -> &'static str {
     }
 }
 
+/// The materials of which there are bodies, in the order in which a scene is read.
+fn materials(out: &mut Lines, spec: &Spec) {
+    for one in spec.materials() {
+        match one.name {
+            None => {
+                out.table("[material]");
+                material(out, one.material);
+                out.table("[bond]");
+                bond(out, one.bond);
+            }
+            Some(name) => {
+                out.table(&format!("[materials.{}]", key(name)));
+                material(out, one.material);
+                bond(out, one.bond);
+                if spec.has_several_materials() {
+                    hardness(out, spec, name);
+                }
+            }
+        }
+    }
+}
+
+/// A name as a key of TOML.
+fn key(name: &str) -> String {
+    toml_edit::Key::new(name).to_string()
+}
+
+/// The limiting pressure of a named material beside others; that of a single one stands in `[contact]`.
+fn hardness(out: &mut Lines, spec: &Spec, name: &str) {
+    let first = spec.contact.as_ref().and_then(|contact| contact.hardness);
+    let rules = std::iter::once(first).chain(spec.further.iter().map(|further| further.hardness));
+    let found = spec.materials().zip(rules).find(|(one, _)| one.name == Some(name));
+    let Some((OneMaterial { limiting_pressure: Some(pressure), .. }, rule)) = found else { return };
+    limit(out, pressure, rule);
+}
+
+/// A limiting pressure (Pa), or the rule that gives it.
+fn limit(out: &mut Lines, pressure: f64, rule: Option<Hardness>) {
+    match rule {
+        Some(Hardness { factor, strain }) => {
+            out.entry("hardness_factor", number(factor));
+            out.entry("hardness_strain", number(strain));
+        }
+        None => out.quantity("limiting_pressure", pressure, Dimension::Pressure),
+    }
+}
+
+/// Names the material of a body, if it has one.
+fn named(out: &mut Lines, spec: &Spec, number: usize) {
+    if let Some(name) = spec.material_at(number).name {
+        out.entry("material", text(name));
+    }
+}
+
 fn material(out: &mut Lines, material: &Material) {
-    out.table("[material]");
     out.quantity("density", material.density, Dimension::Density);
     out.quantity("young", material.young, Dimension::Pressure);
     out.entry("poisson", number(material.poisson));
 }
 
 fn bond(out: &mut Lines, bond: &BondSpec) {
-    out.table("[bond]");
     match &bond.law {
         BondLawSpec::Elastic => out.entry("law", text("elastic")),
         BondLawSpec::ElastoPlastic(law) => {
@@ -158,19 +209,19 @@ fn rupture(rupture: &RuptureSpec) -> String {
     format!("{{ {criterion}, weibull_modulus = {} }}", number(rupture.weibull_modulus))
 }
 
-fn contact(out: &mut Lines, contact: Option<&ContactSpec>) {
-    let Some(contact) = contact else { return };
+fn contact(out: &mut Lines, spec: &Spec) {
+    let Some(contact) = &spec.contact else { return };
     out.table("[contact]");
     match contact.normal {
         NormalSpec::Hertz => out.entry("normal", text("hertz")),
         NormalSpec::Thornton { limiting_pressure } => {
             out.entry("normal", text("thornton"));
-            match contact.hardness {
-                Some(Hardness { factor, strain }) => {
-                    out.entry("hardness_factor", number(factor));
-                    out.entry("hardness_strain", number(strain));
-                }
-                None => out.quantity("limiting_pressure", limiting_pressure, Dimension::Pressure),
+            let unnamed = spec.further.iter().find(|further| further.name.is_none());
+            match (spec.has_several_materials() && spec.material_name.is_some(), unnamed) {
+                (false, _) => limit(out, limiting_pressure, contact.hardness),
+                (true, Some(one)) => limit(out, one.limiting_pressure.unwrap_or(f64::INFINITY), one.hardness),
+                // Named materials have their own.
+                (true, None) => {}
             }
         }
     }
@@ -188,10 +239,16 @@ fn contact(out: &mut Lines, contact: Option<&ContactSpec>) {
     out.entry("shape", text(shape));
     out.entry("damping", number(contact.damping));
     out.entry("skin", number(contact.skin));
+    for pair in &contact.pairs {
+        let names = pair.materials.map(|number| text(spec.material_at(number).label()));
+        out.table("[[contact.pair]]");
+        out.entry("materials", format!("[{}, {}]", names[0], names[1]));
+        out.entry("friction", number(pair.friction));
+    }
 }
 
-fn strand(out: &mut Lines, strand: Option<&StrandSpec>) {
-    let Some(strand) = strand else { return };
+fn strand(out: &mut Lines, spec: &Spec) {
+    let Some(strand) = &spec.strand else { return };
     out.table("[strand]");
     out.quantity("length", strand.length, Dimension::Length);
     for layer in &strand.layers {
@@ -206,12 +263,14 @@ fn strand(out: &mut Lines, strand: Option<&StrandSpec>) {
         out.quantity("pitch", layer.pitch, Dimension::Length);
         out.entry("lay", text(if layer.lay > 0.0 { "right" } else { "left" }));
         out.quantity("phase", layer.phase, Dimension::Angle);
+        named(out, spec, layer.material);
     }
 }
 
-fn wire(out: &mut Lines, wire: &WireSpec) {
+fn wire(out: &mut Lines, spec: &Spec, wire: &WireSpec) {
     out.table("[[wire]]");
     out.entry("layer", text(&wire.layer));
+    named(out, spec, wire.material);
     out.quantity("diameter", wire.diameter, Dimension::Length);
     match &wire.path {
         PathSpec::Straight { from, to } => {
@@ -227,8 +286,9 @@ fn wire(out: &mut Lines, wire: &WireSpec) {
     out.vector("spin", wire.spin, Dimension::AngularVelocity);
 }
 
-fn sphere(out: &mut Lines, sphere: &SphereSpec) {
+fn sphere(out: &mut Lines, spec: &Spec, sphere: &SphereSpec) {
     out.table("[[sphere]]");
+    named(out, spec, sphere.material);
     out.quantity("diameter", sphere.diameter, Dimension::Length);
     out.entry("position", vector(sphere.position, Dimension::Length));
     out.vector("velocity", sphere.velocity, Dimension::Velocity);

@@ -31,9 +31,11 @@ pub struct Assembly {
     pub rest_length: Vec<f64>,
     /// Wire of each particle; `u32::MAX` for free spheres.
     pub wire_of: Vec<u32>,
+    /// Number of the material of each free sphere.
+    pub sphere_material: Vec<usize>,
     /// Length of the body along z (m) (z from 0 to this when a strand; the extent of the wires otherwise).
     pub length: f64,
-    /// Total copper area ΣnA₀ over all wires (m²).
+    /// Total area ΣnA₀ of metal over all wires (m²).
     pub area: f64,
 }
 
@@ -59,6 +61,8 @@ pub struct Wire {
     pub first: usize,
     /// Number of particles.
     pub len: usize,
+    /// Number of its material ([`crate::scene::spec::Spec::materials`]).
+    pub material: usize,
     /// Diameter (m).
     pub diameter: f64,
 }
@@ -107,6 +111,14 @@ impl Assembly {
         let wires = self.wires.iter().map(Wire::particles);
         let spheres = (self.wire_particles..self.len()).map(|i| i..i + 1);
         wires.chain(spheres).collect()
+    }
+
+    /// Number of the material of particle `i`.
+    pub fn material_of(&self, i: usize) -> usize {
+        match self.wires.get(self.wire_of[i] as usize) {
+            Some(wire) => wire.material,
+            None => self.sphere_material[i - self.wire_particles],
+        }
     }
 
     /// Whether slot `i` is a bond.

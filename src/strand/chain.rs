@@ -13,6 +13,8 @@ use std::f64::consts::TAU;
 pub(super) struct WireChain {
     /// Index into the assembly's layers.
     pub layer: usize,
+    /// Number of its material.
+    pub material: usize,
     /// Diameter (m).
     pub diameter: f64,
     /// Particle centres and the arcs between them.
@@ -60,6 +62,7 @@ pub(super) fn lay_up(
             })?;
             chains.push(WireChain {
                 layer: k,
+                material: layer.material,
                 diameter: layer.wire_diameter,
                 chain,
                 velocity: DVec3::ZERO,
@@ -106,6 +109,7 @@ pub(super) fn chain_of_wire(
     });
     Ok(WireChain {
         layer,
+        material: wire.material,
         diameter: wire.diameter,
         chain,
         velocity: wire.velocity,

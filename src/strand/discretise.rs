@@ -140,6 +140,7 @@ fn assemble(spec: &Spec, layers: Vec<Layer>, chains: &[WireChain]) -> Assembly {
         inertia: Vec::with_capacity(n),
         rest_length: Vec::with_capacity(n),
         wire_of: Vec::with_capacity(n),
+        sphere_material: spec.spheres.iter().map(|sphere| sphere.material).collect(),
         length: 0.0,
         area: 0.0,
     };
@@ -160,10 +161,15 @@ const WIRE_INERTIA: f64 = 0.5;
 const SPHERE_INERTIA: f64 = 0.4;
 
 fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &WireChain) {
-    let placed =
-        Wire { layer: wire.layer, first: assembly.len(), len: wire.chain.points.len(), diameter: wire.diameter };
+    let placed = Wire {
+        layer: wire.layer,
+        first: assembly.len(),
+        len: wire.chain.points.len(),
+        material: wire.material,
+        diameter: wire.diameter,
+    };
     let (points, arcs) = (&wire.chain.points, &wire.chain.arcs);
-    let per_length = spec.material.density * placed.area();
+    let per_length = spec.material_at(wire.material).material.density * placed.area();
     // Arc on both sides of a particle, halved; wire ends have one side only.
     let share = |i: usize| {
         let before = if i > 0 { arcs[i - 1] } else { 0.0 };
@@ -190,7 +196,7 @@ fn add_wire(assembly: &mut Assembly, spec: &Spec, wire: &WireChain) {
 fn add_spheres(assembly: &mut Assembly, spec: &Spec) {
     for sphere in &spec.spheres {
         let radius = 0.5 * sphere.diameter;
-        let mass = 4.0 / 3.0 * PI * radius.powi(3) * spec.material.density;
+        let mass = 4.0 / 3.0 * PI * radius.powi(3) * spec.material_at(sphere.material).material.density;
         assembly.position.push(sphere.position);
         assembly.velocity.push(sphere.velocity);
         assembly.spin.push(sphere.spin);

@@ -5,7 +5,16 @@ use glam::DVec3;
 
 /// A layer laid to the right, starting on the x axis.
 pub(crate) fn layer(wires: usize, wire_diameter: f64, lay_radius: Option<f64>, pitch: f64) -> LayerSpec {
-    LayerSpec { name: format!("{wires} wires"), wires, wire_diameter, lay_radius, pitch, lay: 1.0, phase: 0.0 }
+    LayerSpec {
+        name: format!("{wires} wires"),
+        wires,
+        wire_diameter,
+        lay_radius,
+        pitch,
+        lay: 1.0,
+        phase: 0.0,
+        material: 0,
+    }
 }
 
 /// Nothing but annealed copper, elastic unbreakable bonds and touching spheres.
@@ -14,8 +23,10 @@ pub(crate) fn empty() -> Spec {
         name: "test".into(),
         about: "A scene built by a test.".into(),
         seed: 1,
+        material_name: None,
         material: Material { density: 8940.0, young: 115e9, poisson: 0.34 },
         bond: BondSpec { law: BondLawSpec::Elastic, rupture: None, damping: [0.0; 4] },
+        further: Vec::new(),
         contact: None,
         strand: None,
         wires: Vec::new(),
@@ -52,7 +63,7 @@ pub(crate) fn ka4() -> Spec {
 
 /// A wire along `path`, at rest, counted in the layer `wire`.
 pub(crate) fn wire(diameter: f64, path: PathSpec) -> WireSpec {
-    WireSpec { layer: "wire".into(), diameter, path, velocity: DVec3::ZERO, spin: DVec3::ZERO }
+    WireSpec { layer: "wire".into(), material: 0, diameter, path, velocity: DVec3::ZERO, spin: DVec3::ZERO }
 }
 
 /// A straight wire at rest.
@@ -62,5 +73,5 @@ pub(crate) fn straight(diameter: f64, from: DVec3, to: DVec3) -> WireSpec {
 
 /// A sphere at rest.
 pub(crate) fn sphere(diameter: f64, position: DVec3) -> SphereSpec {
-    SphereSpec { diameter, position, velocity: DVec3::ZERO, spin: DVec3::ZERO }
+    SphereSpec { material: 0, diameter, position, velocity: DVec3::ZERO, spin: DVec3::ZERO }
 }

@@ -22,12 +22,23 @@ impl Theory {
     /// Theory of the bodies of `spec`; `None` when it has none for them: free spheres, wires that are neither laid in
     /// layers nor straight along z and equally long, layers that do not fit.
     pub fn of(spec: &Spec) -> Option<Self> {
-        let (layers, gaps) = match &spec.strand {
-            Some(strand) if spec.wires.is_empty() => laid(strand)?,
-            None if !spec.wires.is_empty() => straight(&spec.wires)?,
+        let (layers, gaps, materials) = match &spec.strand {
+            Some(strand) if spec.wires.is_empty() => {
+                let (layers, gaps) = laid(strand)?;
+                (layers, gaps, strand.layers.iter().map(|layer| layer.material).collect::<Vec<_>>())
+            }
+            None if !spec.wires.is_empty() => {
+                let (layers, gaps) = straight(&spec.wires)?;
+                (layers, gaps, spec.wires.iter().map(|wire| wire.material).collect())
+            }
             _ => return None,
         };
-        let wrench = strand::elastic(&layers, spec.material.young, spec.material.poisson, Wire::Extensible);
+        let elastic = |number: usize| {
+            let material = spec.material_at(number).material;
+            [material.young, material.poisson]
+        };
+        let materials: Vec<[f64; 2]> = materials.into_iter().map(elastic).collect();
+        let wrench = strand::elastic_of_materials(&layers, &materials, Wire::Extensible);
         let closing_strain = strand::closing_strain(&layers, &gaps);
         Some(Self { area: strand::area(&layers), wrench, closing_strain, layers })
     }

@@ -140,6 +140,10 @@ impl Start {
         let wrong = |key: &str, what: &str| {
             scene.source.error(key, what, "calibration fits a Voce law and a plastic strain at rupture, see ka4")
         };
+        if scene.spec.has_several_materials() || scene.spec.material_name.is_some() {
+            let what = "this scene names its materials, and calibration fits [bond]";
+            return Err(scene.source.error("materials", what, "calibrate each material with a scene of its own wire"));
+        }
         let BondLawSpec::ElastoPlastic(HardeningSpec::Voce { yield_stress, saturation, rate, linear }) =
             &scene.spec.bond.law
         else {

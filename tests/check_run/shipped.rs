@@ -18,6 +18,18 @@ fn options(name: &str) -> Vec<&'static str> {
     match name {
         "ka4" => [&SHORT[..], &["grip.adaptive="]].concat(),
         "jaw-grip" | "strand-1x7" => SHORT.to_vec(),
+        "strand-1x19" => [&SHORT[..], &["strand.length=40 mm", "bond.rupture.strain=0.5 %"]].concat(),
+        "hard-drawn-7" => [&SHORT[..], &["strand.length=60 mm", "bond.rupture.strain=0.5 %"]].concat(),
+        "acsr" => vec![
+            "strand.length=110 mm",
+            "grip.length=15 mm",
+            "grip.speed=10 m/s",
+            "materials.aluminium.rupture.strain=0.4 %",
+            "materials.steel.rupture.strain=0.6 %",
+            "stop.strain=1.6 %",
+            "output.samples=300",
+            "output.snapshots=20",
+        ],
         "single-wire" => [&SHORT[1..], &wire].concat(),
         _ => Vec::new(),
     }
@@ -47,6 +59,9 @@ shipped! {
     ka4 "ka4",
     jaw_grip "jaw-grip",
     strand_1x7 "strand-1x7",
+    strand_1x19 "strand-1x19",
+    hard_drawn_7 "hard-drawn-7",
+    acsr "acsr",
     single_wire "single-wire",
     cantilever "cantilever",
     torsion "torsion",

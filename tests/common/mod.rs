@@ -35,6 +35,7 @@ fn strand(name: &str, layers: &[&str], wires: &[(usize, f32)]) -> RunInfo {
     let mut info = RunInfo {
         name: name.into(),
         layers: layers.iter().map(|l| (*l).into()).collect(),
+        materials: vec!["default".into()],
         gauge: Some([10e-3, 110e-3]),
         stress_range: [0.0, 420e6],
         plastic_strain_range: [0.0, 0.3],
@@ -47,6 +48,7 @@ fn strand(name: &str, layers: &[&str], wires: &[(usize, f32)]) -> RunInfo {
         for k in 0..count {
             info.wires.push(WireInfo {
                 layer,
+                material: 0,
                 first: info.rest_position.len(),
                 len: PARTICLES,
                 diameter: DIAMETER.into(),
@@ -187,6 +189,8 @@ pub fn two_spheres() -> (RunInfo, Snapshot) {
     let info = RunInfo {
         name: "two-spheres".into(),
         particles: 2,
+        materials: vec!["default".into()],
+        sphere_material: vec![0; 2],
         radius: vec![0.5e-3, 0.6e-3],
         rest_position: position.clone(),
         stress_range: [0.0, 1.0],

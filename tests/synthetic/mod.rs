@@ -92,7 +92,7 @@ fn info() -> RunInfo {
         let arc = LENGTH * (1.0 + (radius * turn).powi(2)).sqrt();
         let len = (arc / DIAMETER) as usize + 1;
         for wire in 0..*count {
-            wires.push(WireInfo { layer, first: rest_position.len(), len, diameter: DIAMETER });
+            wires.push(WireInfo { layer, material: 0, first: rest_position.len(), len, diameter: DIAMETER });
             rest_position.extend((0..len).map(|k| {
                 let z = LENGTH * k as f64 / (len - 1) as f64;
                 let angle = turn * z + TAU * wire as f64 / *count as f64;
@@ -105,6 +105,8 @@ fn info() -> RunInfo {
         name: "ka4-synthetic".into(),
         about: "A KA4 strand that was not simulated".into(),
         layers: LAYERS.iter().map(|(name, _, _)| (*name).to_owned()).collect(),
+        materials: vec!["default".to_owned()],
+        sphere_material: Vec::new(),
         wires,
         wire_particles: particles,
         particles,
@@ -116,6 +118,7 @@ fn info() -> RunInfo {
         speed_range: [0.0, 10.0],
         contact_pressure_range: [0.0, 40e6],
         strain_end: Some(STRAIN_END),
+        body_stress_end: None,
         negligible_energy: 1e-12,
         wave_passage: 3e-5,
     }

@@ -26,6 +26,8 @@ pub(super) struct Chunk<'a, L: BondLaw, const TURN: bool> {
     pub(super) damped: bool,
     /// Plastic strain at which each slot breaks (-), if that is the criterion.
     pub(super) limit: Option<&'a [f64]>,
+    /// Which slots and blocks are those of its law, where others are not (1 or 0).
+    pub(super) own: Option<(&'a [f64], &'a [bool])>,
     pub(super) actions: &'a mut [f64],
 }
 
@@ -45,6 +47,9 @@ impl<L: BondLaw, const TURN: bool> WithSimd for Chunk<'_, L, TURN> {
         let (mut sums, mut due) = (Sums::default(), self.limit.is_none());
         let blocks = self.records.len() / (BLOCK * Layout::<L, TURN>::FIELDS);
         for block in 0..blocks {
+            if self.own.is_some_and(|(_, blocks)| !blocks[block]) {
+                continue;
+            }
             for lane in (0..BLOCK).step_by(Lanes::<S>::LEN) {
                 due |= self.bonds(simd, block, lane, &mut sums);
             }
@@ -108,7 +113,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         };
         book(&mut sums.plastic, step.plastic);
         book(&mut sums.damping, step.damping);
-        self.act(block, lane, live, &acts, self.law.thinning(&shape, &state));
+        self.act(simd, block, lane, live, &acts, self.law.thinning(&shape, &state));
         self.limit.is_some_and(|limit| {
             let limit = Lanes::load_up_to_end(simd, limit, slot);
             (live & reached(self.law.plastic_strain(&shape, &state), limit)).any()
@@ -129,6 +134,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
     #[inline(always)]
     fn act<S: Simd>(
         &mut self,
+        simd: S,
         block: usize,
         lane: usize,
         live: <Lanes<S> as Real>::Mask,
@@ -136,23 +142,31 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         thinning: Lanes<S>,
     ) {
         let at = block * BLOCK + lane;
-        let mut put = |field: usize, number: Lanes<S>| {
-            Lanes::select(live, number, number.splat(0.0)).store(self.actions, field * CHUNK + at);
-        };
-        put(BondActions::THINNING, thinning);
-        put(BondActions::PULL, acts.pull.x);
-        put(BondActions::PULL + 1, acts.pull.y);
-        put(BondActions::PULL + 2, acts.pull.z);
-        if TURN {
-            put(BondActions::NEAR, acts.near.x);
-            put(BondActions::NEAR + 1, acts.near.y);
-            put(BondActions::NEAR + 2, acts.near.z);
-            put(BondActions::FAR, acts.far.x);
-            put(BondActions::FAR + 1, acts.far.y);
-            put(BondActions::FAR + 2, acts.far.z);
+        let Acts { pull, near, far } = acts;
+        let all = [thinning, pull.x, pull.y, pull.z, near.x, near.y, near.z, far.x, far.y, far.z];
+        let fields = if TURN { BondActions::FAR + 3 } else { BondActions::PULL + 3 };
+        let zero = thinning.splat(0.0);
+        match self.own {
+            None => {
+                for (field, number) in all.into_iter().enumerate().take(fields) {
+                    Lanes::select(live, number, zero).store(self.actions, field * CHUNK + at);
+                }
+            }
+            // Bonds of other laws in the same block have put theirs.
+            Some((slots, _)) => {
+                let own = Lanes::load_up_to_end(simd, slots, at).simd_gt(zero);
+                for (field, number) in all.into_iter().enumerate().take(fields) {
+                    let others = Lanes::load(simd, self.actions, field * CHUNK + at);
+                    let number = Lanes::select(own, Lanes::select(live, number, zero), others);
+                    number.store(self.actions, field * CHUNK + at);
+                }
+            }
         }
     }
 }
+
+const _: () =
+    assert!(BondActions::THINNING == 0 && BondActions::PULL == 1 && BondActions::NEAR == 4 && BondActions::FAR == 7);
 
 /// Writes what bonds remember. Of a bond that broke it stays as it was then, no force and its last plastic strain, wherever
 /// its two particles go: whoever reads a record need not ask whether the bond holds. No closure, which would not be compiled

@@ -13,6 +13,8 @@ pub mod formula;
 mod kernel;
 mod kinematics;
 mod layout;
+mod several;
+mod stage;
 pub mod trial;
 
 use crate::base::lanes::BLOCK;
@@ -29,70 +31,55 @@ use crate::law::bond::elasto_plastic::ElastoPlastic;
 use crate::law::bond::{BondForce, BondLaw, BondShape, Moduli, Section};
 use crate::law::damping::viscous_coefficient;
 use crate::scene::plan::Plan;
-use crate::scene::spec::{BondLawSpec, Spec};
+use crate::scene::spec::{BondLawSpec, BondSpec, OneMaterial, Spec};
 use crate::strand::assembly::Assembly;
 use formula::{BondInRun, BondStep};
 use kernel::Chunk;
 use layout::{CONSTANTS, Layout, MODES, SHAPE, constant_named, force, place, shape};
 use pulp::Arch;
+use several::{Own, SeveralBonds};
+pub use stage::Bonds;
 
-/// Chooses law and modes, once per run.
+/// Chooses law and modes, once per run and material.
 pub fn build(spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
-    let moduli = Moduli::new(spec.material.young, spec.material.poisson);
-    match &spec.bond.law {
-        BondLawSpec::Elastic => with_law(Elastic { moduli }, spec, plan, assembly),
-        BondLawSpec::ElastoPlastic(h) => with_law(ElastoPlastic { moduli, hardening: h.clone() }, spec, plan, assembly),
+    if !spec.has_several_materials() {
+        return of_material(spec.material_at(0), spec.seed, plan, assembly, None);
+    }
+    let own = |number| Some(Own::new(number, assembly));
+    let stage = |(number, one)| of_material(one, spec.seed, plan, assembly, own(number));
+    Box::new(SeveralBonds::new(spec.materials().enumerate().map(stage).collect(), assembly))
+}
+
+/// Bonds of a material.
+fn of_material(one: OneMaterial, seed: u64, plan: &Plan, assembly: &Assembly, own: Option<Own>) -> Box<dyn Bonds> {
+    let moduli = Moduli::new(one.material.young, one.material.poisson);
+    match &one.bond.law {
+        BondLawSpec::Elastic => stage(Elastic { moduli }, one.bond, seed, plan, assembly, own),
+        BondLawSpec::ElastoPlastic(hardening) => {
+            stage(ElastoPlastic { moduli, hardening: hardening.clone() }, one.bond, seed, plan, assembly, own)
+        }
     }
 }
 
 /// Bonds of the law `law`; damping and rupture are the scene's.
 pub fn with_law<L: BondLaw>(law: L, spec: &Spec, plan: &Plan, assembly: &Assembly) -> Box<dyn Bonds> {
-    let check = spec.bond.rupture.as_ref().map(|r| RuptureCheck::new(r, spec.seed, assembly));
-    let damping = spec.bond.damping;
-    if plan.rotations {
-        Box::new(BondStage::<L, true>::new(law, assembly, damping, check))
-    } else {
-        Box::new(BondStage::<L, false>::new(law, assembly, damping, check))
-    }
+    stage(law, &spec.bond, spec.seed, plan, assembly, None)
 }
 
-/// What the engine asks of bonds, whatever their law.
-pub trait Bonds: Send + Sync {
-    /// Computes every bond's action on its particles from `state`; returns the energies of the step.
-    fn compute(&mut self, state: &mut State, team: &Team) -> ChunkSums;
-    /// Breaks the bonds that reached their limit; calls `broke(slot, cause, true axial stress [Pa])` for each, in order,
-    /// and returns the elastic energy that they held (J).
-    fn rupture(&mut self, state: &mut State, broke: &mut dyn FnMut(usize, Criterion, f64)) -> f64;
-    /// Stored elastic energy (J).
-    fn elastic_energy(&self, state: &State) -> f64;
-    /// The bonds of one chunk as the bound on the time step sees them, in order.
-    fn elements(&self, state: &State, chunk: usize, each: &mut dyn FnMut(Element));
-    /// True axial stress of a bond (Pa).
-    fn stress(&self, slot: usize) -> f64;
-    /// Axial force of a bond (N).
-    fn axial_force(&self, slot: usize) -> f64;
-    /// Equivalent plastic strain of a bond (-).
-    fn plastic_strain(&self, slot: usize) -> f64;
-    /// Share of its rupture limit that a bond has reached (-): it breaks at 1. 0 without a rupture criterion.
-    fn utilisation(&self, slot: usize, state: &State) -> f64;
-    /// Memory of the stage.
-    fn bytes(&self) -> Bytes;
-    /// A step of a bond as a function.
-    ///
-    /// # Errors
-    /// Why it cannot be recorded.
-    fn record(&self) -> Result<Function, String>;
-    /// A number of every slot, by its name in that function.
-    fn numbers(&self, name: &str) -> Option<Vec<f64>>;
-    /// Takes up a number of every slot that the function has given, if bonds remember a number of this name.
-    fn set_numbers(&mut self, name: &str, numbers: &[f64]);
-    /// Puts in what the bonds remember.
-    fn save(&self, out: &mut Writer);
-    /// Takes up what [`Self::save`] has put in.
-    ///
-    /// # Errors
-    /// [`Unfit`] when it is of other bonds.
-    fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit>;
+fn stage<L: BondLaw>(
+    law: L,
+    bond: &BondSpec,
+    seed: u64,
+    plan: &Plan,
+    assembly: &Assembly,
+    own: Option<Own>,
+) -> Box<dyn Bonds> {
+    let check = bond.rupture.as_ref().map(|r| RuptureCheck::new(r, seed, assembly));
+    if plan.rotations {
+        Box::new(BondStage::<L, true>::new(law, assembly, bond.damping, check, own))
+    } else {
+        Box::new(BondStage::<L, false>::new(law, assembly, bond.damping, check, own))
+    }
 }
 
 /// Bonds with law `L`; `TURN` says whether particles turn.
@@ -107,6 +94,8 @@ pub struct BondStage<L: BondLaw, const TURN: bool> {
     kind: Vec<u32>,
     damped: bool,
     rupture: Option<RuptureCheck>,
+    /// Which bonds are its own; `None` where all are.
+    own: Option<Own>,
     partial: Vec<ChunkSums>,
     /// Whether a bond of each chunk may have reached its limit at this step.
     due: Vec<bool>,
@@ -114,8 +103,15 @@ pub struct BondStage<L: BondLaw, const TURN: bool> {
 }
 
 impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
-    /// All bonds of the assembly; `damping` is the fraction of critical per mode (-).
-    pub fn new(law: L, assembly: &Assembly, damping: [f64; MODES], rupture: Option<RuptureCheck>) -> Self {
+    /// The bonds of the assembly that are its `own`, all where it is `None`; `damping` is the fraction of critical per mode
+    /// (-).
+    pub fn new(
+        law: L,
+        assembly: &Assembly,
+        damping: [f64; MODES],
+        rupture: Option<RuptureCheck>,
+        own: Option<Own>,
+    ) -> Self {
         let n = assembly.len();
         let blocks = n.div_ceil(BLOCK);
         let mut stage = Self {
@@ -125,15 +121,20 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
             kind: Vec::with_capacity(blocks),
             damped: damping.iter().any(|d| *d > 0.0),
             rupture,
+            own,
             partial: vec![ChunkSums::default(); n.div_ceil(CHUNK)],
             due: vec![true; n.div_ceil(CHUNK)],
             arch: Arch::new(),
         };
         for block in 0..blocks {
+            if stage.own.as_ref().is_some_and(|own| !own.blocks[block]) {
+                stage.kind.push(0);
+                continue;
+            }
             let mut rows = [0.0; CONSTANTS * BLOCK];
             for slot in block * BLOCK..n.min((block + 1) * BLOCK) {
                 stage.set_up(slot, assembly);
-                let constants = constants(&stage.law, assembly, slot, damping);
+                let constants = constants(&stage.law, assembly, slot, damping, stage.has(slot));
                 constants.into_iter().enumerate().for_each(|(k, c)| rows[k * BLOCK + slot % BLOCK] = c);
             }
             stage.kind.push(stage.constants.place(&rows));
@@ -146,7 +147,7 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
     fn set_up(&mut self, slot: usize, assembly: &Assembly) {
         let initial = self.law.initial();
         L::each_number(&initial, |k, number| self.set(slot, Layout::<L, TURN>::HISTORY + k, number));
-        if assembly.is_bond(slot) {
+        if assembly.is_bond(slot) && self.has(slot) {
             self.set(slot, Layout::<L, TURN>::LIVE, 1.0);
             if TURN {
                 let axis = (assembly.position.get(slot + 1) - assembly.position.get(slot)).normalize();
@@ -154,6 +155,11 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
                 e1.into_iter().enumerate().for_each(|(k, e)| self.set(slot, Layout::<L, TURN>::FRAME + k, e));
             }
         }
+    }
+
+    /// Whether a slot is of a bond that is its own, or of none.
+    fn has(&self, slot: usize) -> bool {
+        self.own.as_ref().is_none_or(|own| own.has(slot))
     }
 
     fn get(&self, slot: usize, field: usize) -> f64 {
@@ -189,10 +195,11 @@ impl<L: BondLaw, const TURN: bool> BondStage<L, TURN> {
     }
 }
 
-/// Shape of a slot, and its coefficients 2ξ√(k m) with the reduced mass (or inertia) of the two ends.
-fn constants<L: BondLaw>(law: &L, a: &Assembly, i: usize, damping: [f64; MODES]) -> [f64; CONSTANTS] {
+/// Shape of a slot, and its coefficients 2ξ√(k m) with the reduced mass (or inertia) of the two ends, where its bond is one
+/// `of` the law's.
+fn constants<L: BondLaw>(law: &L, a: &Assembly, i: usize, damping: [f64; MODES], of: bool) -> [f64; CONSTANTS] {
     let shape = BondShape::new(a.rest_length[i], a.radius[i]);
-    if !a.is_bond(i) {
+    if !a.is_bond(i) || !of {
         // A slot without a bond has no length; its inverse must not be infinite where it is not used.
         return [shape.rest_length, shape.radius, 0.0, shape.inverse_radius, 0.0, 0.0, 0.0, 0.0];
     }
@@ -224,6 +231,7 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
         let fields = state.bond.fields();
         let (law, kind, constants, arch) = (&self.law, &self.kind, self.constants.rows(), self.arch);
         let limit = self.rupture.as_ref().and_then(RuptureCheck::plastic_limit);
+        let own = self.own.as_ref();
         let (x, v, w, dt, damped) = (&state.x, &state.v, &state.w, state.dt, self.damped);
         let records = self.records.chunks_mut(blocks * BLOCK * Layout::<L, TURN>::FIELDS);
         let results = self.partial.iter_mut().zip(&mut self.due);
@@ -233,7 +241,9 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
             let kind = &kind[first / BLOCK..];
             // The first evaluation, before any step, has no dashpots: their work would go unbooked.
             let damped = damped && dt > 0.0;
-            let job = Chunk::<L, TURN> { law, first, x, v, w, dt, records, kind, constants, damped, limit, actions };
+            let own = own.map(|own| own.of_chunk(chunk));
+            let job =
+                Chunk::<L, TURN> { law, first, x, v, w, dt, records, kind, constants, damped, limit, own, actions };
             (*partial, *due) = arch.dispatch(job);
         });
         let mut sum = ChunkSums::default();
@@ -246,8 +256,11 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
         if !self.due.iter().any(|due| *due) {
             return 0.0;
         }
+        let of_own = |own: &Own| (0..state.len()).map(|slot| state.whole[slot] && own.has(slot)).collect::<Vec<_>>();
+        let own = self.own.as_ref().map(of_own);
+        let whole = own.as_deref().unwrap_or(&state.whole);
         let broken =
-            check.broken(&state.whole, state, |slot| (self.plastic_strain(slot), self.force(slot), self.section(slot)));
+            check.broken(whole, state, |slot| (self.plastic_strain(slot), self.force(slot), self.section(slot)));
         let mut released = 0.0;
         for (slot, criterion) in broken {
             broke(slot, criterion, self.stress(slot));
@@ -265,13 +278,13 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     }
 
     fn elastic_energy(&self, state: &State) -> f64 {
-        let whole = (0..state.whole.len()).filter(|slot| state.whole[*slot]);
+        let whole = (0..state.whole.len()).filter(|slot| state.whole[*slot] && self.has(*slot));
         whole.map(|s| self.law.elastic_energy(&self.shape(s), &self.force(s), &self.history(s))).sum()
     }
 
     fn elements(&self, state: &State, chunk: usize, each: &mut dyn FnMut(Element)) {
         let slots = chunk * CHUNK..state.len().min((chunk + 1) * CHUNK);
-        for i in slots.filter(|slot| state.whole[*slot]) {
+        for i in slots.filter(|slot| state.whole[*slot] && self.has(*slot)) {
             let k = self.law.stiffness(&self.shape(i), &self.history(i));
             let length = (state.x.get(i + 1) - state.x.get(i)).length();
             each(Element::bond(i, &k, length, std::array::from_fn(|mode| self.constant(i, SHAPE + mode)), TURN));
@@ -335,7 +348,10 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
     }
 
     fn bytes(&self) -> Bytes {
-        let slots = self.records.len() / Layout::<L, TURN>::FIELDS;
+        let all = self.records.len() / Layout::<L, TURN>::FIELDS;
+        // Blocks that are not its own are never written, and take no memory.
+        let slots = self.own.as_ref().map_or(all, Own::worked_on);
+        let records = slots * Layout::<L, TURN>::FIELDS * NUMBER;
         let limits = self.rupture.as_ref().map_or(0, RuptureCheck::bytes);
         let checked = self.rupture.as_ref().and_then(RuptureCheck::plastic_limit).map_or(0, |_| NUMBER);
         let nodes = if TURN { 3 * VECTOR } else { 2 * VECTOR };
@@ -343,15 +359,14 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
         let written = Layout::<L, TURN>::LIVE * NUMBER;
         let actions = BondActions::fields_of(TURN) * NUMBER;
         Bytes {
-            kept: behind(&self.records)
+            kept: if self.own.is_some() { records } else { behind(&self.records) }
+                + self.own.as_ref().map_or(0, Own::bytes)
                 + self.constants.bytes()
                 + behind(&self.kind)
                 + behind(&self.partial)
                 + behind(&self.due)
                 + limits,
-            moved: size_of_val(&self.records[..])
-                + size_of_val(&self.kind[..])
-                + slots * (written + nodes + actions + checked),
+            moved: records + size_of_val(&self.kind[..]) + slots * (written + nodes + actions + checked),
         }
     }
 }

@@ -2,6 +2,7 @@
 //! place where laws and shape are chosen.
 
 pub mod formula;
+mod law_table;
 pub mod pair;
 pub(super) mod spheres;
 mod stage;
@@ -18,46 +19,72 @@ use crate::law::tangential::TangentialLaw;
 use crate::law::tangential::mindlin::Mindlin;
 use crate::law::tangential::mindlin_deresiewicz::MindlinDeresiewicz;
 use crate::law::tangential::none::Frictionless;
-use crate::scene::spec::{ContactSpec, Material, NormalSpec, Shape, TangentialSpec};
+use crate::scene::spec::{ContactSpec, NormalSpec, Shape, Spec, TangentialSpec};
 use crate::strand::assembly::Assembly;
+use law_table::LawTable;
 use pair::Laws;
 use spheres::SphereContacts;
 use wires::WireContacts;
 
-/// Chooses laws and shape, once per run.
-pub fn build(spec: &ContactSpec, material: &Material, assembly: &Assembly) -> Box<dyn Contacts> {
-    let (e, nu, g) = (material.young, material.poisson, material.shear());
-    let effective_modulus = effective_modulus(e, nu, e, nu);
-    match spec.normal {
-        NormalSpec::Hertz => tangential(spec, g, nu, assembly, Hertz { effective_modulus }),
-        NormalSpec::Thornton { limiting_pressure } => {
-            tangential(spec, g, nu, assembly, Thornton { effective_modulus, limiting_pressure })
+/// Chooses laws and shape, once per run; `None` where the scene has no contacts.
+pub fn build(spec: &Spec, assembly: &Assembly) -> Option<Box<dyn Contacts>> {
+    let contact = spec.contact.as_ref()?;
+    let modulus = |a: usize, b: usize| {
+        let [a, b] = [a, b].map(|number| spec.material_at(number).material);
+        effective_modulus(a.young, a.poisson, b.young, b.poisson)
+    };
+    // The softer of the two gives way.
+    let softer = |a: usize, b: usize| {
+        let [a, b] = [a, b].map(|number| spec.material_at(number).limiting_pressure.unwrap_or(f64::INFINITY));
+        a.min(b)
+    };
+    let choice = Choice { spec, contact, assembly };
+    Some(match contact.normal {
+        NormalSpec::Hertz => choice.tangential(|a, b| Hertz { effective_modulus: modulus(a, b) }),
+        NormalSpec::Thornton { .. } => {
+            choice.tangential(|a, b| Thornton { effective_modulus: modulus(a, b), limiting_pressure: softer(a, b) })
         }
-    }
+    })
 }
 
-fn tangential<N: NormalLaw>(spec: &ContactSpec, g: f64, nu: f64, assembly: &Assembly, normal: N) -> Box<dyn Contacts> {
-    let shear_modulus_star = effective_shear_modulus(g, nu, g, nu);
-    let friction = spec.friction;
-    match spec.tangential {
-        Some(_) if friction == 0.0 => shape(spec, assembly, normal, Frictionless),
-        None => shape(spec, assembly, normal, Frictionless),
-        Some(TangentialSpec::Mindlin) => shape(spec, assembly, normal, Mindlin { shear_modulus_star, friction }),
-        Some(TangentialSpec::MindlinDeresiewicz) => {
-            shape(spec, assembly, normal, MindlinDeresiewicz { shear_modulus_star, friction })
-        }
-    }
+/// What laws are chosen by.
+struct Choice<'a> {
+    spec: &'a Spec,
+    contact: &'a ContactSpec,
+    assembly: &'a Assembly,
 }
 
-fn shape<N: NormalLaw, T: TangentialLaw>(
-    spec: &ContactSpec,
-    assembly: &Assembly,
-    normal: N,
-    tangential: T,
-) -> Box<dyn Contacts> {
-    let laws = Laws { normal, tangential, damping: spec.damping };
-    match spec.shape {
-        Shape::Sphere => Box::new(SphereContacts::new(laws, assembly)),
-        Shape::Wire => Box::new(WireContacts::new(laws, assembly)),
+impl Choice<'_> {
+    fn tangential<N: NormalLaw>(&self, normal: impl Fn(usize, usize) -> N) -> Box<dyn Contacts> {
+        let modulus = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|number| self.spec.material_at(number).material);
+            effective_shear_modulus(a.shear(), a.poisson, b.shear(), b.poisson)
+        };
+        let friction = |a: usize, b: usize| self.contact.friction_between(a, b);
+        match self.contact.tangential {
+            Some(_) if self.contact.is_smooth(self.spec.materials().len()) => self.shape(normal, |_, _| Frictionless),
+            None => self.shape(normal, |_, _| Frictionless),
+            Some(TangentialSpec::Mindlin) => {
+                self.shape(normal, |a, b| Mindlin { shear_modulus_star: modulus(a, b), friction: friction(a, b) })
+            }
+            Some(TangentialSpec::MindlinDeresiewicz) => self.shape(normal, |a, b| MindlinDeresiewicz {
+                shear_modulus_star: modulus(a, b),
+                friction: friction(a, b),
+            }),
+        }
+    }
+
+    fn shape<N: NormalLaw, T: TangentialLaw>(
+        &self,
+        normal: impl Fn(usize, usize) -> N,
+        tangential: impl Fn(usize, usize) -> T,
+    ) -> Box<dyn Contacts> {
+        let damping = self.contact.damping;
+        let laws = |a, b| Laws { normal: normal(a, b), tangential: tangential(a, b), damping };
+        let laws = LawTable::new(self.spec.materials().len(), self.assembly, laws);
+        match self.contact.shape {
+            Shape::Sphere => Box::new(SphereContacts::new(laws, self.assembly)),
+            Shape::Wire => Box::new(WireContacts::new(laws, self.assembly)),
+        }
     }
 }

@@ -204,7 +204,8 @@ impl Monitor {
     /// Looks for a bond that necks. It is said once, so then nothing is left to look for.
     fn look_at_necking(&mut self, view: &StepView) {
         let Some(necking) = &mut self.necking else { return };
-        let (maximum_load, Some(neck)) = (necking.from, necking.look(view)) else { return };
+        let Some(neck) = necking.look(view) else { return };
+        let maximum_load = neck.from;
         self.necking = None;
         self.found(view, FindingKind::Necking, 0.0, || Finding::Necking {
             bond: view.member(neck.slot),

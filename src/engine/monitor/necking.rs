@@ -3,7 +3,7 @@
 
 use crate::engine::step_view::StepView;
 use crate::scene::caution;
-use crate::scene::spec::{BondLawSpec, Spec};
+use crate::scene::spec::{BondLawSpec, OneMaterial, Spec};
 use serde::{Deserialize, Serialize};
 
 /// Bonds between two looks at necking: those that flow at less than this share of the one that flows most have
@@ -26,6 +26,8 @@ pub struct Necking {
 /// A bond that necks.
 pub struct Neck {
     pub slot: usize,
+    /// Plastic strain at its maximum load (-).
+    pub from: f64,
     /// Its plastic strain, and the mean of the half of its wire's bonds that flow least (-).
     pub strain: f64,
     pub others: f64,
@@ -39,9 +41,13 @@ impl Necking {
 
     /// The first bond that necks since the last look.
     pub fn look(&mut self, view: &StepView) -> Option<Neck> {
-        let (Some(bonds), BondLawSpec::ElastoPlastic(hardening)) = (view.bonds, &view.spec.bond.law) else {
-            return None;
+        let bonds = view.bonds?;
+        let several = view.spec.has_several_materials();
+        let from_of = |one: OneMaterial| match several {
+            true => caution::considere_of(one.bond, f64::INFINITY).unwrap_or(f64::INFINITY),
+            false => self.from,
         };
+        let from: Vec<f64> = view.spec.materials().map(from_of).collect();
         let state = view.state;
         let mut found = None;
         // (growth since the last look, plastic strain, slot) of the free bonds of a wire
@@ -66,9 +72,13 @@ impl Necking {
             let most = flow[middle..].iter().max_by(|a, b| a.0.total_cmp(&b.0));
             let Some((grown, p, slot)) = most.copied() else { continue };
             // In tension: a hinge that bends is no neck.
+            let BondLawSpec::ElastoPlastic(hardening) = &view.spec.material_at(wire.material).bond.law else {
+                continue;
+            };
             let pulled = bonds.stress(slot) > 0.5 * hardening.stress(p);
-            if p >= self.from && p - others > STANDS_OUT && growth < STOPPED * grown && pulled {
-                found = Some(Neck { slot, strain: p, others });
+            let from = from[wire.material];
+            if p >= from && p - others > STANDS_OUT && growth < STOPPED * grown && pulled {
+                found = Some(Neck { slot, from, strain: p, others });
             }
         }
         found

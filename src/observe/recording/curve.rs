@@ -6,6 +6,7 @@ use super::stream::{Instant, Stream};
 use crate::base::error::Result;
 use crate::base::units::mpa;
 use crate::engine::view::{RunInfo, Sample};
+use crate::observe::materials::Group;
 use crate::observe::wording::wire_number;
 use rerun::external::arrow::array::Float64Array;
 use rerun::{Color, EntityPath, Scalars, SerializedComponentBatch, SeriesLines};
@@ -37,6 +38,16 @@ pub(super) fn send_names(stream: &Stream, info: &RunInfo) -> Result<()> {
         let wires = info.wires_of(layer).map(|(number, _)| format!("wire {} [MPa]", wire_number(number)));
         stream.fixed(names::layer(names::WIRE_STRESS, info, layer), &SeriesLines::new().with_names(wires))?;
     }
+    if info.has_several_materials() {
+        let lines = |count: usize, names: Vec<String>| {
+            SeriesLines::new().with_names(names).with_colors((0..count).map(|i| Color::from_u32(distinct(i))))
+        };
+        let named = |what: &[String], unit: &str| what.iter().map(|name| format!("{name} [{unit}]")).collect();
+        let (materials, layers) = (&info.materials, &info.layers);
+        stream.fixed(names::MATERIAL_STRESS, &lines(materials.len(), named(materials, "MPa")))?;
+        stream.fixed(names::MATERIAL_FORCE, &lines(materials.len(), named(materials, "N")))?;
+        stream.fixed(names::LAYER_FORCE, &lines(layers.len(), named(layers, "N")))?;
+    }
     stream.fixed(names::BROKEN, &SeriesLines::new().with_names(["wires broken", "bonds broken"]))?;
     stream.fixed(names::ENERGY, &SeriesLines::new().with_names(ENERGY_NAMES))
 }
@@ -56,6 +67,15 @@ pub(super) fn send(stream: &Stream, info: &RunInfo, samples: &[Sample]) -> Resul
         let wires: Vec<_> = info.wires_of(layer).map(|(number, _)| number).collect();
         let stress = |s: &Sample| wires.iter().map(|w| mpa(s.wire_stress[*w])).collect();
         series(names::layer(names::WIRE_STRESS, info, layer), &stress)?;
+    }
+    if info.has_several_materials() {
+        let materials = || (0..info.materials.len()).map(Group::Material);
+        let layers = || (0..info.layers.len()).map(Group::Layer);
+        let stress = |group: Group, s: &Sample| group.stress(info, s).map(mpa).unwrap_or_default();
+        let force = |group: Group, s: &Sample| group.force(info, s).unwrap_or_default();
+        series(names::MATERIAL_STRESS.into(), &|s| materials().map(|group| stress(group, s)).collect())?;
+        series(names::MATERIAL_FORCE.into(), &|s| materials().map(|group| force(group, s)).collect())?;
+        series(names::LAYER_FORCE.into(), &|s| layers().map(|group| force(group, s)).collect())?;
     }
     series(names::BROKEN.into(), &|s| vec![s.wires_broken as f64, s.bonds_broken as f64])?;
     series(names::ENERGY.into(), &energies)

@@ -19,6 +19,12 @@ pub const BODY_STRESS: &str = "stress/body";
 pub const LAYER_STRESS: &str = "stress/layers";
 /// Nominal stress of the wires (MPa), an entity per layer.
 pub const WIRE_STRESS: &str = "stress/wires";
+/// Nominal stress of the materials (MPa), where there are several.
+pub const MATERIAL_STRESS: &str = "stress/materials";
+/// Force along z of the materials (N), where there are several.
+pub const MATERIAL_FORCE: &str = "force/materials";
+/// Force along z of the layers (N), where there are several materials.
+pub const LAYER_FORCE: &str = "force/layers";
 /// Wires and bonds broken so far.
 pub const BROKEN: &str = "broken";
 /// Energy ledger (J).

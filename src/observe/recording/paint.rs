@@ -67,6 +67,7 @@ impl Palette {
             ColourBy::Velocity => self.value(snapshot.speed[wire.first + k]),
             ColourBy::Layer => distinct(wire.layer),
             ColourBy::Wire => distinct(number),
+            ColourBy::Material => distinct(wire.material),
         }
     }
 
@@ -88,7 +89,7 @@ impl Palette {
             ColourBy::Utilisation => ["utilisation to rupture: 0 %".to_owned(), "100 %".to_owned()],
             ColourBy::ContactPressure => [format!("contact pressure: {low:.0} MPa"), format!("{high:.0} MPa")],
             ColourBy::Velocity => [format!("speed: {low:.1} m/s"), format!("{high:.1} m/s")],
-            ColourBy::Layer | ColourBy::Wire => return None,
+            ColourBy::Layer | ColourBy::Wire | ColourBy::Material => return None,
         };
         Some(Scale { colours: self.table.iter().step_by(4).copied().collect(), ends })
     }

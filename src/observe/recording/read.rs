@@ -30,6 +30,16 @@ pub mod paths {
         root(names::LAYER_STRESS)
     }
 
+    /// Force of the layers.
+    pub fn layer_force() -> String {
+        root(names::LAYER_FORCE)
+    }
+
+    /// Force of the materials.
+    pub fn material_force() -> String {
+        root(names::MATERIAL_FORCE)
+    }
+
     /// Stress of the wires of a layer.
     pub fn wire_stress(info: &RunInfo, layer: usize) -> String {
         names::layer(names::WIRE_STRESS, info, layer).to_string()

@@ -117,7 +117,7 @@ mod tests {
     fn wire(len: usize) -> RunInfo {
         RunInfo {
             layers: vec![String::new()],
-            wires: vec![WireInfo { layer: 0, first: 0, len, diameter: 1e-3 }],
+            wires: vec![WireInfo { layer: 0, material: 0, first: 0, len, diameter: 1e-3 }],
             wire_particles: len,
             particles: len,
             radius: vec![0.5e-3; len],

@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn pieces_cover_every_bond_that_holds_and_no_other() {
         let len = 23;
-        let wire = WireInfo { layer: 0, first: 0, len, diameter: 1.0 };
+        let wire = WireInfo { layer: 0, material: 0, first: 0, len, diameter: 1.0 };
         for broken in [vec![], vec![0], vec![21], vec![3, 4], vec![8, 9, 10, 17]] {
             let mut bond_state = vec![BondState::Whole; len];
             broken.iter().for_each(|b: &usize| bond_state[*b] = BondState::Broken);

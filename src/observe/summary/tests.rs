@@ -4,11 +4,13 @@ use crate::engine::view::{RuptureCause, WireInfo};
 use crate::observe::peaks::Peak;
 
 fn info() -> Arc<RunInfo> {
-    let wire = |layer| WireInfo { layer, first: 0, len: 2, diameter: 0.4 };
+    let wire = |layer| WireInfo { layer, material: 0, first: 0, len: 2, diameter: 0.4 };
     Arc::new(RunInfo {
         name: "two layers".into(),
         about: String::new(),
         layers: vec!["core".into(), "outer".into()],
+        materials: vec!["default".into()],
+        sphere_material: Vec::new(),
         wires: vec![wire(0), wire(1), wire(1)],
         wire_particles: 6,
         particles: 6,
@@ -20,6 +22,7 @@ fn info() -> Arc<RunInfo> {
         speed_range: [0.0, 10.0],
         contact_pressure_range: [0.0, 1.0],
         strain_end: Some(0.3),
+        body_stress_end: None,
         negligible_energy: 1e-12,
         wave_passage: 3e-5,
     })

@@ -47,6 +47,7 @@ pub fn truth(scene: &Scene) -> Result<Truth, String> {
         order: 1,
         wire: 1,
         layer: wire.layer.into(),
+        material: None,
         z_mm: mm(weakest.rest_z),
         rest_z_mm: mm(weakest.rest_z),
         strain_percent: percent(end.engineering_strain),

@@ -129,6 +129,7 @@ mod tests {
             order: 1,
             wire,
             layer: "outer".into(),
+            material: None,
             z_mm: 0.0,
             rest_z_mm: 10.0 * wire as f64,
             strain_percent: 0.0,

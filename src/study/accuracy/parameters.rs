@@ -273,7 +273,7 @@ fn spacing(scene: &Scene) -> Variations {
     let limit = if bumpy { 2.0 } else { f64::INFINITY };
     let values = factors.iter().map(|f| now * f).filter(|s| *s < limit);
     let levels = values.map(|s| number(scene, s, "", (now / s).powi(2), |spec, s| spec.spacing = s)).collect();
-    let scatters = scene.spec.bond.rupture.as_ref().is_some_and(|rupture| rupture.weibull_modulus.is_finite());
+    let scatters = scene.spec.ruptures().any(|rupture| rupture.weibull_modulus.is_finite());
     let role = match (bumpy, scatters) {
         // A wire of spheres is as rough as its spacing.
         (true, _) => Role::Model,
@@ -328,17 +328,18 @@ fn bond_damping(scene: &Scene) -> Variations {
     if !scene.plan.bonds {
         return Err("there are no bonds".into());
     }
-    let own = scene.spec.bond.damping;
-    let now = own[0];
-    if own.iter().all(|mode| *mode == now) {
-        let set = |spec: &mut Spec, value| spec.bond.damping = [value; 4];
+    let now = scene.spec.bond.damping[0];
+    if scene.spec.materials().all(|one| one.bond.damping == [now; 4]) {
+        let set = |spec: &mut Spec, value| spec.bonds_mut().for_each(|bond| bond.damping = [value; 4]);
         let levels = around(now, 0.02).into_iter().map(|v| number(scene, v, "", 1.0, set)).collect();
         return Ok(Variation { role: Role::Neutral, base: base(now, ""), levels });
     }
     let scaled = |factor: f64| {
-        let damping = own.map(|mode| tidy(mode * factor));
         let value = Value { number: Some(factor), shown: format!("all × {factor}") };
-        Level { value, ..level(scene, "", 1.0, |spec| spec.bond.damping = damping) }
+        let scale = |spec: &mut Spec| {
+            spec.bonds_mut().for_each(|bond| bond.damping = bond.damping.map(|mode| tidy(mode * factor)));
+        };
+        Level { value, ..level(scene, "", 1.0, scale) }
     };
     let levels = [0.0, 0.5, 2.0, 5.0].map(scaled).to_vec();
     Ok(Variation { role: Role::Neutral, base: Value { number: Some(1.0), shown: "by mode".into() }, levels })

@@ -354,7 +354,7 @@ impl Snapshots {
                 self.silent.add(stress.abs(), || format!("{}: {stress} MPa", place()));
             } else if *state != BondState::Absent {
                 let p = f64::from(now.plastic_strain[slot]);
-                if let Some(allowed) = limits.bond(p, stretch(now, &told.info, slot)) {
+                if let Some(allowed) = limits.bond(slot, p, stretch(now, &told.info, slot)) {
                     self.law.add(stress.abs() / allowed - 1.0, || {
                         format!("{}: {stress:.2} MPa, its law allows {allowed:.2}", place())
                     });

@@ -3,7 +3,7 @@
 use super::finding::{InvariantOutcome, Search};
 use super::folder::{Folder, bond};
 use super::invariant::Invariant;
-use super::limits::Limits;
+use super::limits::{Bounds, Limits};
 use super::rows;
 
 pub const BONDS: Invariant = Invariant {
@@ -27,33 +27,36 @@ pub const RUPTURES: Invariant = Invariant {
 
 fn wires(run: &Folder) -> InvariantOutcome {
     let info = &run.trajectory.info;
-    let bounds = Limits::new(&run.spec, info, run.longest_step()).wire(info.wire_particles);
-    if !bounds.limits() {
+    let limits = Limits::new(&run.spec, info, run.longest_step());
+    let of_material: Vec<Bounds> = (0..info.materials.len()).map(|number| limits.wire(number)).collect();
+    if !of_material.iter().any(|bounds| bounds.limits()) {
         return InvariantOutcome::NotApplicable("nothing limits what the bonds of this scene carry".into());
     }
     let mut search = Search::new();
-    let mut add = |stress: f64, place: &dyn Fn() -> String| {
+    let wire = |w: usize| of_material[info.wires[w].material];
+    let mut add = |stress: f64, bounds: Bounds, place: &dyn Fn() -> String| {
         let over = || format!("{}: {stress:.2} MPa, wires carry {:.2}", place(), bounds.of(stress));
         search.add(bounds.over(stress), over);
     };
     for row in 0..run.curve.rows.len() {
-        for head in rows::layer_heads(run) {
+        for (layer, head) in rows::layer_heads(run).into_iter().enumerate() {
             let stress = run.curve.number(row, &head);
             if !run.curve.text(row, &head).is_empty() {
-                add(stress, &|| format!("curve.csv line {}, {head}", row + 2));
+                let bounds = info.wires_of(layer).map(|(w, _)| wire(w)).reduce(Bounds::wider).unwrap_or(Bounds::NONE);
+                add(stress, bounds, &|| format!("curve.csv line {}, {head}", row + 2));
             }
         }
     }
     for row in 0..run.wires.rows.len() {
         if !run.wires.text(row, "greatest_stress_mpa").is_empty() {
-            add(run.wires.number(row, "greatest_stress_mpa"), &|| {
+            add(run.wires.number(row, "greatest_stress_mpa"), wire(row), &|| {
                 format!("wires.csv line {}, greatest_stress_mpa", row + 2)
             });
         }
     }
     for sample in &run.trajectory.samples {
         for (w, stress) in sample.wire_stress.iter().enumerate() {
-            add(stress * 1e-6, &|| format!("trajectory at step {}, wire {}", sample.step, w + 1));
+            add(stress * 1e-6, wire(w), &|| format!("trajectory at step {}, wire {}", sample.step, w + 1));
         }
     }
     search.end(1e-3, "-", "no stress of wires is measured")

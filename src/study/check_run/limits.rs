@@ -4,18 +4,25 @@ use crate::base::random::uniform;
 use crate::engine::view::RunInfo;
 use crate::law::bond::hardening::Hardening;
 use crate::law::bond::rupture::weibull_factor;
-use crate::scene::spec::{BondLawSpec, DriveSpec, RuptureCriterion, Spec};
+use crate::scene::spec::{BondLawSpec, DriveSpec, OneMaterial, RuptureCriterion, Spec};
 use std::f64::consts::TAU;
 
 /// Rise of stress or strain over its limit that a bond can have when its break is noticed (-), where that limit is one of
 /// stress or strain: a wave of the limit's own stress passes a bond in no less than a stable step, so that it doubles at most.
 const NOTICED: f64 = 2.0;
 
-/// What the bonds of a scene can carry.
-pub struct Limits {
+/// What bonds of one material can carry.
+struct OfMaterial {
     law: BondLawSpec,
     young: f64,
     criterion: Option<RuptureCriterion>,
+}
+
+/// What the bonds of a scene can carry.
+pub struct Limits {
+    materials: Vec<OfMaterial>,
+    /// Material of each slot in a wire.
+    material_of: Vec<usize>,
     /// The body is pulled one way, so that a bond's plastic strain is what it was stretched by; pushed or to and fro, plastic
     /// strain adds up beyond that, and a section can be thicker than it was.
     one_way: bool,
@@ -48,7 +55,12 @@ impl Bounds {
     }
 
     /// Nothing limits it.
-    const NONE: Self = Self { pushed: f64::INFINITY, pulled: f64::INFINITY };
+    pub const NONE: Self = Self { pushed: f64::INFINITY, pulled: f64::INFINITY };
+
+    /// What either of two allows.
+    pub fn wider(self, other: Self) -> Self {
+        Self { pushed: self.pushed.max(other.pushed), pulled: self.pulled.max(other.pulled) }
+    }
 
     /// What bounds a stress of this sign (MPa).
     pub fn of(self, stress: f64) -> f64 {
@@ -70,11 +82,16 @@ impl Bounds {
 impl Limits {
     /// Those of `spec`, whose bodies are `info`, in steps of at most `longest_step` (s).
     pub fn new(spec: &Spec, info: &RunInfo, longest_step: f64) -> Self {
-        let modulus = spec.bond.rupture.as_ref().map_or(f64::INFINITY, |r| r.weibull_modulus);
+        let modulus =
+            |number: usize| spec.material_at(number).bond.rupture.as_ref().map_or(f64::INFINITY, |r| r.weibull_modulus);
         let mut factor = Vec::new();
-        if modulus.is_finite() {
+        if spec.ruptures().any(|rupture| rupture.weibull_modulus.is_finite()) {
             factor = vec![1.0; info.particles];
             for (w, wire) in info.wires.iter().enumerate() {
+                let modulus = modulus(wire.material);
+                if modulus.is_infinite() {
+                    continue;
+                }
                 let bonds = info.rest_position[wire.particles()].windows(2).enumerate();
                 for (k, ends) in bonds {
                     let length = glam::Vec3::from(ends[0]).as_dvec3().distance(glam::Vec3::from(ends[1]).as_dvec3());
@@ -88,14 +105,24 @@ impl Limits {
         let shortest = bonds.map(length).fold(f64::INFINITY, f64::min);
         let furthest = info.rest_position.iter().flatten().fold(0.0, |most: f32, x| most.max(x.abs()));
         Self {
-            law: spec.bond.law.clone(),
-            young: spec.material.young,
-            criterion: spec.bond.rupture.as_ref().map(|r| r.criterion.clone()),
+            materials: spec
+                .materials()
+                .map(|one| OfMaterial {
+                    law: one.bond.law.clone(),
+                    young: one.material.young,
+                    criterion: one.bond.rupture.as_ref().map(|r| r.criterion.clone()),
+                })
+                .collect(),
+            material_of: info.wires.iter().flat_map(|wire| vec![wire.material; wire.len]).collect(),
             one_way: spec.grip.as_ref().is_some_and(|grip| matches!(grip.drive, DriveSpec::Speed(v) if v > 0.0)),
             factor,
             steps: speeds(spec).map(|speed| speed * longest_step / shortest),
             rounding: f64::from(furthest) * f64::from(f32::EPSILON) * 4.0,
         }
+    }
+
+    fn of(&self, slot: usize) -> &OfMaterial {
+        &self.materials[self.material_of[slot]]
     }
 
     fn factor(&self, slot: usize) -> f64 {
@@ -108,18 +135,19 @@ impl Limits {
         Bounds::new(if self.one_way { stress } else { f64::INFINITY }, stress)
     }
 
-    /// True stress that a whole bond can have (MPa): the hardening law's at its plastic strain `p`, the elastic law's at its
+    /// True stress that the bond at `slot`, which is whole, can have (MPa): the hardening law's at its plastic strain `p`, the elastic law's at its
     /// log strain and rest length (m), positions being rounded.
-    pub fn bond(&self, p: f64, [strain, rest]: [f64; 2]) -> Option<f64> {
-        Some(match &self.law {
-            BondLawSpec::Elastic => self.young * (strain.abs() + self.rounding / rest) * 1e-6,
+    pub fn bond(&self, slot: usize, p: f64, [strain, rest]: [f64; 2]) -> Option<f64> {
+        let OfMaterial { law, young, .. } = self.of(slot);
+        Some(match law {
+            BondLawSpec::Elastic => young * (strain.abs() + self.rounding / rest) * 1e-6,
             BondLawSpec::ElastoPlastic(hardening) => self.reached(hardening, p, true) * 1e-6,
         })
     }
 
     /// Plastic strain at which a bond breaks (-), if it breaks by that.
     pub fn plastic(&self, slot: usize) -> Option<f64> {
-        match self.criterion {
+        match self.of(slot).criterion {
             Some(RuptureCriterion::PlasticStrain { strain }) => Some(strain * self.factor(slot)),
             Some(RuptureCriterion::BeamStress { .. } | RuptureCriterion::FibreStrain { .. }) | None => None,
         }
@@ -147,9 +175,9 @@ impl Limits {
     /// plastic strain, and [`NOTICED`] for others.
     pub fn breaking(&self, slot: usize, first: bool) -> Bounds {
         use BondLawSpec::{Elastic, ElastoPlastic};
-        let Some(criterion) = &self.criterion else { return Bounds::NONE };
+        let OfMaterial { law, young, criterion: Some(criterion) } = self.of(slot) else { return Bounds::NONE };
         let factor = self.factor(slot);
-        match (criterion, &self.law) {
+        match (criterion, law) {
             (RuptureCriterion::PlasticStrain { strain }, ElastoPlastic(hardening)) => {
                 Bounds::both(self.reached(hardening, self.beyond(strain * factor, !first), !first))
             }
@@ -159,7 +187,7 @@ impl Limits {
                 self.in_tension(NOTICED * tensile * factor)
             }
             (RuptureCriterion::FibreStrain { strain }, Elastic) => {
-                self.in_tension(NOTICED * self.young * (strain * factor).ln_1p())
+                self.in_tension(NOTICED * young * (strain * factor).ln_1p())
             }
             (RuptureCriterion::FibreStrain { strain }, ElastoPlastic(hardening)) if self.one_way => {
                 Bounds::both(hardening.stress(NOTICED * (strain * factor).ln_1p()))
@@ -169,13 +197,16 @@ impl Limits {
         }
     }
 
-    /// Nominal stress that any wire can have, of all of the body's `slots`. A law of plasticity has the same stress on both
+    /// Nominal stress that any wire of material `material` can have. A law of plasticity has the same stress on both
     /// sides, on a section that thins when it is pulled and thickens when it is pushed.
-    pub fn wire(&self, slots: usize) -> Bounds {
+    pub fn wire(&self, material: usize) -> Bounds {
         use BondLawSpec::{Elastic, ElastoPlastic};
-        let Some(criterion) = &self.criterion else { return Bounds::NONE };
-        let most = (0..slots.max(1)).map(|slot| self.factor(slot)).fold(0.0, f64::max);
-        match (criterion, &self.law) {
+        let OfMaterial { law, young, criterion: Some(criterion) } = &self.materials[material] else {
+            return Bounds::NONE;
+        };
+        let own = self.material_of.iter().enumerate().filter(|(_, of)| **of == material);
+        let most = own.map(|(slot, _)| self.factor(slot)).fold(0.0, f64::max);
+        match (criterion, law) {
             (RuptureCriterion::PlasticStrain { strain }, ElastoPlastic(hardening)) => {
                 Bounds::both(self.greatest_nominal(hardening, self.beyond(strain * most, true)))
             }
@@ -184,7 +215,7 @@ impl Limits {
                 self.in_tension(NOTICED * tensile * most)
             }
             (RuptureCriterion::FibreStrain { strain }, Elastic) => {
-                self.in_tension(NOTICED * self.young * (strain * most).ln_1p())
+                self.in_tension(NOTICED * young * (strain * most).ln_1p())
             }
             (RuptureCriterion::FibreStrain { strain }, ElastoPlastic(hardening)) if self.one_way => {
                 Bounds::both(self.greatest_nominal(hardening, 1.01 * NOTICED * (strain * most).ln_1p()))
@@ -211,14 +242,16 @@ fn speeds(spec: &Spec) -> [f64; 2] {
         (DriveSpec::Speed(speed), None) => speed.abs(),
         (DriveSpec::Cyclic { amplitude, frequency }, None) => 4.0 * (TAU * frequency * amplitude).abs(),
     });
-    let strain = match spec.bond.rupture.as_ref().map(|rupture| &rupture.criterion) {
-        Some(RuptureCriterion::PlasticStrain { strain }) => *strain,
-        Some(RuptureCriterion::BeamStress { .. } | RuptureCriterion::FibreStrain { .. }) | None => 0.0,
+    let sprung = |one: OneMaterial| {
+        let strain = match one.bond.rupture.as_ref().map(|rupture| &rupture.criterion) {
+            Some(RuptureCriterion::PlasticStrain { strain }) => *strain,
+            Some(RuptureCriterion::BeamStress { .. } | RuptureCriterion::FibreStrain { .. }) | None => 0.0,
+        };
+        let stress = match &one.bond.law {
+            BondLawSpec::ElastoPlastic(hardening) => hardening.stress(strain),
+            BondLawSpec::Elastic => 0.0,
+        };
+        2.0 * stress / (one.material.young * one.material.density * spec.time.mass_scale).sqrt()
     };
-    let stress = match &spec.bond.law {
-        BondLawSpec::ElastoPlastic(hardening) => hardening.stress(strain),
-        BondLawSpec::Elastic => 0.0,
-    };
-    let sprung = 2.0 * stress / (spec.material.young * spec.material.density * spec.time.mass_scale).sqrt();
-    [driven, driven + sprung]
+    [driven, driven + spec.materials().map(sprung).fold(0.0, f64::max)]
 }

@@ -210,7 +210,8 @@ fn adaptive_speed(run: &Folder, row: usize, free: f64, [slow, fastest]: [f64; 2]
 /// Energy that is nothing (J): an elastic strain of 1e-9 everywhere.
 fn negligible(run: &Folder) -> f64 {
     let info = &run.trajectory.info;
-    let volume: f64 = info
+    let young = |number: usize| run.spec.material_at(number).material.young;
+    let stiffness: f64 = info
         .wires
         .iter()
         .map(|wire| {
@@ -219,11 +220,11 @@ fn negligible(run: &Folder) -> f64 {
                 .windows(2)
                 .map(|p| (0..3).map(|k| f64::from(p[1][k] - p[0][k]).powi(2)).sum::<f64>().sqrt())
                 .sum();
-            std::f64::consts::FRAC_PI_4 * wire.diameter.powi(2) * length
+            young(wire.material) * std::f64::consts::FRAC_PI_4 * wire.diameter.powi(2) * length
         })
-        .chain(run.spec.spheres.iter().map(|s| std::f64::consts::PI / 6.0 * s.diameter.powi(3)))
+        .chain(run.spec.spheres.iter().map(|s| young(s.material) * std::f64::consts::PI / 6.0 * s.diameter.powi(3)))
         .sum();
-    0.5 * run.spec.material.young * 1e-18 * volume
+    0.5 * 1e-18 * stiffness
 }
 
 fn ledger(run: &Folder) -> InvariantOutcome {

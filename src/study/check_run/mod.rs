@@ -21,6 +21,7 @@ mod pictures;
 mod recording;
 pub mod report;
 mod rows;
+mod shares;
 mod tables;
 
 pub use finding::{Deviation, InvariantOutcome};
@@ -51,6 +52,7 @@ pub const INVARIANTS: &[Invariant] = &[
     files::RUPTURES,
     files::SUMMARY,
     files::STRENGTH,
+    shares::SHARES,
     files::RECORDING,
     page::PAGE,
     page_words::WORDS,

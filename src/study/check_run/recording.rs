@@ -39,6 +39,18 @@ fn series(run: &Folder, read: &RecordingContents, search: &mut Search) {
             Box::new(move |s| wires.iter().filter_map(|w| s.wire_stress.get(*w)).map(|v| mpa(*v)).collect()),
         ));
     }
+    if info.materials.len() > 1 {
+        let pull = |of: Vec<usize>, count: usize| -> Values {
+            Box::new(move |s| {
+                let force = |k: usize| s.wire_pull.iter().zip(&of).filter(|(_, of)| **of == k).map(|(f, _)| f).sum();
+                (0..count).map(force).collect()
+            })
+        };
+        let layers = info.wires.iter().map(|wire| wire.layer).collect();
+        let materials = info.wires.iter().map(|wire| wire.material).collect();
+        entities.push((paths::layer_force(), pull(layers, info.layers.len())));
+        entities.push((paths::material_force(), pull(materials, info.materials.len())));
+    }
     for (path, values) in entities {
         let told = read.series.get(&path).map_or(&[][..], Vec::as_slice);
         search.same(told.len(), run.trajectory.samples.len(), || format!("rows of {path} in {RECORDING}"));

@@ -103,6 +103,7 @@ mod tests {
             order: k + 1,
             wire: k + 1,
             layer: layer.to_string(),
+            material: None,
             z_mm: *rest_z_mm,
             rest_z_mm: *rest_z_mm,
             strain_percent: 20.0,

@@ -46,13 +46,13 @@ fn pair(simulation: &Simulation) -> Pair {
     Pair::equal_spheres(0.5 * simulation.spec.spheres[0].diameter, m.young, m.poisson, m.density)
 }
 
-fn overlap(engine: &Engine) -> f64 {
+pub(super) fn overlap(engine: &Engine) -> f64 {
     let s = engine.state();
     s.radius[0] + s.radius[1] - (s.x.get(1) - s.x.get(0)).length()
 }
 
 /// Duration from touch to parting (s), interpolated (NaN when they do not part), and the greatest overlap (m).
-fn collide(simulation: &mut Simulation) -> Result<(f64, f64)> {
+pub(super) fn collide(simulation: &mut Simulation) -> Result<(f64, f64)> {
     let (mut deepest, mut end, mut before) = (0.0f64, f64::NAN, 0.0);
     let dt = simulation.engine.time_step();
     simulation.run(|engine| {

@@ -12,6 +12,7 @@ mod damping;
 mod elastica;
 mod frame;
 mod known_strands;
+mod materials;
 mod modes;
 mod oblique;
 mod plasticity;
@@ -86,6 +87,10 @@ pub const CASES: &[VerificationCase] = &[
     known_strands::TEXTBOOK,
     known_strands::GHOREISHI,
     known_strands::JIANG,
+    // Several materials
+    materials::WIRES,
+    materials::SPHERES,
+    materials::CONDUCTOR,
     // What must stay
     conservation::WIRE,
     conservation::COLLISION,

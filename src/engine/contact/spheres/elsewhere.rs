@@ -41,8 +41,9 @@ fn numbered(name: &str) -> Option<usize> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Elsewhere for SphereContacts<N, T> {
+    /// Of scenes with one material: the constants of its laws are those of the recording.
     fn record(&self, turn: bool) -> Result<Function, Unrecordable> {
-        Function::record("contact", &SpherePair { laws: self.laws, turn })
+        Function::record("contact", &SpherePair { laws: *self.laws.at(0), turn })
     }
 
     fn pairs(&self) -> Vec<[u32; 2]> {

@@ -5,7 +5,8 @@ use super::meeting::{Between, arms, surface_velocity};
 use super::store::Store;
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
-use crate::engine::contact::pair::{ContactKinematics, Dissipated, History, Laws, PairForce, contact_response};
+use crate::engine::contact::law_table::LawTable;
+use crate::engine::contact::pair::{ContactKinematics, Dissipated, History, PairForce, contact_response};
 use crate::engine::state::{ChunkSums, ContactSides, Deepest, ParticleView};
 use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
@@ -19,7 +20,7 @@ pub const fn rows<T: TangentialLaw>() -> usize {
 
 /// The contacts of one chunk.
 pub struct Chunk<'a, N: NormalLaw, T: TangentialLaw> {
-    pub laws: &'a Laws<N, T>,
+    pub laws: &'a LawTable<N, T>,
     pub seen: &'a ParticleView<'a>,
     /// The deepest contact of the run so far.
     pub deepest: Deepest,
@@ -144,7 +145,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         let thinner = first.thinned + second.thinned;
         let dt = zero.splat(self.seen.dt);
         let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity, dt };
-        let (pair, given) = contact_response(self.laws, &mut history, &meeting);
+        let (pair, given) = contact_response(self.laws.at(block.law as usize), &mut history, &meeting);
         sums.book(simd, lane, &given, pairs);
         history.each_number(|k, number| number.store(record, k * BLOCK + lane));
 

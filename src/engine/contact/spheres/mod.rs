@@ -16,7 +16,8 @@ pub mod meeting;
 pub mod second;
 mod store;
 
-use super::pair::{History, Laws, elastic_energy, foreseen_stiffness, leave};
+use super::law_table::LawTable;
+use super::pair::{History, elastic_energy, foreseen_stiffness, leave};
 use super::stage::{Contacts, Elsewhere, closing};
 use crate::base::lanes::BLOCK;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
@@ -31,14 +32,14 @@ use crate::law::contact::constants::{reduced_mass, reduced_radius};
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
-use block::{Block, key, pair};
+use block::{Block, key, order, pair};
 use pulp::{Arch, Simd, WithSimd};
 use second::{Places, SecondSides};
 use store::Store;
 
 /// Contacts between spheres with normal law `N` and tangential law `T`.
 pub struct SphereContacts<N: NormalLaw, T: TangentialLaw> {
-    laws: Laws<N, T>,
+    laws: LawTable<N, T>,
     /// Per chunk of particles.
     stores: Vec<Store>,
     /// What does not change from search to search: a row of R* (m), 0 where no candidate is, and one of 2ξ√m* (√kg).
@@ -60,7 +61,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
     const FIELDS: usize = History::<N, T>::NUMBERS;
 
     /// Without contacts yet.
-    pub fn new(laws: Laws<N, T>, assembly: &Assembly) -> Self {
+    pub fn new(laws: LawTable<N, T>, assembly: &Assembly) -> Self {
         Self {
             laws,
             stores: Vec::new(),
@@ -102,6 +103,12 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
         })
     }
 
+    /// Place of the law of the pair that a key stands for.
+    fn law(&self, key: u64) -> u32 {
+        let [i, j] = pair(key).map(|particle| particle as usize);
+        self.laws.place(i, j) as u32
+    }
+
     fn find_constants(&mut self, state: &State) {
         let Self { stores, constants, laws, .. } = self;
         constants.clear();
@@ -111,7 +118,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
                 let [i, j] = [block.i, block.j].map(|p| p as usize + lane);
                 let mass = reduced_mass(state.mass[i], state.mass[j]);
                 rows[lane] = reduced_radius(state.radius0[i], state.radius0[j]);
-                rows[BLOCK + lane] = viscous_coefficient(laws.damping, mass, 1.0);
+                rows[BLOCK + lane] = viscous_coefficient(laws.damping(), mass, 1.0);
             }
             block.constants = constants.place(&rows);
         }
@@ -122,20 +129,25 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
     /// and what friction had stored in pairs that left, block by block of the old ones (J).
     fn renewed(&self, list: &[(u32, u32)], old: &Store, state: &State) -> (Store, Vec<f64>) {
         let mut keys: Vec<u64> = list.iter().map(|(i, j)| key(*i, *j)).collect();
-        keys.sort_unstable();
-        let mut store = Store::of(&keys, kernel::rows::<T>());
+        if self.laws.len() > 1 {
+            keys.sort_unstable_by_key(|key| order(*key, self.law(*key)));
+        } else {
+            keys.sort_unstable();
+        }
+        let mut store = Store::of(&keys, kernel::rows::<T>(), |key| self.law(key));
         let (mut lost, mut o) = (Vec::new(), 0);
         let mut leaving = |block: &Block, lanes: &mut dyn Iterator<Item = usize>| {
             let Some(record) = old.record(block, Self::FIELDS) else { return };
             let radius = |lane: usize| self.constants.rows()[block.constants as usize + lane];
-            lost.push(lanes.map(|lane| leave(&self.laws, &Self::history(Some(record), lane, radius(lane)))).sum());
+            let law = self.laws.at(block.law as usize);
+            lost.push(lanes.map(|lane| leave(law, &Self::history(Some(record), lane, radius(lane)))).sum());
         };
         store.remember(Self::FIELDS, kernel::rows::<T>(), |block, numbers| {
-            while o < old.blocks.len() && old.blocks[o].key() < block.key() {
+            while o < old.blocks.len() && old.blocks[o].order() < block.order() {
                 leaving(&old.blocks[o], &mut old.blocks[o].lanes());
                 o += 1;
             }
-            let before = old.blocks.get(o).filter(|before| before.key() == block.key());
+            let before = old.blocks.get(o).filter(|before| before.order() == block.order());
             let kept = before.map_or(0, |before| before.pairs);
             let record = before.and_then(|before| old.record(before, Self::FIELDS));
             for lane in block.lanes() {
@@ -228,7 +240,10 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     }
 
     fn elastic_energy(&self, state: &State) -> f64 {
-        self.touching().map(|(h, pair)| elastic_energy(&self.laws, &h, Self::overlap(&h, state, pair))).sum()
+        let stored = |(h, [i, j]): (History<N, T>, [usize; 2])| {
+            elastic_energy(self.laws.between(i, j), &h, Self::overlap(&h, state, [i, j]))
+        };
+        self.touching().map(stored).sum()
     }
 
     fn add_normal_forces(&self, onto: &mut [f64]) {
@@ -255,7 +270,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         let touching = self.stores.get(chunk).into_iter().flat_map(|store| self.touching_in(store));
         for (Touching { pair: [i, j], .. }, k) in touching.zip(stiffness).filter(|(_, k)| **k != [0.0; 2]) {
             let mass = reduced_mass(state.mass[i], state.mass[j]);
-            let viscosity = viscous_coefficient(self.laws.damping, mass, k[0]);
+            let viscosity = viscous_coefficient(self.laws.damping(), mass, k[0]);
             let (nodes, arms) = ([i as u32, j as u32, 0], [state.radius[i], state.radius[j]]);
             each(Element::contact(nodes, [1.0, 1.0, 0.0], *k, arms, viscosity));
         }
@@ -276,12 +291,15 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
 
     fn restore(&mut self, from: &mut Reader, state: &State) -> Result<(), Unfit> {
         let keys: Vec<u64> = from.take()?;
-        if keys.iter().any(|key| pair(*key)[1] as usize >= state.len()) || !keys.is_sorted() {
+        if keys.iter().any(|key| pair(*key)[1] as usize >= state.len())
+            || !keys.is_sorted_by_key(|key| order(*key, self.law(*key)))
+        {
             return Err(Unfit("its contacts are those of other particles".into()));
         }
         let chunks = 0..state.len().div_ceil(CHUNK);
         let first = |chunk: usize| keys.partition_point(|key| pair(*key)[0] as usize / CHUNK < chunk);
-        let of_chunk = |chunk| Store::of(&keys[first(chunk)..first(chunk + 1)], kernel::rows::<T>());
+        let of_chunk =
+            |chunk| Store::of(&keys[first(chunk)..first(chunk + 1)], kernel::rows::<T>(), |key| self.law(key));
         self.stores = chunks.map(of_chunk).collect();
         let blocks = self.stores.iter().map(|store| store.blocks.len()).sum();
         let (mut acts, mut records) = (vec![(false, 0.0); blocks], vec![0.0; blocks * Self::FIELDS * BLOCK]);
@@ -325,7 +343,12 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
         // x, v, ω, radius and thinning in; forces and torques of first sides cleared, and added to.
         let per_particle = 3 * VECTOR + 2 * NUMBER + 6 * VECTOR;
         Bytes {
-            kept: sizes(Store::bytes) + behind(&self.stores) + self.constants.bytes() + self.places.bytes() + wires,
+            kept: sizes(Store::bytes)
+                + behind(&self.stores)
+                + self.constants.bytes()
+                + self.places.bytes()
+                + wires
+                + self.laws.bytes(),
             // Records in and out; actions out, and in again where forces are added up.
             moved: 2 * records + 2 * actions + sizes(|store| size_of_val(&store.blocks[..])) + particles * per_particle,
         }
@@ -361,7 +384,7 @@ impl<N: NormalLaw, T: TangentialLaw> WithSimd for Foresee<'_, N, T> {
             let d = state.x.get(j) - state.x.get(i);
             let approach = (state.v.get(i) - state.v.get(j)).dot(d) / d.length();
             let overlap = SphereContacts::overlap(&history, state, [i, j]);
-            let foreseen = foreseen_stiffness(&contacts.laws, &history, overlap, approach, horizon);
+            let foreseen = foreseen_stiffness(contacts.laws.between(i, j), &history, overlap, approach, horizon);
             all.push(foreseen.unwrap_or_default());
         }
         all

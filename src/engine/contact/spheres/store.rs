@@ -23,13 +23,14 @@ pub struct Store {
 }
 
 impl Store {
-    /// Blocks for the pairs of `keys`, which are sorted; they remember nothing.
-    pub fn of(keys: &[u64], rows: usize) -> Self {
+    /// Blocks for the pairs of `keys`, which are [in order](super::block::order), `law` the place of the law of each; they
+    /// remember nothing.
+    pub fn of(keys: &[u64], rows: usize, law: impl Fn(u64) -> u32) -> Self {
         let mut blocks: Vec<Block> = Vec::new();
         for key in keys {
             let [i, j] = pair(*key);
-            let block = Block::of(i, j);
-            if blocks.last().is_none_or(|last| last.key() != block.key()) {
+            let block = Block::of(i, j, law(*key));
+            if blocks.last().is_none_or(|last| last.order() != block.order()) {
                 blocks.push(block);
             }
             if let Some(last) = blocks.last_mut() {
@@ -121,7 +122,7 @@ mod tests {
     #[test]
     fn a_block_has_a_record_only_while_it_remembers_something() {
         let keys = [key(0, 40), key(1, 41), key(16, 56), key(3, 70)];
-        let mut store = Store::of(&keys, ROWS);
+        let mut store = Store::of(&keys, ROWS, |_| 0);
         assert_eq!(store.keys().collect::<Vec<_>>(), keys);
         assert_eq!((store.blocks.len(), store.records.len(), store.actions.len()), (3, 0, 2 * BLOCK));
         let [record, actions] = store.acting(1, FIELDS, ROWS);
@@ -132,13 +133,25 @@ mod tests {
         assert_eq!(store.record(&block, FIELDS).map(|record| record[BLOCK + 5]), Some(7.0));
         assert!(store.record(&store.blocks[0], FIELDS).is_none());
 
-        let mut next = Store::of(&keys, ROWS);
+        let mut next = Store::of(&keys, ROWS, |_| 0);
         next.remember(FIELDS, ROWS, |block, numbers| {
-            let old = store.blocks.iter().find(|old| old.key() == block.key()).unwrap();
+            let old = store.blocks.iter().find(|old| old.order() == block.order()).unwrap();
             numbers.copy_from_slice(store.record(old, FIELDS).unwrap_or(&[0.0; FIELDS * BLOCK]));
         });
         let records: Vec<u32> = next.blocks.iter().map(|block| block.record).collect();
         assert_eq!(records, [Block::NOTHING, 0, Block::NOTHING]);
         assert_eq!(next.records[BLOCK + 5], 7.0);
+    }
+
+    /// Pairs of one place in a diagonal whose laws differ are in blocks of their own.
+    #[test]
+    fn a_block_has_one_law() {
+        let law = |key: u64| u32::from(pair(key)[0] >= 2);
+        let keys = [key(0, 40), key(1, 41), key(2, 42), key(3, 43), key(16, 56)];
+        let store = Store::of(&keys, ROWS, law);
+        let blocks: Vec<(u32, u16)> = store.blocks.iter().map(|block| (block.law, block.pairs)).collect();
+        assert_eq!(blocks, [(0, 0b11), (1, 0b1100), (1, 0b1)]);
+        assert!(store.blocks.is_sorted_by_key(Block::order));
+        assert_eq!(store.keys().collect::<Vec<_>>(), keys);
     }
 }

@@ -5,7 +5,7 @@ use super::meeting::Meets;
 use super::record::{Contact, Touch};
 use crate::base::lanes::{BLOCK, Lanes, Mask, Real};
 use crate::base::triple::Triple;
-use crate::engine::contact::pair::{Dissipated, History};
+use crate::engine::contact::pair::{Dissipated, History, Laws};
 use crate::engine::state::State;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::line::CELLS;
@@ -195,13 +195,14 @@ impl Batch {
         c.history.each_number(|n, number| set(HISTORY + n, number));
     }
 
-    /// Takes them through the laws, with the instructions of the machine.
+    /// Takes them through `law`, which is that of all of them, with the instructions of the machine.
     pub fn answer<'a, N: NormalLaw, T: TangentialLaw>(
         &'a self,
         meets: &'a Meets<'a, N, T>,
+        law: &'a Laws<N, T>,
         answers: &'a mut Answers,
     ) -> impl WithSimd<Output = ()> {
-        Run { batch: self, meets, answers }
+        Run { batch: self, meets, law, answers }
     }
 }
 
@@ -240,6 +241,7 @@ impl Default for Answers {
 struct Run<'a, N: NormalLaw, T: TangentialLaw> {
     batch: &'a Batch,
     meets: &'a Meets<'a, N, T>,
+    law: &'a Laws<N, T>,
     answers: &'a mut Answers,
 }
 
@@ -278,12 +280,12 @@ impl<N: NormalLaw, T: TangentialLaw> Run<'_, N, T> {
             let new = Lanes::select(new, zero.splat(1.0), zero);
             for k in 0..Lanes::<S>::LEN {
                 if new.at(k) > 0.0 {
-                    let per_length = self.meets.per_length(history.reduced_radius.at(k), curvature.at(k));
+                    let per_length = self.meets.per_length(self.law, history.reduced_radius.at(k), curvature.at(k));
                     beside.per_length.put(k, per_length);
                 }
             }
         }
-        let answer = beside.respond(self.meets.laws, &at, &all, &mut dents, &mut history, self.meets.state.dt);
+        let answer = beside.respond(self.law, &at, &all, &mut dents, &mut history, self.meets.state.dt);
         let here = Lanes::select(touches | touched, zero.splat(1.0), zero);
         let mut put = |row: usize, value: Lanes<S>| value.store(&mut out[row], lane);
         put(OUT_PLACE, at.t);

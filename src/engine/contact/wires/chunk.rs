@@ -15,8 +15,27 @@ use pulp::{Arch, Simd, WithSimd};
 #[derive(Default)]
 struct Work {
     gaps: Gaps,
+    /// Contacts of the first law.
     batch: Batch,
+    /// Contacts of each further one.
+    further: Vec<Batch>,
     answers: Answers,
+}
+
+impl Work {
+    /// Of `laws` laws.
+    fn new(laws: usize) -> Self {
+        Self { further: (1..laws).map(|_| Batch::default()).collect(), ..Self::default() }
+    }
+
+    /// The contacts of the law at `place`.
+    #[inline(always)]
+    fn batch(&mut self, place: usize) -> &mut Batch {
+        match place.checked_sub(1) {
+            None => &mut self.batch,
+            Some(k) => &mut self.further[k],
+        }
+    }
 }
 
 /// The contacts of one chunk of particles.
@@ -50,7 +69,8 @@ impl<N: NormalLaw, T: TangentialLaw> WithSimd for Alone<'_, '_, N, T> {
 impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
     /// Computes all; the deepest contact before this step is `deepest`.
     pub fn compute(mut self, deepest: Deepest) {
-        let mut work = Work::default();
+        let laws = self.meets.laws.len();
+        let mut work = Work::new(laws);
         self.store.acting.clear();
         self.store.sum = ChunkSums::beyond(deepest);
         self.near.fill(NearSum::default());
@@ -71,7 +91,7 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
             }
         }
         self.part(&mut work);
-        self.run(&mut work);
+        (0..laws).for_each(|law| self.run(&mut work, law));
     }
 
     #[inline(always)]
@@ -103,11 +123,13 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         self.book(k, &contact, &act, ChunkSums { deepest, ..partial });
     }
 
-    /// Puts a contact into the batch, which is run when it is full.
+    /// Puts a contact into the batch of its law, which is run when it is full.
     fn take(&mut self, work: &mut Work, k: usize) {
-        work.batch.take(k, &self.contact(k), &self.meets);
-        if work.batch.full() {
-            self.run(work);
+        let contact = self.contact(k);
+        let law = self.meets.laws.place(contact.i as usize, contact.place.j as usize);
+        work.batch(law).take(k, &contact, &self.meets);
+        if work.batch(law).full() {
+            self.run(work, law);
         }
     }
 
@@ -132,11 +154,12 @@ impl<N: NormalLaw, T: TangentialLaw> Chunk<'_, N, T> {
         work.gaps.clear();
     }
 
-    /// Takes contacts that touch through the laws.
+    /// Takes contacts that touch through their law, the one at `law`.
     #[inline(never)]
-    fn run(&mut self, work: &mut Work) {
-        let Work { batch, answers, .. } = work;
-        self.arch.dispatch(batch.answer(&self.meets, answers));
+    fn run(&mut self, work: &mut Work, law: usize) {
+        let Work { batch, further, answers, .. } = work;
+        let batch = law.checked_sub(1).map_or(batch, |k| &mut further[k]);
+        self.arch.dispatch(batch.answer(&self.meets, self.meets.laws.at(law), answers));
         for lane in 0..batch.contacts().len() {
             let k = batch.contacts()[lane];
             if !(0.0..=1.0).contains(&answers.place(lane)) {

@@ -492,6 +492,7 @@ mod tests {
             inertia: vec![1.0; n],
             rest_length,
             wire_of: vec![0; n],
+            sphere_material: Vec::new(),
             length: 0.0,
             area: 0.0,
             position,

@@ -7,6 +7,7 @@ use super::record::{Contact, Kind, Mode, Touch};
 use super::spread::{FarSum, NearSum};
 use crate::base::triple::Triple;
 use crate::base::vectors::Vectors;
+use crate::engine::contact::law_table::LawTable;
 use crate::engine::contact::pair::{ContactKinematics, Laws, contact_response, press};
 use crate::engine::state::{ChunkSums, Deepest, State};
 use crate::law::contact::line::{CELLS, LineResponse, LineStiffness, Stretch, respond, respond_cells};
@@ -32,7 +33,7 @@ pub struct Sides {
 /// What contacts need to know.
 #[derive(Clone, Copy)]
 pub struct Meets<'a, N: NormalLaw, T: TangentialLaw> {
-    pub laws: &'a Laws<N, T>,
+    pub laws: &'a LawTable<N, T>,
     pub line: &'a LineStiffness,
     pub state: &'a State,
     pub chains: &'a Chains,
@@ -113,7 +114,7 @@ struct Line {
     touching: f64,
 }
 
-impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
+impl<'a, N: NormalLaw, T: TangentialLaw> Meets<'a, N, T> {
     /// Finds the foot of a stretch, and tells whether it crosses the other wire so steeply that its cells would not
     /// resolve the patch in which they touch; see [`super::RESOLVED`].
     pub fn crosses(&self, c: &mut Contact<N, T>, resolved: f64) -> bool {
@@ -277,21 +278,23 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             return self.finish(c, &Touch::Apart { t: at.t, gap: -overlap }, look.u, act, deepest);
         }
         if !c.history.touching() {
-            beside.per_length = self.per_length(c.history.reduced_radius, at.distance[2] / (bond * bond));
+            let curvature = at.distance[2] / (bond * bond);
+            beside.per_length = self.per_length(self.law(c), c.history.reduced_radius, curvature);
         }
         let (mut dents, mut history) = (c.dents, c.history);
         // What slides beyond an end takes with it what it had stored. What slides in is left to the ledger: no work was done
         // for it.
         let mut released = 0.0;
+        let law = self.law(c);
         if c.history.touching() && shares != c.shares {
             let gap = beside.gap(&at, c.history.offset, c.history.reduced_radius);
             let stored = |share: &[f64; CELLS]| {
-                respond_cells(&gap, self.laws.normal.limiting_pressure(), share, &mut dents.clone()).energy
+                respond_cells(&gap, law.normal.limiting_pressure(), share, &mut dents.clone()).energy
             };
             released = (stored(&c.shares) - stored(&shares)).max(0.0);
         }
         c.shares = shares;
-        let answer = beside.respond(self.laws, &at, &shares, &mut dents, &mut history, self.state.dt);
+        let answer = beside.respond(law, &at, &shares, &mut dents, &mut history, self.state.dt);
         let touch = Touch::Here {
             answer,
             t: at.t,
@@ -304,10 +307,16 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         ChunkSums { released, ..partial }
     }
 
-    /// Stiffness per length (Pa) where the gap has this curvature (1/m).
+    /// Law of a contact.
     #[inline(always)]
-    pub fn per_length(&self, reduced_radius: f64, curvature: f64) -> f64 {
-        self.laws.normal.effective_modulus() * self.line.at(reduced_radius, curvature)
+    fn law(&self, c: &Contact<N, T>) -> &'a Laws<N, T> {
+        self.laws.between(c.i as usize, c.place.j as usize)
+    }
+
+    /// Stiffness per length (Pa) under `law` where the gap has this curvature (1/m).
+    #[inline(always)]
+    pub fn per_length(&self, law: &Laws<N, T>, reduced_radius: f64, curvature: f64) -> f64 {
+        law.normal.effective_modulus() * self.line.at(reduced_radius, curvature)
     }
 
     /// Books what came out for a stretch beside another wire, expanded at `u` bonds from its particle.
@@ -380,7 +389,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         let meeting = ContactKinematics { dt: self.state.dt, ..ContactKinematics::default() };
         let released = c.energy;
         c.energy = 0.0;
-        let (_, given) = press(self.laws, &mut c.history, &meeting, &NormalResponse::default());
+        let (_, given) = press(self.law(c), &mut c.history, &meeting, &NormalResponse::default());
         ChunkSums { released, ..given.partial() }
     }
 
@@ -436,12 +445,12 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
             return ChunkSums::default();
         }
         if !c.history.touching() {
-            c.per_length = self.per_length(c.history.reduced_radius, lie.stretch.curvature);
+            c.per_length = self.per_length(self.law(c), c.history.reduced_radius, lie.stretch.curvature);
         }
         lie.stretch.stiffness = c.per_length;
         (c.curvature, c.length) = (lie.stretch.curvature, lie.stretch.ends[1] - lie.stretch.ends[0]);
         let answer = if lie.stretch.overlap > 0.0 {
-            respond(&lie.stretch, self.laws.normal.limiting_pressure(), &mut c.dents[0])
+            respond(&lie.stretch, self.law(c).normal.limiting_pressure(), &mut c.dents[0])
         } else {
             LineResponse::default()
         };
@@ -460,7 +469,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         (c.u, c.place) = (u, far);
         let d = far.weights(self.state).mean(|p| self.state.x.get(p)) - lie.around.at(u)[0];
         let distance = d.length();
-        let radius = answer.stiffness / (2.0 * self.laws.normal.effective_modulus());
+        let radius = answer.stiffness / (2.0 * self.law(c).normal.effective_modulus());
         let normal = NormalResponse {
             force: answer.force,
             stiffness: answer.stiffness,
@@ -482,7 +491,7 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         }
         let overlap = overlap.max(0.0);
         let partial = self.act(c, &line, overlap, PI * c.history.reduced_radius * overlap, None, act, deepest);
-        c.energy = self.laws.normal.elastic_energy(&c.history.normal, c.history.reduced_radius, overlap);
+        c.energy = self.law(c).normal.elastic_energy(&c.history.normal, c.history.reduced_radius, overlap);
         partial
     }
 
@@ -517,8 +526,8 @@ impl<N: NormalLaw, T: TangentialLaw> Meets<'_, N, T> {
         let meeting =
             ContactKinematics { normal, overlap, thinner, velocity: velocity.into(), viscosity, dt: state.dt };
         let (action, given) = match answer {
-            Some(answer) => press(self.laws, &mut c.history, &meeting, answer),
-            None => contact_response(self.laws, &mut c.history, &meeting),
+            Some(answer) => press(self.law(c), &mut c.history, &meeting, answer),
+            None => contact_response(self.law(c), &mut c.history, &meeting),
         };
         (c.overlap, c.reach) = (overlap, reach);
         if c.history.touching() {

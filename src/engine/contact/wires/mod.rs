@@ -29,6 +29,7 @@ mod record;
 mod spread;
 mod store;
 
+use super::law_table::LawTable;
 use super::pair::{Laws, foreseen_stiffness, leave};
 use super::spheres::second::SecondSides;
 use super::stage::{Contacts, Elsewhere, closing};
@@ -64,7 +65,7 @@ const RESOLVED: f64 = 0.25;
 
 /// Contacts between smooth wires with normal law `N` and tangential law `T`.
 pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
-    laws: Laws<N, T>,
+    laws: LawTable<N, T>,
     line: LineStiffness,
     chains: Chains,
     /// Per chunk of particles.
@@ -79,7 +80,7 @@ pub struct WireContacts<N: NormalLaw, T: TangentialLaw> {
 
 impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
     /// Without contacts yet.
-    pub fn new(laws: Laws<N, T>, assembly: &Assembly) -> Self {
+    pub fn new(laws: LawTable<N, T>, assembly: &Assembly) -> Self {
         Self {
             laws,
             line: LineStiffness::default(),
@@ -143,7 +144,7 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         c.edge =
             c.kind != Kind::Stretch || c.end_to_end || !c.place.joined || self.chains.near_end(c.i, c.place.j, state);
         let mass = reduced_mass(state.mass[c.i as usize], c.place.between(&state.mass));
-        c.viscosity = viscous_coefficient(self.laws.damping, mass, 1.0);
+        c.viscosity = viscous_coefficient(self.laws.damping(), mass, 1.0);
     }
 
     /// Whether two particles of one wire are near to a break between them.
@@ -229,7 +230,7 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         let left = (0..old.len()).filter(|k| !taken[*k] && old.touching(*k)).map(|k| old.contact(k, &self.chains));
         let lost = |c: Contact<N, T>| ChunkSums {
             released: c.energy,
-            friction: leave(&self.laws, &c.history),
+            friction: leave(self.law(&c), &c.history),
             ..Default::default()
         };
         let lost = left.map(lost).collect();
@@ -275,7 +276,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
     }
 
     fn elastic_energy(&self, _: &State) -> f64 {
-        self.touching().map(|c| c.energy + leave(&self.laws, &c.history)).sum()
+        self.touching().map(|c| c.energy + leave(self.law(&c), &c.history)).sum()
     }
 
     fn add_normal_forces(&self, onto: &mut [f64]) {
@@ -303,7 +304,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             let approach = speed.dot(normal) / normal.length();
             match c.kind {
                 Kind::Stretch => self.foreseen(&c, approach.max(0.0) * horizon),
-                _ => foreseen_stiffness(&self.laws, &c.history, c.overlap, approach, horizon).unwrap_or_default(),
+                _ => foreseen_stiffness(self.law(&c), &c.history, c.overlap, approach, horizon).unwrap_or_default(),
             }
         };
         self.touching_in(chunk).map(foreseen).collect()
@@ -363,13 +364,22 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
         // x, v, ω and radius in; sums out and in; force and torque out.
         let per_particle = 3 * VECTOR + NUMBER + 2 * size_of::<NearSum>() + 2 * VECTOR;
         Bytes {
-            kept: behind(&self.stores) + sizes(Store::bytes) + self.chains.bytes() + self.spread.bytes(),
+            kept: behind(&self.stores)
+                + sizes(Store::bytes)
+                + self.chains.bytes()
+                + self.spread.bytes()
+                + self.laws.bytes(),
             moved: sizes(Store::moved) + particles * per_particle,
         }
     }
 }
 
 impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
+    /// Law of a contact.
+    fn law(&self, c: &Contact<N, T>) -> &Laws<N, T> {
+        self.laws.between(c.i as usize, c.place.j as usize)
+    }
+
     /// All contacts that push.
     fn touching(&self) -> impl Iterator<Item = Contact<N, T>> + '_ {
         self.stores.iter().flat_map(|store| store.all_touching(&self.chains))
@@ -388,13 +398,14 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
 
     /// Normal and tangential stiffness of a stretch that comes nearer by `closer` (m), in (N/m).
     fn foreseen(&self, c: &Contact<N, T>, closer: f64) -> [f64; 2] {
-        let modulus = self.laws.normal.effective_modulus();
+        let law = self.law(c);
+        let modulus = law.normal.effective_modulus();
         let normal = c.per_length * patch_length(c.overlap + closer, c.curvature, c.length);
         let mut across = 0.0;
         if T::ACTIVE {
             let mut tangential = c.history.tangential;
             let input = TangentialInput::at_rest(c.history.normal_force, normal / (2.0 * modulus));
-            across = self.laws.tangential.response(&mut tangential, &input).stiffness;
+            across = law.tangential.response(&mut tangential, &input).stiffness;
         }
         [normal, across]
     }
