@@ -7,6 +7,7 @@ source .ci/prepare.sh
 need_rust
 get_vulkan || printf '\n%s\nTests of frames will be SKIPPED.\n' "$WITHOUT_VULKAN"
 get_browser || printf '\nNo Chromium is here and none can be installed; tests of pages in a browser will be SKIPPED.\n'
+get_axe || printf '\nThe rules of accessibility (axe-core, from npm) cannot be installed here; tests of them will be SKIPPED.\n'
 get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that need it will be SKIPPED.\n'
 get_batch_systems || printf '\nSlurm or GNU Parallel cannot be installed here; tests that need them will be SKIPPED.\n'
 get_readers || printf '\nPrograms that read exports cannot be installed here; tests that need them will be SKIPPED.\n'

@@ -96,3 +96,14 @@ get_rerun() {
     .venv/bin/rerun analytics disable >/dev/null 2>&1 || true
     export RERUN_CLI="$PWD/.venv/bin/rerun"
 }
+
+# Rules of accessibility for pages in tests, as a package of npm in .venv; sets AXE_FOR_TESTS when they are there.
+get_axe() {
+    local package=axe-core@4.14.1 file=.venv/axe/node_modules/axe-core
+    if ! grep -qsF "\"version\": \"${package#*@}\"" "$file/package.json"; then
+        command -v npm >/dev/null || install_packages "No npm: installing it, for the rules of accessibility in tests" npm || return 1
+        say "Installing $package into .venv"
+        npm install --silent --no-audit --no-fund --ignore-scripts --prefix .venv/axe "$package" || return 1
+    fi
+    export AXE_FOR_TESTS="$PWD/$file/axe.min.js"
+}

@@ -465,3 +465,20 @@ fn a_browser_shows_runs_that_have_little_to_show() {
     assert!(matches!(run.events[0], Event::Sample(_)));
     shown(&mut browser, &folder, "light");
 }
+
+#[test]
+fn a_browser_finds_no_barrier_in_the_page() {
+    const NAME: &str = "a_browser_finds_no_barrier_in_the_page";
+    if std::env::var_os("AXE_FOR_TESTS").is_none() {
+        let _ = writeln!(std::io::stderr(), "SKIPPED (no axe-core): {NAME}");
+        return;
+    }
+    let Some(mut browser) = browser(NAME) else { return };
+    let folder = folder_of(&Run::new(12), 12);
+    for scheme in ["light", "dark"] {
+        shown(&mut browser, &folder, scheme);
+        assert_eq!(browser.violations().unwrap(), Vec::<String>::new(), "{scheme}");
+    }
+    browser.size(390, 844);
+    assert_eq!(browser.violations().unwrap(), Vec::<String>::new(), "on a phone");
+}

@@ -1,4 +1,6 @@
 import { Map2D, element, extent, frame, line } from "./charts.js";
+import { Film } from "./film.js";
+import { Live } from "./live.js";
 
 // The token has become a cookie; it need not stay in the address.
 if (location.search) history.replaceState(null, "", location.pathname);
@@ -7,9 +9,17 @@ const $ = id => document.getElementById(id);
 const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
 const fixed = (v, digits) => (v === null || v === undefined ? "–" : v.toFixed(digits));
 
-const run = await fetch("/run.json").then(answer => answer.json());
-const last = run.states.length - 1;
-const first = run.ruptures[0];
+const facts = () => fetch("/run.json").then(answer => answer.json());
+let run = await facts();
+let last, first, firsts, breakStates;
+const firstsOf = of => of.ruptures.filter(r => r.first_of_wire).map(r => r.wire);
+function known() {
+  last = run.states.length - 1;
+  first = run.ruptures[0];
+  firsts = firstsOf(run);
+  breakStates = [...new Set(run.ruptures.map(r => r.state))].sort((a, b) => a - b);
+}
+known();
 const stage = $("stage"), overlay = $("overlay"), canvas = $("picture");
 
 // ---- What is looked at. -------------------------------------------------------------------------------------------
@@ -21,8 +31,10 @@ let shown = null;        // the view of the picture on the screen
 let now = null;          // what the server told of its state
 let colours = null;      // of every particle, three bytes each
 let chosen = null;       // what the server told of the selected wire
+let past = null;         // its stress over the whole run
 let particle = null;     // the particle that was clicked
 let playing = false;
+let fitted = false;      // the view shows everything, and was not moved since
 
 // With a second run, each has half of the picture.
 const panes = run.other ? 2 : 1;
@@ -42,6 +54,7 @@ function connect() {
   socket.onopen = () => { retry = 500; trouble(""); asked.clear(); changed(); };
   socket.onmessage = ({ data }) => (typeof data === "string" ? heard(JSON.parse(data)) : received(data));
   socket.onclose = () => {
+    if (live) live.heard(live.known, false);
     trouble("The connection is lost: strandsnap has ended, or the network is gone. Trying again …");
     setTimeout(connect, retry = Math.min(2 * retry, 10000));
   };
@@ -78,7 +91,8 @@ async function received(data) {
   const [kind, of, width, height, micros] = new Uint32Array(data, 0, 5);
   const bytes = new Uint8Array(data, 20);
   if (kind === 3) { colours = bytes; drawMap(); return; }
-  if (kind === 2) { keep(new Blob([bytes], { type: "image/png" })); return; }
+  if (kind === 2) { keep(new Blob([bytes], { type: "image/png" }), "png"); return; }
+  if (kind === 4) { film.received(bytes); return; }
   const picture = await createImageBitmap(new Blob([bytes], { type: kind ? "image/png" : "image/jpeg" }));
   if (kind === 0) say({ shown: of });
   const ask = asked.get(of);
@@ -100,17 +114,55 @@ async function received(data) {
 }
 
 function heard(message) {
-  if (message.state) { now = message.state; drawNow(); drawMap(); drawOverlay(); }
+  if (message.state) {
+    now = message.state;
+    // A run that goes on may grow out of the picture that showed all of it.
+    if (fitted && live?.newest) { fit(); changed(); }
+    drawNow(); drawMap(); drawOverlay();
+  }
   if (message.wire !== undefined) { chosen = message.wire; drawChosen(); }
+  if (message.history) { past = message.history; drawCurve(); }
+  if (message.live) heardOfRun(message.live);
+  if (message.film) film.heard(message.film);
   if (message.picked !== undefined) picked(message.number, message.picked);
-  if (message.command) {
+  const words = message.command ?? message["film-command"];
+  if (words) {
     $("command-text").hidden = false;
-    $("command-text").textContent = `${run.command} ${message.command}`;
+    $("command-text").textContent = `${run.command} ${words}`;
     navigator.clipboard?.writeText($("command-text").textContent).catch(() => {});
   }
-  if (message.error) trouble(message.error);
+  if (message.error) {
+    trouble(message.error);
+    if (film.making) film.end("No film was made.");
+  }
 }
 setInterval(() => say({ greet: null }), 20000);
+
+// ---- A run that is still going. ----------------------------------------------------------------------------------------
+const live = run.live ? new Live($, say, () => { if (live.newest) toState(last); }) : null;
+function heardOfRun(state) {
+  live.heard(state);
+  if (state.extent !== run.extent) refresh();
+}
+let fetching = false, stale = false;
+// Takes up what the run has told since; where it keeps fewer states now, the moment on the screen stays.
+async function refresh() {
+  if (fetching) { stale = true; return; }
+  fetching = true;
+  const { every, ruptures, states } = run, before = { breaks: ruptures.length, newest: states.at(-1).time_ms };
+  try { run = await facts(); } finally { fetching = false; }
+  known();
+  trouble("");
+  slider.max = last;
+  $("headline").innerHTML = run.headline;
+  if (before.breaks !== run.ruptures.length) tellBreaks(before.breaks);
+  drawTicks();
+  const state = live.newest ? last : clamp(view.state * every / run.every, 0, last);
+  if (state !== view.state || before.newest !== run.states.at(-1).time_ms) toState(state);
+  if (view.selected !== undefined) { say({ history: view.selected }); drawChosen(); }
+  drawCurve(); drawWarnings(); markRows();
+  if (stale) { stale = false; refresh(); }
+}
 
 // ---- The camera, as src/render/camera.rs has it: x of the picture is the strand's axis at azimuth 0. -----------------
 const turned = ({ azimuth, elevation }) => {
@@ -142,11 +194,13 @@ function projector(of, told, left) {
 function move([dx, dy]) {
   const { height } = stage.getBoundingClientRect(), scale = view.height / height;
   const by = untwisted(view, [-dx * scale, dy * scale, 0]);
+  fitted = false;
   view.centre = view.centre.map((c, k) => c + by[k]);
 }
 function zoom(factor, [x, y] = [0.5 / panes, 0.5]) {
   const { width, height } = pane();
   const before = view.height;
+  fitted = false;
   view.height = clamp(before * factor, 0.02 * run.body.radius, 20 * Math.max(run.body.high[2] - run.body.low[2], run.body.radius));
   const scale = (before - view.height) / height;
   const by = untwisted(view, [(x * panes % 1 - 0.5) * width * scale, (0.5 - y) * height * scale, 0]);
@@ -158,6 +212,7 @@ function orbit(dx, dy) {
 }
 
 function fit() {
+  fitted = true;
   delete view.follow;
   const reach = now?.reach ?? [0, 1, 2].map(k => [run.body.low[k], run.body.high[k]]);
   view.centre = reach.map(([low, high]) => (low + high) / 2);
@@ -176,6 +231,7 @@ const views = {
   break: () => {
     const rupture = ruptureOf(view.selected) ?? first;
     const z = rupture?.rest_z ?? (run.body.low[2] + run.body.high[2]) / 2;
+    fitted = false;
     Object.assign(view, { azimuth: -20, elevation: facing(rupture), follow: z, height: 4.2 * run.body.radius });
     view.centre = [...run.body.axis, 0];
     uncover(rupture);
@@ -207,6 +263,7 @@ $("follow").onchange = ({ target }) => {
   if (target.checked) {
     // The section in the middle of the picture now; before loading it lay where strain had not yet moved it.
     const { z } = rest(view.centre[2]);
+    fitted = false;
     Object.assign(view, { follow: z, centre: [view.centre[0], view.centre[1], 0] });
   } else {
     view.centre[2] += followOffset();
@@ -286,6 +343,7 @@ function picked(which, found) {
   if (why === "hover") return showTip(at, found);
   if (why === "centre" && found) {
     const [x, y] = spread(found.position);
+    fitted = false;
     Object.assign(view, { follow: found.rest_z, centre: [x, y, 0] });
     $("follow").checked = true;
     changed();
@@ -326,6 +384,7 @@ stage.onkeydown = event => {
   else if (event.key === ",") toState(Math.ceil(view.state) - 1);
   else if (event.key === ".") toState(Math.floor(view.state) + 1);
   else if (event.key === " ") play(!playing);
+  else if (event.key === "k" || event.key === "K") film.add();
   else return;
   event.preventDefault();
   changed();
@@ -342,10 +401,14 @@ function toState(state) {
   changed();
 }
 const moment = s => (run.pulled ? `${fixed(s.x, 2)} % strain` : `${fixed(s.x, 4)} ms`);
-slider.oninput = () => { play(false); toState(+slider.value); };
-const breakStates = [...new Set(run.ruptures.map(r => r.state))].sort((a, b) => a - b);
-function toBreak(direction) {
+slider.oninput = () => { leave(); toState(+slider.value); };
+// Who goes to another moment looks there, and no longer at what comes.
+function leave() {
   play(false);
+  live?.follow(false);
+}
+function toBreak(direction) {
+  leave();
   const next = direction > 0 ? breakStates.find(s => s > view.state + 1e-6) : breakStates.findLast(s => s < view.state - 1e-6);
   if (next !== undefined) toState(next);
 }
@@ -355,6 +418,7 @@ let frameTime = null;
 function play(on) {
   playing = on;
   frameTime = null;
+  if (on) live?.follow(false);
   if (on && view.state >= last) toState(0);
   $("play").textContent = on ? "⏸" : "▶";
   $("play").setAttribute("aria-label", on ? "Pause" : "Play");
@@ -386,15 +450,17 @@ function select(wire) {
   if (wire === null) { delete view.selected; chosen = null; } else {
     view.selected = wire;
     say({ wire: { wire, state: view.state } });
+    say({ history: wire });
   }
   drawChosen(); drawCurve(); drawMap(); markRows(); drawOverlay();
   changed();
 }
 function toRupture(r) {
-  play(false);
+  leave();
   particle = null;
   toState(r.state);
   select(r.wire);
+  fitted = false;
   Object.assign(view, { follow: r.rest_z, centre: [...run.body.axis, 0] });
   view.height = Math.min(view.height, 6 * run.body.radius);
   $("follow").checked = true;
@@ -442,13 +508,11 @@ function drawBreaks(of, told, left, right) {
     }
   }
 }
-const firstsOf = of => of.ruptures.filter(r => r.first_of_wire).map(r => r.wire);
-const firsts = firstsOf(run);
 function drawTriad(height) {
   const rotate = turned(shown.view), [x, y] = [40, height - 40];
   [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]].forEach(([name, axis]) => {
     const [dx, dy] = rotate(axis).map(v => v * 26);
-    element(overlay, "line", { class: "axis", x1: x, y1: y, x2: x + dx, y2: y - dy });
+    element(overlay, "line", { class: "triad", x1: x, y1: y, x2: x + dx, y2: y - dy });
     element(overlay, "text", { class: "caption", x: x + 1.25 * dx - 3, y: y - 1.25 * dy + 4 }, name);
   });
 }
@@ -479,13 +543,13 @@ let curve;
 function drawCurve() {
   const svg = $("curve");
   if (!run.pulled) return;
-  const history = view.selected === undefined ? [] : run.wires[view.selected].history;
+  const ofWire = past && past.wire === view.selected ? past.stress : [];
   const beside = run.other?.curve ?? { x: [], y: [] };
-  const [low, high] = extent([...run.curve.y, ...beside.y, ...history, 0]);
+  const [low, high] = extent([...run.curve.y, ...beside.y, ...ofWire, 0]);
   curve = frame(svg, { x: extent([...run.curve.x, ...beside.x]), y: [low, 1.05 * high], xTitle: run.abscissa, yTitle: "nominal stress (MPa)" });
   line(svg, curve, run.curve.x, run.curve.y, "line");
   if (run.other) line(svg, curve, beside.x, beside.y, "line beside");
-  if (history.length) line(svg, curve, run.curve.x, history, "wire");
+  if (ofWire.length) line(svg, curve, run.curve.x, ofWire, "wire");
   const at = now ? now.x : run.states[0].x;
   element(svg, "line", { class: "now", x1: curve.px(at), x2: curve.px(at), y1: curve.top, y2: curve.bottom });
   for (const r of run.ruptures) {
@@ -499,7 +563,7 @@ function drawCurve() {
 }
 $("curve").onclick = event => {
   if (!curve) return;
-  play(false);
+  leave();
   const x = curve.value(event.clientX);
   const off = run.states.map(s => Math.abs(s.x - x));
   toState(off.indexOf(Math.min(...off)));
@@ -522,6 +586,7 @@ $("map").onclick = event => {
   particle = null;
   select(found.wire);
   const share = found.particle / Math.max(1, run.wires[found.wire].len - 1);
+  fitted = false;
   Object.assign(view, { follow: run.body.low[2] + share * (run.body.high[2] - run.body.low[2]), centre: [...run.body.axis, 0] });
   view.height = Math.min(view.height, 6 * run.body.radius);
   $("follow").checked = true;
@@ -544,14 +609,13 @@ function drawChosen() {
   drawParticle();
 }
 function drawAlong(svg) {
+  const most = Math.max(1e-9, extent(chosen.plastic_strain)[1]), top = 0.95 * Math.max(1, extent(chosen.stress)[1]);
   const at = frame(svg, {
     x: extent(chosen.z), y: [Math.min(0, extent(chosen.stress)[0]), 1.05 * Math.max(1, extent(chosen.stress)[1])],
-    xTitle: "z before loading (mm)", yTitle: "true axial stress (MPa), blue: plastic strain (share of its greatest)",
+    xTitle: "z before loading (mm)", yTitle: `true axial stress (MPa); blue: plastic strain, at most ${fixed(most, 1)} %`,
   });
   line(svg, at, chosen.z, chosen.stress, "line");
-  const most = Math.max(1e-9, extent(chosen.plastic_strain)[1]), top = 0.95 * Math.max(1, extent(chosen.stress)[1]);
   line(svg, at, chosen.z, chosen.plastic_strain.map(v => (v === null ? null : v / most * top)), "wire");
-  element(svg, "text", { x: at.px(chosen.z.at(-1)), y: at.top + 8, "text-anchor": "end" }, `plastic strain up to ${fixed(most, 1)} %`);
   for (const r of run.ruptures.filter(r => r.wire === chosen.wire && r.state <= view.state + 1e-6)) {
     element(svg, "circle", { class: "break", cx: at.px(r.rest_z), cy: at.bottom, r: 4 });
   }
@@ -580,21 +644,24 @@ function drawParticle() {
   add("utilisation", `${fixed(p.utilisation, 1)} % of rupture`);
 }
 
-function table(into, heads, rows) {
+function table(into, heads) {
   const head = into.createTHead().insertRow();
   for (const [text, kind] of heads) {
     const cell = document.createElement("th");
     Object.assign(cell, { textContent: text, className: kind ?? "", scope: "col" });
     head.append(cell);
   }
-  const body = into.createTBody();
+  into.createTBody();
+}
+function addRows(into, rows) {
+  const [body] = into.tBodies, heads = [...into.tHead.rows[0].cells];
   for (const { cells, wire, state, go: act, name } of rows) {
     const row = body.insertRow();
     Object.assign(row.dataset, { wire, state: state ?? -1 });
     row.onclick = act;
     cells.forEach((text, k) => {
       const cell = row.insertCell();
-      cell.className = heads[k][1] ?? "";
+      cell.className = heads[k].className;
       if (k) { cell.append(text); return; }
       const button = document.createElement("button");
       Object.assign(button, { type: "button", textContent: text });
@@ -603,11 +670,18 @@ function table(into, heads, rows) {
     });
   }
 }
-table($("breaks"), [["order"], ["wire", "n"], ["layer"], [run.pulled ? "strain %" : "ms", "n"], ["z mm", "n"], ["MPa", "n"]], run.ruptures.map(r => ({
+table($("breaks"), [["order"], ["wire", "n"], ["layer"], [run.pulled ? "strain %" : "ms", "n"], ["z mm", "n"], ["MPa", "n"]]);
+// The breaks from number `from` on, and in which order wires broke.
+function tellBreaks(from) {
+  addRows($("breaks"), run.ruptures.slice(from).map(r => ({
   cells: [r.order, run.wires[r.wire].number, run.layers[r.layer], fixed(r.x, 3), fixed(r.rest_z, 1), fixed(r.stress, 0)],
   wire: r.wire, state: r.state, go: () => toRupture(r), name: `Break ${r.order}, wire ${run.wires[r.wire].number}`,
-})));
-table($("wires"), [["wire"], ["layer"], ["broke as", "n"], ["shown"]], run.wires.map((w, k) => {
+  })));
+  for (const row of $("wires").tBodies[0].rows) row.cells[2].textContent = brokeAs(+row.dataset.wire);
+}
+const brokeAs = k => (firsts.includes(k) ? firsts.indexOf(k) + 1 : "–");
+table($("wires"), [["wire"], ["layer"], ["broke as", "n"], ["shown"]]);
+addRows($("wires"), run.wires.map((w, k) => {
   const box = document.createElement("input");
   Object.assign(box, { type: "checkbox", checked: true });
   box.setAttribute("aria-label", `Show wire ${w.number}`);
@@ -616,12 +690,12 @@ table($("wires"), [["wire"], ["layer"], ["broke as", "n"], ["shown"]], run.wires
     view.hidden_wires = view.hidden_wires.filter(other => other !== k).concat(box.checked ? [] : [k]);
     changed();
   };
-  const place = firsts.indexOf(k);
   return {
-    cells: [w.number, run.layers[w.layer], place < 0 ? "–" : place + 1, box], wire: k,
+    cells: [w.number, run.layers[w.layer], brokeAs(k), box], wire: k,
     go: () => { particle = null; select(k); }, name: `Select wire ${w.number}`,
   };
 }));
+tellBreaks(0);
 
 // ---- Layers, apart and cut, colours, what is taken away. -----------------------------------------------------------------
 run.layers.forEach((name, k) => {
@@ -638,9 +712,12 @@ run.layers.forEach((name, k) => {
 $("explode").oninput = ({ target }) => { view.explode = +target.value; changed(); };
 $("cut").oninput = ({ target }) => {
   if (+target.value >= +target.max) { delete view.cut; } else { view.cut = +target.value; }
-  $("cut-text").textContent = view.cut === undefined ? "whole" : `what lies above ${fixed(view.cut, 1)} mm is cut off`;
+  tellCut();
   changed();
 };
+function tellCut() {
+  $("cut-text").textContent = view.cut === undefined ? "whole" : `what lies above ${fixed(view.cut, 1)} mm is cut off`;
+}
 
 const colourOf = () => run.colours.find(c => c.word === view.colour);
 for (const { word, about } of run.colours) $("colour").add(new Option(about, word));
@@ -681,13 +758,36 @@ $("reset-range").onclick = () => { delete view.range; drawLegend(); changed(); }
 const fileSize = () => ($("size").value ? $("size").value.split("x").map(Number) : sizeOf());
 $("save").onclick = () => say({ picture: { size: fileSize(), view } });
 $("command").onclick = () => say({ command: { size: fileSize(), view } });
-function keep(blob) {
+function keep(blob, ending) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
-  link.download = `${run.name}-${view.state.toFixed(2)}.png`;
+  link.download = `${run.name}-${view.state.toFixed(2)}.${ending}`;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
+
+// Puts a view on the screen, and into everything that is set by it.
+function show(wanted) {
+  leave();
+  fitted = false;
+  for (const key of ["follow", "range", "selected", "cut"]) if (!(key in wanted)) delete view[key];
+  Object.assign(view, wanted);
+  theme(view.theme);
+  $("follow").checked = view.follow !== undefined;
+  $("explode").value = view.explode;
+  $("colour").value = view.colour;
+  if (view.cut !== undefined) $("cut").value = view.cut;
+  tellCut();
+  for (const box of document.querySelectorAll("#layers input")) box.checked = !view.hidden_layers.includes(+box.dataset.layer);
+  for (const row of $("wires").tBodies[0].rows) row.querySelector("input").checked = !view.hidden_wires.includes(+row.dataset.wire);
+  drawLegend();
+  toState(view.state);
+  select(view.selected ?? null);
+}
+const film = new Film($, {
+  say, show, file: keep, size: fileSize, present: () => structuredClone(view),
+  name: of => moment(run.states[clamp(Math.round(of.state), 0, last)]),
+});
 
 function theme(name) {
   document.documentElement.dataset.theme = view.theme = name;
@@ -698,18 +798,22 @@ $("theme").onclick = () => theme(view.theme === "dark" ? "light" : "dark");
 
 // ---- Beginning: at the first break, close up. -------------------------------------------------------------------------
 $("foot").textContent = `${run.about} Drawn by ${run.adapter}.`;
-if (run.warnings.length) {
-  const list = document.createElement("details"), words = document.createElement("summary");
-  words.textContent = `${run.warnings.length} ${run.warnings.length === 1 ? "warning" : "warnings"} of the run`;
-  list.append(words, ...run.warnings.map(text => Object.assign(document.createElement("p"), { textContent: text })));
-  $("foot").before(list);
+const warnings = document.createElement("details");
+$("foot").before(warnings);
+function drawWarnings() {
+  const words = document.createElement("summary"), count = run.warnings.length;
+  words.textContent = `${count} ${count === 1 ? "warning" : "warnings"} of the run`;
+  warnings.hidden = !count;
+  warnings.replaceChildren(words, ...run.warnings.map(text => Object.assign(document.createElement("p"), { textContent: text })));
 }
+drawWarnings();
 if (!run.layers.length) $("layers").hidden = true;
 if (!run.pulled) $("curve").closest("section").hidden = true;
 theme(matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
 drawLegend();
-toState(first ? first.state : last);
-if (run.body.gauge) go("break"); else go("home");
+if (live) live.heard(run.live, false);
+toState(first && !live ? first.state : last);
+if (run.body.gauge && !live) go("break"); else go("home");
 drawTicks();
 drawChosen();
 let resized;
@@ -721,4 +825,4 @@ connect();
 requestAnimationFrame(tick);
 document.documentElement.dataset.ready = "yes";
 // For tests and for those who script the page from its console.
-window.explore = { view, run, go, toState, select, changed, shown: () => shown };
+window.explore = { view, go, toState, select, changed, run: () => run, shown: () => shown, film, live };

@@ -17,12 +17,17 @@ pub struct Counted<'a> {
 impl<'a> Counted<'a> {
     /// `count` snapshots are to come. Draws nothing when standard error is no terminal or `shown` is not set.
     pub fn new(inner: &'a mut dyn Observer, count: usize, shown: bool) -> Self {
-        let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let bar = ProgressBar::with_draw_target(Some(count as u64), target);
-        let style = ProgressStyle::with_template("drawing [{bar:24}] {pos} of {len}, {eta} left");
-        bar.set_style(style.expect("the template is constant and right"));
-        Self { inner, bar }
+        Self { inner, bar: bar(count, shown) }
     }
+}
+
+/// A bar of so many pictures; nothing is drawn when standard error is no terminal or `shown` is not set.
+pub fn bar(count: usize, shown: bool) -> ProgressBar {
+    let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(count as u64), target);
+    let style = ProgressStyle::with_template("drawing [{bar:24}] {pos} of {len}, {eta} left");
+    bar.set_style(style.expect("the template is constant and right"));
+    bar
 }
 
 impl Observer for Counted<'_> {

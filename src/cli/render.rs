@@ -24,10 +24,17 @@ pub struct Args {
     /// Go on where files of the run were changed or are another's; the result says so
     #[arg(long)]
     anyway: bool,
-    /// Draw one view, as `strandsnap explore` writes it, to view.png in that folder
-    #[arg(long, value_name = "KEYS", conflicts_with_all = ["strain_range", "events", "every", "animation", "views", "colour",
-        "theme", "azimuth", "elevation", "zoom", "focus_z"])]
-    view: Option<String>,
+    /// Draw one view, as `strandsnap explore` writes it, to view.png in that folder; several of them and --animation
+    /// make the film of a camera that goes from each to the next
+    #[arg(long, value_name = "KEYS", conflicts_with_all = ["strain_range", "events", "every", "animation_width", "views",
+        "colour", "theme", "azimuth", "elevation", "zoom", "focus_z"])]
+    view: Vec<String>,
+    /// Time that the camera of a film takes from each view to the next
+    #[arg(long, value_name = "TIME", value_parser = super::values::duration, default_value = "2s", requires = "view")]
+    leg: std::time::Duration,
+    /// A second run beside the first one in such a view or film
+    #[arg(long, value_name = "RUN", requires = "view")]
+    with: Option<PathBuf>,
     #[command(flatten)]
     select: SelectArgs,
     #[command(flatten)]
@@ -57,8 +64,8 @@ pub fn render(args: Args) -> Result<Ended> {
     use crate::run::replay::Replay;
     use crate::run::{folder, identity, outputs};
 
-    if let Some(words) = &args.view {
-        return one_view(&args, words);
+    if !args.view.is_empty() {
+        return views(args);
     }
     let doubts = identity::check(&args.run, args.anyway)?;
     let run = Replay::open(&args.run, &args.select.into())?.doubting(&doubts);
@@ -117,28 +124,80 @@ pub fn render(args: Args) -> Result<Ended> {
 }
 
 #[cfg(all(feature = "render", not(feature = "explore")))]
-fn one_view(_args: &Args, _words: &str) -> Result<Ended> {
+fn views(_args: Args) -> Result<Ended> {
     Err(crate::run::outputs::built_without("single views", "explore", "draw frames without --view"))
 }
 
 #[cfg(feature = "explore")]
-fn one_view(args: &Args, words: &str) -> Result<Ended> {
+fn views(args: Args) -> Result<Ended> {
     use super::say::say;
     use crate::base::error::Error;
     use crate::explore::{View, picture};
 
     let out = args.out.clone().unwrap_or_else(|| args.run.join("render"));
+    let mut output = crate::scene::spec::OutputSpec::default();
+    args.look.apply(&mut output);
+    let views: Vec<View> = args.view.iter().map(|words| View::parse(words)).collect::<Result<_>>()?;
+    if let Some(animation) = args.animation.resolve(&out.join("film.mp4")) {
+        let path = crate::explore::CameraPath { views, seconds: args.leg.as_secs_f64() };
+        return film(
+            &args.run,
+            args.with.as_deref(),
+            path,
+            output.frame_size,
+            &animation,
+            [args.overwrite, args.quiet],
+        );
+    }
+    let [view] = &views[..] else {
+        return Err(Error::input(
+            format!("--view is there {} times", views.len()),
+            "give one for a picture; several are what the camera of a film comes by, which --animation asks for",
+        ));
+    };
     let file = out.join("view.png");
     if file.exists() && !args.overwrite {
         let instead = "give --overwrite to replace it, or another folder with --out";
         return Err(Error::input(format!("{} exists", file.display()), instead));
     }
-    let mut output = crate::scene::spec::OutputSpec::default();
-    args.look.apply(&mut output);
-    let bytes = picture(&args.run, &View::parse(words)?, output.frame_size)?;
+    let bytes = picture(&args.run, args.with.as_deref(), view, output.frame_size)?;
     crate::base::regular::make_folder(&out)?;
     crate::render::png::write(&file, &bytes)?;
     say!("the view is in {}", file.display());
+    Ok(Ended::Well)
+}
+
+/// The film of a camera path.
+#[cfg(feature = "explore")]
+fn film(
+    run: &std::path::Path,
+    with: Option<&std::path::Path>,
+    path: crate::explore::CameraPath,
+    size: [u32; 2],
+    animation: &crate::observe::animation::Animation,
+    [overwrite, quiet]: [bool; 2],
+) -> Result<Ended> {
+    use super::say::say;
+    use crate::base::error::Error;
+    use crate::explore::FilmTarget;
+    use crate::observe::animation::Format;
+
+    if animation.format()? != Format::Film {
+        return Err(Error::input(
+            format!("a camera path cannot be written as {}", animation.file.display()),
+            "give --animation a name that ends in .mp4",
+        ));
+    }
+    animation.check(overwrite)?;
+    if let Some(folder) = animation.file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        crate::base::regular::make_folder(folder)?;
+    }
+    let stop = super::interrupt::install_saying("\nstopping; nothing is left of the film")?;
+    let bar = super::counted::bar(path.pictures(), !quiet);
+    let target = FilmTarget { file: &animation.file, size, stop };
+    let made = crate::explore::film(run, with, path, &target, &mut |done, _| bar.set_position(done as u64));
+    bar.finish_and_clear();
+    say!("{} of film are in {}", crate::run::outputs::megabytes(made?), animation.file.display());
     Ok(Ended::Well)
 }
 

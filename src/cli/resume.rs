@@ -2,6 +2,7 @@
 
 use super::counted::Counted;
 use super::ended::Ended;
+use super::explore::{AddressArgs, Watched};
 use super::finished::print;
 use super::interrupt;
 use super::progress::Progress;
@@ -36,20 +37,28 @@ pub fn resume(args: &Args) -> Result<Ended> {
         return draw(undrawn, args.time_limit, args.quiet);
     }
     let resumable = Resumable::open(&args.run, args.threads.count(), args.device.clone())?;
-    go_on(resumable, args.time_limit, args.quiet)
+    go_on(resumable, args.time_limit, args.quiet, None)
 }
 
 /// Goes on with a run to its end, and says how it ended.
-pub(super) fn go_on(resumable: Resumable, time_limit: Option<Duration>, quiet: bool) -> Result<Ended> {
+pub(super) fn go_on(
+    resumable: Resumable,
+    time_limit: Option<Duration>,
+    quiet: bool,
+    explore: Option<&AddressArgs>,
+) -> Result<Ended> {
     let stop = interrupt::install()?;
     time_limit.into_iter().for_each(interrupt::after);
     let options = resumable.options.clone();
+    let mut watched = Watched::begin(explore, &options.out, &resumable.scene.spec, stop)?;
     let summary = run::in_pool(options.threads, || {
         let mut progress = (!quiet).then(|| Progress::new(&resumable.scene.spec.stop));
-        let watchers = progress.iter_mut().map(|bar| bar as &mut dyn Observer).collect();
+        let bar = progress.iter_mut().map(|bar| bar as &mut dyn Observer);
+        let watchers = bar.chain(watched.observer()).collect();
         resumable.go_on(&|what| eprintln!("note: {what}"), watchers, stop)
     })??;
     print(&summary, &options, quiet);
+    watched.end(&summary, stop);
     interrupt::ended_run(&summary)
 }
 

@@ -2,6 +2,7 @@
 
 use super::animation::AnimationArgs;
 use super::ended::Ended;
+use super::explore::{AddressArgs, Watched};
 use super::finished::print;
 use super::interrupt;
 use super::look::LookArgs;
@@ -57,6 +58,11 @@ pub struct Args {
     /// Stream to a Rerun viewer that is already open
     #[arg(long, value_name = "URL", num_args = 0..=1, default_missing_value = DEFAULT_VIEWER)]
     live: Option<String>,
+    /// Show the run in a browser while it goes on: its newest state from any side, its curve; hold it, step it, stop it
+    #[arg(long)]
+    explore: bool,
+    #[command(flatten)]
+    address: AddressArgs,
     /// Show no progress, and one line at the end
     #[arg(long)]
     quiet: bool,
@@ -76,10 +82,11 @@ pub fn run(args: Args) -> Result<Ended> {
     }
     // The limit of one that may have waited runs already.
     let time_limit = args.time_limit.filter(|_| !args.wait);
+    let explore = args.explore.then_some(&args.address);
     if args.resume && run::folder::has_checkpoint(&out) {
         let resumable = Resumable::open(&out, args.threads.count(), args.device)?;
         resumable.check_scene(&scene)?;
-        return go_on(resumable, time_limit, args.quiet);
+        return go_on(resumable, time_limit, args.quiet, explore);
     }
     if args.resume
         && let Some(undrawn) = Undrawn::find(&out)?.filter(|undrawn| undrawn.is_of(&scene))
@@ -108,12 +115,15 @@ pub fn run(args: Args) -> Result<Ended> {
     before.iter().for_each(|caution| eprintln!("WARNING: {caution}"));
     let stop = interrupt::install()?;
     time_limit.into_iter().for_each(interrupt::after);
+    let mut watched = Watched::begin(explore, &options.out, &scene.spec, stop)?;
     let summary = run::in_pool(options.threads, || {
         let mut progress = (!args.quiet).then(|| Progress::new(&scene.spec.stop));
-        let watchers = progress.iter_mut().map(|bar| bar as &mut dyn Observer).collect();
+        let bar = progress.iter_mut().map(|bar| bar as &mut dyn Observer);
+        let watchers = bar.chain(watched.observer()).collect();
         run::run_watched(&scene, &options, watchers, stop)
     })??;
     print(&summary, &options, args.quiet);
+    watched.end(&summary, stop);
     interrupt::ended_run(&summary)
 }
 

@@ -44,18 +44,20 @@ pub struct Artist {
     painter: Painter,
     body: Body,
     ready: VecDeque<(Key, Arc<Ready>)>,
-    occlusion: Option<(View, Arc<Vec<[f32; 4]>>)>,
+    occlusion: Option<(View, u64, Arc<Vec<[f32; 4]>>)>,
 }
 
 /// What decides the shapes of a view: all but the camera.
 #[derive(Clone, PartialEq)]
 struct Key {
     view: View,
+    /// Steps of the snapshots that it lies between.
+    steps: [u64; 2],
     stride: usize,
 }
 
 impl Key {
-    fn of(view: &View, stride: usize) -> Self {
+    fn of(view: &View, steps: [u64; 2], stride: usize) -> Self {
         let still = View::default();
         let view = View {
             azimuth: still.azimuth,
@@ -66,7 +68,7 @@ impl Key {
             theme: still.theme,
             ..view.clone()
         };
-        Self { view, stride }
+        Self { view, steps, stride }
     }
 
     /// What decides how much of its surroundings each particle hides: of a state between two snapshots, the earlier one.
@@ -135,7 +137,7 @@ impl Artist {
 
     /// What the view's state looks like, without a camera.
     pub fn ready(&mut self, record: &Record, view: &View, size: [u32; 2]) -> Arc<Ready> {
-        let key = Key::of(view, stride(record.info(), view, size));
+        let key = Key::of(view, record.steps(view.state), stride(record.info(), view, size));
         if let Some(at) = self.ready.iter().position(|(known, _)| *known == key) {
             let found = self.ready.remove(at);
             self.ready.extend(found);
@@ -154,9 +156,9 @@ impl Artist {
     }
 
     fn prepare(&mut self, record: &Record, key: &Key) -> Ready {
-        let Key { view, stride } = key;
+        let Key { view, stride, .. } = key;
         let info = record.info();
-        let occlusion = self.occlusion(record, key.of_occlusion());
+        let occlusion = self.occlusion(record, key.of_occlusion(), key.steps[0]);
         let snapshot = record.snapshot(view.state);
         let removed = removed(info, &snapshot, view);
         let position = self.exploded(&snapshot, view);
@@ -180,16 +182,16 @@ impl Artist {
         Ready { snapshot, position, removed, segments, colours }
     }
 
-    fn occlusion(&mut self, record: &Record, view: View) -> Arc<Vec<[f32; 4]>> {
-        if let Some((known, found)) = &self.occlusion
-            && *known == view
+    fn occlusion(&mut self, record: &Record, view: View, step: u64) -> Arc<Vec<[f32; 4]>> {
+        if let Some((known, at, found)) = &self.occlusion
+            && (known, *at) == (&view, step)
         {
             return found.clone();
         }
         let (info, snapshot) = (record.info(), record.snapshot(view.state));
         let (position, removed) = (self.exploded(&snapshot, &view), removed(info, &snapshot, &view));
         let made = Arc::new(occlusion(info, &position, &snapshot.radius, &removed));
-        self.occlusion = Some((view, made.clone()));
+        self.occlusion = Some((view, step, made.clone()));
         made
     }
 
@@ -246,7 +248,7 @@ impl Artist {
 }
 
 /// Refuses a picture that would take too much memory.
-fn check_size(size: [u32; 2]) -> Result<()> {
+pub(super) fn check_size(size: [u32; 2]) -> Result<()> {
     let fits = size.iter().all(|side| SIDES.contains(side));
     if fits && u64::from(size[0]) * u64::from(size[1]) <= MOST_PIXELS {
         return Ok(());

@@ -3,11 +3,13 @@
 use super::pick::Picked;
 use super::view::View;
 use crate::base::error::{Error, Result};
+use crate::base::finding::Notice;
 use crate::base::units::{mm, mpa, ms, percent};
+use crate::base::worst::renew;
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::tables::{cause, layer_name};
 use crate::observe::trajectory::{Record as Entry, Trajectory};
-use crate::observe::wording::wire_number;
+use crate::observe::wording::{layer_words, wire_number};
 use crate::page::{self, Abscissa, Source};
 use crate::render::body::Body;
 use crate::render::colour::ColourScale;
@@ -28,11 +30,39 @@ const MOST_POINTS: usize = 3000;
 /// Colours of a scale that are sent to a page.
 const STOPS: usize = 32;
 
-/// A run that can be looked at.
+/// A run that can be looked at, over or still going.
 pub struct Record {
-    source: Source,
+    info: Arc<RunInfo>,
+    /// Every row of the curve.
+    samples: Vec<Sample>,
+    /// Every rupture, in order.
+    ruptures: Vec<Rupture>,
+    /// Every so many of the run's snapshots, and its last one.
     snapshots: Vec<Arc<Snapshot>>,
+    every: usize,
+    /// Snapshots that the run has had, and all that it has told.
+    seen: usize,
+    extent: usize,
+    /// What broke first, as markup, of a run that is over.
+    headline: Option<String>,
+    /// Bonds scatter.
+    one_draw: bool,
+    /// What the run found, of one that is going.
+    notices: Vec<Notice>,
+    warnings: Vec<String>,
     notes: Vec<String>,
+}
+
+/// What a run that is going tells.
+pub enum Told {
+    /// A row of the curve.
+    Row(Sample),
+    /// A state.
+    State(Arc<Snapshot>),
+    /// A bond broke.
+    Rupture(Rupture),
+    /// Something that the user must know was found.
+    Notice(Notice),
 }
 
 impl Record {
@@ -44,8 +74,7 @@ impl Record {
         // What was changed, or belongs to another run, is not shown as this one.
         identity::check(run, false)?;
         let source = Source::read(run)?;
-        let most = (MEMORY / (PARTICLE_BYTES * source.info.particles.max(1))).max(2);
-        let every = source.snapshots.div_ceil(most).max(1);
+        let every = source.snapshots.div_ceil(most(&source.info)).max(1);
         let trajectory = Trajectory::open(&page::trajectory_in(run)?)?;
         let last = source.snapshots.saturating_sub(1);
         // Where the file is cut off, the source has said so.
@@ -61,17 +90,102 @@ impl Record {
                 "the run was stopped before its first one; run it again",
             ));
         }
-        let mut notes = source.notes.clone();
-        if every > 1 {
-            let (shown, of) = (snapshots.len(), source.snapshots);
-            notes.push(format!("{shown} of {of} snapshots are shown: all of them do not fit into memory."));
+        Ok(Self {
+            headline: Some(page::headline(&source).into_string()),
+            one_draw: source.summary.one_draw.is_some(),
+            info: source.info,
+            samples: source.samples,
+            ruptures: source.ruptures,
+            seen: source.snapshots,
+            extent: 0,
+            snapshots,
+            every,
+            notices: Vec::new(),
+            warnings: source.summary.warnings,
+            notes: source.notes,
+        })
+    }
+
+    /// A run that begins; `one_draw` where its bonds scatter.
+    pub fn begin(info: Arc<RunInfo>, one_draw: bool) -> Self {
+        Self {
+            info,
+            samples: Vec::new(),
+            ruptures: Vec::new(),
+            snapshots: Vec::new(),
+            every: 1,
+            seen: 0,
+            extent: 0,
+            headline: None,
+            one_draw,
+            notices: Vec::new(),
+            warnings: Vec::new(),
+            notes: Vec::new(),
         }
-        Ok(Self { source, snapshots, notes })
+    }
+
+    /// Takes up what the run tells.
+    pub fn hear(&mut self, told: Told) {
+        self.extent += 1;
+        match told {
+            Told::Row(sample) => self.samples.push(sample),
+            Told::Rupture(rupture) => self.ruptures.push(rupture),
+            Told::Notice(notice) => renew(&mut self.notices, &notice),
+            Told::State(snapshot) => self.add(snapshot, most(&self.info)),
+        }
+    }
+
+    /// The newest state is always there; where there are too many, every other of those before it goes.
+    fn add(&mut self, snapshot: Arc<Snapshot>, most: usize) {
+        let passing = self.seen > 0 && !(self.seen - 1).is_multiple_of(self.every);
+        if passing {
+            self.snapshots.pop();
+        }
+        self.snapshots.push(snapshot);
+        self.seen += 1;
+        if self.snapshots.len() > most {
+            self.every *= 2;
+            let last = self.snapshots.len() - 1;
+            let mut number = 0..;
+            self.snapshots.retain(|_| number.next().is_some_and(|k: usize| k.is_multiple_of(2) || k == last));
+        }
+    }
+
+    /// How much the run has told: more whenever it has told more.
+    pub fn extent(&self) -> usize {
+        self.extent
+    }
+
+    /// Steps of the snapshots around a state: which ones they are, where earlier ones have made room.
+    pub fn steps(&self, state: f64) -> [u64; 2] {
+        let last = self.states() - 1;
+        let before = (state as usize).min(last);
+        [before, (before + 1).min(last)].map(|number| self.snapshots[number].sample.step)
+    }
+
+    /// What a picture shows, in a line: `26.55 % strain, 307.6 MPa, 1 of 34 wires broken: wire 14 (middle layer) first`.
+    pub fn caption(&self, state: f64) -> String {
+        let (snapshot, abscissa) = (self.snapshot(state), Abscissa::of_run(&self.info));
+        let sample = &snapshot.sample;
+        let mut words = abscissa.moment(abscissa.value(sample));
+        if self.info.is_pulled() {
+            words += &format!(", {:.1} MPa nominal stress", mpa(sample.stress));
+        }
+        let wires = self.info.wires.len();
+        if wires > 0 && !self.ruptures.is_empty() {
+            words += &format!(", {} of {wires} wires broken", sample.wires_broken);
+        }
+        match self.ruptures.first().filter(|first| sample.step >= first.step && wires > 1) {
+            Some(first) => {
+                words + &format!(": wire {} ({}) first", wire_number(first.wire), layer_words(&self.info, first.layer))
+            }
+            None => words,
+        }
     }
 
     /// What does not change during the run.
     pub fn info(&self) -> &RunInfo {
-        &self.source.info
+        &self.info
     }
 
     /// How many snapshots there are; at least one.
@@ -80,8 +194,11 @@ impl Record {
     }
 
     /// What is wrong with the run's folder, in sentences.
-    pub fn notes(&self) -> &[String] {
-        &self.notes
+    pub fn notes(&self) -> Vec<String> {
+        let (shown, of) = (self.states(), self.seen);
+        let left_out =
+            (shown < of).then(|| format!("{shown} of {of} snapshots are shown: all of them do not fit into memory."));
+        self.notes.iter().cloned().chain(left_out).collect()
     }
 
     /// The snapshot of a state, or what lies between two.
@@ -95,7 +212,7 @@ impl Record {
 
     /// Strain (%) or, in a run that is not pulled, time (ms) at a state.
     pub fn moment_of(&self, state: f64) -> f64 {
-        let abscissa = Abscissa::of(&self.source);
+        let abscissa = Abscissa::of_run(&self.info);
         let at = |number: usize| abscissa.value(&self.snapshots[number.min(self.states() - 1)].sample);
         let before = state as usize;
         at(before) + (at(before + 1) - at(before)) * state.fract()
@@ -103,7 +220,7 @@ impl Record {
 
     /// The first state at which strain (%) or time (ms) is that of `moment`; the first or the last one where it never is.
     pub fn state_at(&self, moment: f64) -> f64 {
-        let abscissa = Abscissa::of(&self.source);
+        let abscissa = Abscissa::of_run(&self.info);
         let at = |number: usize| abscissa.value(&self.snapshots[number].sample);
         match (0..self.states()).find(|number| at(*number) >= moment) {
             None => (self.states() - 1) as f64,
@@ -122,29 +239,35 @@ impl Record {
 
     /// Name of the scene.
     pub fn name(&self) -> &str {
-        &self.source.info.name
+        &self.info.name
     }
 
     /// What broke first, where and when, as markup.
     pub fn headline(&self) -> String {
-        page::headline(&self.source).into_string()
+        match (&self.headline, self.ruptures.first()) {
+            (Some(headline), _) => headline.clone(),
+            (None, Some(first)) => page::first_rupture(&self.info, first, self.one_draw).into_string(),
+            (None, None) if self.info.wires.is_empty() => String::new(),
+            (None, None) => "No wire has broken yet.".into(),
+        }
     }
 
     /// Everything that does not depend on what is looked at.
     pub fn facts(&self) -> Value {
         let info = self.info();
-        let abscissa = Abscissa::of(&self.source);
+        let abscissa = Abscissa::of_run(&self.info);
         let body = Body::of(info);
-        let samples = thinned(&self.source.samples);
+        let samples = thinned(&self.samples);
+        let warnings = self.notices.iter().map(Notice::to_string);
         let wires = info.wires.iter().enumerate().map(|(number, wire)| {
-            let first = self.source.ruptures.iter().find(|r| r.wire == number);
+            let first = self.ruptures.iter().find(|r| r.wire == number);
             json!({
                 "number": wire_number(number), "layer": wire.layer, "first": wire.first, "len": wire.len,
                 "diameter": mm(wire.diameter), "order": first.map(|r| r.order),
-                "history": samples.iter().map(|s| s.wire_stress.get(number).map(|v| short(mpa(*v)))).collect::<Vec<_>>(),
             })
         });
         json!({
+            "headline": self.headline(), "extent": self.extent(), "every": self.every,
             "name": info.name, "about": info.about, "pulled": info.is_pulled(), "abscissa": abscissa.title(),
             "layers": (0..info.layers.len()).map(|l| layer_name(info, l)).collect::<Vec<_>>(),
             "wires": wires.collect::<Vec<_>>(), "wire_particles": info.wire_particles, "particles": info.particles,
@@ -156,14 +279,14 @@ impl Record {
                 "x": abscissa.value(&s.sample), "stress": mpa(s.sample.stress), "time_ms": ms(s.sample.time),
                 "strain": percent(s.sample.strain), "wires_broken": s.sample.wires_broken,
             })).collect::<Vec<_>>(),
-            "ruptures": self.source.ruptures.iter().map(|r| self.rupture(r, abscissa)).collect::<Vec<_>>(),
+            "ruptures": self.ruptures.iter().map(|r| self.rupture(r, abscissa)).collect::<Vec<_>>(),
             "colours": ColourBy::ALL.map(|by| scale(info, by)),
             "body": {
                 "low": shown(body.low.to_array()), "high": shown(body.high.to_array()),
                 "axis": shown([body.axis.x, body.axis.y, 0.0])[..2], "radius": mm(f64::from(body.radius)),
                 "gauge": info.gauge.map(|ends| ends.map(mm)),
             },
-            "warnings": self.notes.iter().chain(&self.source.summary.warnings).collect::<Vec<_>>(),
+            "warnings": self.notes().into_iter().chain(self.warnings.iter().cloned()).chain(warnings).collect::<Vec<_>>(),
         })
     }
 
@@ -182,8 +305,8 @@ impl Record {
         let snapshot = self.snapshot(view.state);
         let info = self.info();
         let sample = &snapshot.sample;
-        let abscissa = Abscissa::of(&self.source);
-        let broken = self.source.ruptures.iter().filter(|r| snapshot.bond_state[r.bond] == BondState::Broken);
+        let abscissa = Abscissa::of_run(&self.info);
+        let broken = self.ruptures.iter().filter(|r| snapshot.bond_state[r.bond] == BondState::Broken);
         let breaks = broken.map(|r| {
             let [a, b] = [r.bond, r.bond + 1].map(|i| snapshot.position[i]);
             let at = shown([0, 1, 2].map(|k| 0.5 * (a[k] + b[k])));
@@ -210,6 +333,12 @@ impl Record {
             "bonds_broken": sample.bonds_broken, "layers": (0..info.layers.len()).map(whole).collect::<Vec<_>>(),
             "breaks": breaks.collect::<Vec<_>>(), "reach": [reach(0), reach(1), reach(2)],
         })
+    }
+
+    /// True axial stress of a wire at mid-gauge at the rows of the curve that [`Self::facts`] tells of.
+    pub fn history(&self, wire: usize) -> Value {
+        let stress = |s: &&Sample| s.wire_stress.get(wire).map(|v| short(mpa(*v)));
+        json!({ "wire": wire, "stress": thinned(&self.samples).iter().map(stress).collect::<Vec<_>>() })
     }
 
     /// A wire along its length at a state.
@@ -253,6 +382,11 @@ impl Record {
             "utilisation": mean(&snapshot.utilisation, percent), "held_by": bonds.len(),
         })
     }
+}
+
+/// Snapshots of a run that are kept at most.
+fn most(info: &RunInfo) -> usize {
+    (MEMORY / (PARTICLE_BYTES * info.particles.max(1))).max(2)
 }
 
 /// The state between two snapshots, at `share` of the way (-): what can move or grow is between them, bonds are those of

@@ -1,6 +1,7 @@
 //! The address at which a run can be looked at: who may come in, how many, and when it ends.
 
 use super::http::{self, Refusal, Request};
+use super::record::Told;
 use super::session;
 use super::shared::{Pane, Shared};
 use crate::base::error::{Error, Result};
@@ -17,9 +18,12 @@ const PAGE: &str = include_str!("../../assets/explore/explore.html");
 const STYLE: &str = include_str!("../../assets/explore/explore.css");
 const SCRIPT: &str = include_str!("../../assets/explore/explore.js");
 const CHARTS: &str = include_str!("../../assets/explore/charts.js");
+const FILM: &str = include_str!("../../assets/explore/film.js");
+const LIVE: &str = include_str!("../../assets/explore/live.js");
 const ICON: &str = include_str!("../../assets/explore/icon.svg");
 /// All that can be asked for.
-const NAMES: [&str; 7] = ["/", "/explore.css", "/explore.js", "/charts.js", "/icon.svg", "/run.json", "/socket"];
+const NAMES: [&str; 9] =
+    ["/", "/explore.css", "/explore.js", "/charts.js", "/film.js", "/live.js", "/icon.svg", "/run.json", "/socket"];
 
 /// Connections at once, requests and sockets together. When there are so many, the one that has waited longest without a
 /// request makes room.
@@ -56,6 +60,14 @@ impl Default for Options {
     }
 }
 
+/// An address that is listened at, before there is something to show.
+pub(super) struct Gate {
+    listener: TcpListener,
+    bound: SocketAddr,
+    token: String,
+    options: Options,
+}
+
 /// A run at an address.
 pub struct Server {
     listener: TcpListener,
@@ -68,13 +80,59 @@ struct Service {
     shared: Shared,
     bound: SocketAddr,
     token: String,
-    facts: Vec<u8>,
+    command: String,
     connections: AtomicUsize,
     browsers: AtomicUsize,
     /// Connections that have not sent a whole request yet, in the order in which they came.
     idle: Mutex<VecDeque<Arc<TcpStream>>>,
     /// When the last page went away; none has been there before that.
     left: Mutex<Option<Instant>>,
+}
+
+impl Gate {
+    /// Listens; who comes waits until something is shown.
+    ///
+    /// # Errors
+    /// When the address is taken.
+    pub fn open(options: Options) -> Result<Self> {
+        let lost = |e: std::io::Error| Error::Missing {
+            what: format!("cannot listen at {} port {}: {e}", options.bind, options.port),
+            help: Some("choose another address or port with --bind and --port; port 0 is a free one".into()),
+        };
+        let listener = TcpListener::bind((options.bind, options.port)).map_err(lost)?;
+        listener.set_nonblocking(true).map_err(lost)?;
+        let bound = listener.local_addr().map_err(lost)?;
+        Ok(Self { listener, bound, token: token()?, options })
+    }
+
+    /// The address to open, with the token in it.
+    pub fn address(&self) -> String {
+        address(self.bound, &self.token)
+    }
+
+    /// Shows a run there.
+    pub fn show(self, shared: Shared) -> Server {
+        let Self { listener, bound, token, options } = self;
+        let service = Service {
+            command: options.command.clone(),
+            token,
+            shared,
+            bound,
+            connections: AtomicUsize::new(0),
+            browsers: AtomicUsize::new(0),
+            idle: Mutex::default(),
+            left: Mutex::new(None),
+        };
+        Server { listener, options, service: Arc::new(service) }
+    }
+}
+
+fn address(at: SocketAddr, token: &str) -> String {
+    let host = match at.ip() {
+        ip if ip.is_unspecified() && ip.is_ipv4() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), at.port()),
+        _ => at,
+    };
+    format!("http://{host}/?token={token}")
 }
 
 impl Server {
@@ -85,45 +143,32 @@ impl Server {
     pub fn open(run: &Path, options: Options) -> Result<Self> {
         let other = options.with.as_deref().map(Pane::open).transpose()?;
         let shared = Shared::new(Pane::open(run)?, other)?;
-        let lost = |e: std::io::Error| Error::Missing {
-            what: format!("cannot listen at {} port {}: {e}", options.bind, options.port),
-            help: Some("choose another address or port with --bind and --port; port 0 is a free one".into()),
-        };
-        let listener = TcpListener::bind((options.bind, options.port)).map_err(lost)?;
-        listener.set_nonblocking(true).map_err(lost)?;
-        let bound = listener.local_addr().map_err(lost)?;
-        let mut facts = shared.facts();
-        facts["command"] = options.command.as_str().into();
-        let service = Service {
-            facts: facts.to_string().into_bytes(),
-            token: token()?,
-            shared,
-            bound,
-            connections: AtomicUsize::new(0),
-            browsers: AtomicUsize::new(0),
-            idle: Mutex::default(),
-            left: Mutex::new(None),
-        };
-        Ok(Self { listener, options, service: Arc::new(service) })
+        Ok(Gate::open(options)?.show(shared))
     }
 
     /// The address to open, with the token in it.
     pub fn address(&self) -> String {
-        let at = self.service.bound;
-        let host = match at.ip() {
-            ip if ip.is_unspecified() && ip.is_ipv4() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), at.port()),
-            _ => at,
-        };
-        format!("http://{host}/?token={}", self.service.token)
+        address(self.service.bound, &self.service.token)
+    }
+
+    /// Whether a page is open, or has been a moment ago.
+    pub(super) fn is_looked_at(&self, moment: Duration) -> bool {
+        let left = self.service.left.lock().unwrap_or_else(PoisonError::into_inner);
+        self.service.browsers.load(Ordering::Relaxed) > 0 || left.is_some_and(|left| left.elapsed() < moment)
+    }
+
+    /// Takes note of what the run tells, without waiting for those who draw.
+    pub(super) fn tell(&self, told: Told) {
+        self.service.shared.run.tell(told);
     }
 
     /// Name of the graphics adapter that draws.
     pub fn adapter(&self) -> String {
-        self.service.shared.run.artist().adapter().to_owned()
+        self.service.shared.run.adapter.clone()
     }
 
     /// What is wrong with the runs' folders, in sentences.
-    pub fn notes(&self) -> impl Iterator<Item = &String> {
+    pub fn notes(&self) -> Vec<String> {
         self.service.shared.notes()
     }
 
@@ -272,15 +317,28 @@ impl Service {
     }
 
     fn page(&self, stream: &mut TcpStream, request: &Request) -> std::io::Result<()> {
+        let facts;
         let (kind, body): (_, &[u8]) = match request.path.as_str() {
             "/explore.css" => ("text/css; charset=utf-8", STYLE.as_bytes()),
             "/explore.js" => ("text/javascript; charset=utf-8", SCRIPT.as_bytes()),
             "/charts.js" => ("text/javascript; charset=utf-8", CHARTS.as_bytes()),
+            "/film.js" => ("text/javascript; charset=utf-8", FILM.as_bytes()),
+            "/live.js" => ("text/javascript; charset=utf-8", LIVE.as_bytes()),
             "/icon.svg" => ("image/svg+xml", ICON.as_bytes()),
-            "/run.json" => ("application/json", &self.facts),
+            "/run.json" => {
+                facts = self.facts();
+                ("application/json", facts.as_bytes())
+            }
             _ => return self.first(stream, request),
         };
         http::respond(stream, "200 OK", kind, "", body)
+    }
+
+    fn facts(&self) -> String {
+        self.shared.run.catch_up();
+        let mut facts = self.shared.facts();
+        facts["command"] = self.command.as_str().into();
+        facts.to_string()
     }
 
     /// The page itself, which leaves the token as a cookie that no script can read and no other site can send.
@@ -293,6 +351,7 @@ impl Service {
             self.token,
             request.host,
         );
+        self.shared.run.catch_up();
         let headlines = self.shared.headlines();
         let compared = headlines.len() > 1;
         let names: Vec<&str> = headlines.iter().map(|(name, _)| name.as_str()).collect();

@@ -4,18 +4,22 @@
 //! came meanwhile only the newest is drawn. A moment after the last move comes the whole picture without loss.
 
 use super::draw::Picture;
+use super::film::{self, Maker};
+use super::live::Pace;
+use super::path::Path as CameraPath;
 use super::shared::Shared;
 use super::view::View;
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use image::codecs::jpeg::JpegEncoder;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use std::io::ErrorKind;
+use std::io::{Cursor, ErrorKind};
 use std::net::TcpStream;
+use std::path::Path;
 use std::time::{Duration, Instant};
 use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
-use tungstenite::{Error, Message, WebSocket};
+use tungstenite::{Error as Lost, Message, WebSocket};
 
 /// Longest message of a page (bytes).
 const LONGEST_MESSAGE: usize = 64 << 10;
@@ -29,6 +33,11 @@ const POLL: Duration = Duration::from_millis(250);
 const SHOWING: Duration = Duration::from_secs(20);
 /// A page without a sign of life for so long has gone: pages greet every twenty seconds.
 const SILENCE: Duration = Duration::from_secs(90);
+/// How often a page is told how far its film is, and that a run has gone on.
+const PROGRESS: Duration = Duration::from_millis(300);
+const GROWTH: Duration = Duration::from_millis(400);
+/// Largest film that is sent to a page (bytes).
+const MOST_FILM: u64 = 256 << 20;
 /// What a picture while moving may cost from asking to showing.
 const AIM: Duration = Duration::from_millis(60);
 /// Shares of the full size at which moving pictures are drawn (-), and where it begins.
@@ -53,8 +62,44 @@ enum Ask {
     Picture { size: [u32; 2], view: View },
     /// The command that makes the view.
     Command { size: [u32; 2], view: View },
+    /// Stress of a wire over the whole run.
+    History(usize),
+    /// The film of a camera path.
+    Film(Filmed),
+    /// No film after all.
+    NoFilm(()),
+    /// The command that makes the film.
+    FilmCommand(Filmed),
+    /// How a run that is going goes on.
+    Pace(Pace),
+    /// To end it.
+    Stop(()),
     /// A sign of life.
     Greet(()),
+}
+
+/// A film that a page asks for.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Filmed {
+    size: [u32; 2],
+    /// From view to view (s).
+    seconds: f64,
+    views: Vec<View>,
+}
+
+impl Filmed {
+    fn path(&self) -> CameraPath {
+        CameraPath { views: self.views.clone(), seconds: self.seconds }
+    }
+
+    /// The command's options.
+    fn words(&self) -> Result<String> {
+        let views: Vec<String> = self.views.iter().map(View::words).collect::<Result<_>>()?;
+        let views: String = views.iter().map(|words| format!("--view '{words}' ")).collect();
+        let seconds = crate::base::units::shortest(self.seconds);
+        Ok(format!("{views}--leg {seconds}s --size {}x{} --animation film.mp4", self.size[0], self.size[1]))
+    }
 }
 
 /// Kinds of picture.
@@ -66,6 +111,8 @@ enum Kind {
     File = 2,
     /// No picture: three bytes of colour for each particle.
     Colours = 3,
+    /// No picture: a film.
+    Film = 4,
 }
 
 /// Why a session ends.
@@ -85,14 +132,18 @@ struct Session<'a> {
     unfinished: Option<Look>,
     /// The view that is to be a file.
     file: Option<Look>,
+    /// The film that is being made, and when the page was last told how far it is.
+    film: Option<(Maker<Cursor<Vec<u8>>>, Instant)>,
+    /// What the page was told last of a run that is going, and when.
+    growth: (Value, Instant),
     /// Picture on its way, and since when.
     flying: Option<(u32, Instant)>,
     /// When the page was last heard.
     heard: Instant,
     /// Of [`SCALES`].
     scale: usize,
-    /// State and colouring that the page was told last.
-    told: Option<View>,
+    /// State and colouring that the page was told last, and the steps that the state lay between.
+    told: Option<(View, [u64; 2])>,
 }
 
 struct Look {
@@ -103,7 +154,7 @@ struct Look {
 }
 
 /// An error in one line, with what would be right.
-fn words_of(error: &crate::base::error::Error) -> String {
+fn words_of(error: &Error) -> String {
     match miette::Diagnostic::help(error).map(|help| help.to_string()) {
         Some(help) if !help.is_empty() => format!("{error}; {help}"),
         _ => error.to_string(),
@@ -123,6 +174,8 @@ pub(super) fn run(shared: &Shared, stream: TcpStream, rest: Vec<u8>) {
         wanted: None,
         unfinished: None,
         file: None,
+        film: None,
+        growth: (Value::Null, Instant::now()),
         flying: None,
         heard: Instant::now(),
         scale: FIRST_SCALE,
@@ -149,6 +202,8 @@ impl Session<'_> {
         if self.shared.ended.load(std::sync::atomic::Ordering::Relaxed) || self.heard.elapsed() > SILENCE {
             return Err(End::Gone);
         }
+        self.shared.run.catch_up();
+        self.tell_growth()?;
         let mut wait = self.wait();
         for _ in 0..MOST_READ {
             let Some(message) = self.receive(wait)? else { break };
@@ -170,7 +225,7 @@ impl Session<'_> {
         }
         match self.unfinished.take_if(|look| look.asked.elapsed() >= STILL) {
             Some(look) => self.draw_whole(Kind::Whole, &look),
-            None => Ok(()),
+            None => self.draw_film(),
         }
     }
 
@@ -178,6 +233,7 @@ impl Session<'_> {
     fn wait(&self) -> Duration {
         match (self.wanted.as_ref().or(self.file.as_ref()), &self.unfinished) {
             _ if self.flying.is_some() => POLL,
+            _ if self.film.is_some() => Duration::ZERO,
             (Some(_), _) => Duration::ZERO,
             (None, Some(look)) => STILL.saturating_sub(look.asked.elapsed()).min(POLL),
             (None, None) => POLL,
@@ -195,9 +251,9 @@ impl Session<'_> {
         }
         match read {
             Ok(message) => Ok(Some(message)),
-            Err(Error::Io(e)) if [ErrorKind::WouldBlock, ErrorKind::TimedOut].contains(&e.kind()) => Ok(None),
-            Err(Error::Io(e)) if e.kind() == ErrorKind::Interrupted => Ok(None),
-            Err(Error::Protocol(_) | Error::Capacity(_) | Error::Utf8(_)) => Err(End::Malformed),
+            Err(Lost::Io(e)) if [ErrorKind::WouldBlock, ErrorKind::TimedOut].contains(&e.kind()) => Ok(None),
+            Err(Lost::Io(e)) if e.kind() == ErrorKind::Interrupted => Ok(None),
+            Err(Lost::Protocol(_) | Lost::Capacity(_) | Lost::Utf8(_)) => Err(End::Malformed),
             Err(_) => Err(End::Gone),
         }
     }
@@ -224,9 +280,10 @@ impl Session<'_> {
                 self.answer(picked.map(|picked| json!({ "picked": picked, "number": number })))
             }
             Ask::Wire { wire, state } => {
-                let record = &self.shared.run.record;
+                let record = self.shared.run.record();
                 let last = (record.states() - 1) as f64;
                 let told = record.wire(wire, state.clamp(0.0, last));
+                drop(record);
                 self.say(&json!({ "wire": told }))
             }
             Ask::Picture { size, view } => {
@@ -237,6 +294,41 @@ impl Session<'_> {
                 let words = self.shared.check(&view).and_then(|()| view.words());
                 let size = format!("{}x{}", size[0], size[1]);
                 self.answer(words.map(|words| json!({ "command": format!("--view '{words}' --size {size}") })))
+            }
+            Ask::History(wire) => {
+                let record = self.shared.run.record();
+                let known = wire < record.info().wires.len();
+                let told = known.then(|| record.history(wire));
+                drop(record);
+                self.say(&json!({ "history": told }))
+            }
+            Ask::Film(filmed) => {
+                let (path, size) = (filmed.path(), filmed.size);
+                let begun = film::check(self.shared, &path, size)
+                    .and_then(|()| Maker::begin(path, size, Cursor::default(), Path::new("the film")));
+                match begun {
+                    Ok(maker) => {
+                        self.film = Some((maker, Instant::now()));
+                        Ok(())
+                    }
+                    Err(error) => self.answer(Err(error)),
+                }
+            }
+            Ask::NoFilm(()) => {
+                self.film = None;
+                Ok(())
+            }
+            Ask::FilmCommand(filmed) => {
+                let words = film::check(self.shared, &filmed.path(), filmed.size).and_then(|()| filmed.words());
+                self.answer(words.map(|words| json!({ "film-command": words })))
+            }
+            Ask::Pace(pace) => {
+                self.shared.live.iter().for_each(|live| live.set(pace));
+                Ok(())
+            }
+            Ask::Stop(()) => {
+                self.shared.live.iter().for_each(|live| live.stop());
+                Ok(())
             }
             Ask::Greet(()) => Ok(()),
         }
@@ -266,7 +358,7 @@ impl Session<'_> {
             let mut bytes = Vec::new();
             let encoder = JpegEncoder::new_with_quality(&mut bytes, QUALITY);
             let encoded = picture.image.write_with_encoder(encoder);
-            encoded.map_err(|e| crate::base::error::Error::input(format!("cannot encode a picture: {e}"), ""))?;
+            encoded.map_err(|e| Error::input(format!("cannot encode a picture: {e}"), ""))?;
             Ok((bytes, picture.took))
         });
         match drawn {
@@ -279,6 +371,48 @@ impl Session<'_> {
                 Ok(())
             }
         }
+    }
+
+    /// Draws one picture of the film; other pictures come first.
+    fn draw_film(&mut self) -> std::result::Result<(), End> {
+        let Some((mut maker, told)) = self.film.take() else { return Ok(()) };
+        let drawn = maker.draw_next(self.shared);
+        let progress = json!({ "film": { "done": maker.drawn(), "of": maker.pictures() } });
+        match drawn {
+            Err(error) => return self.answer(Err(error)),
+            Ok(true) if maker.bytes() > MOST_FILM => {
+                let error = Error::input(
+                    format!("the film is larger than {} MB", MOST_FILM >> 20),
+                    "make it smaller or shorter, or with the command line, which writes it into a file",
+                );
+                return self.answer(Err(error));
+            }
+            Ok(true) if told.elapsed() < PROGRESS => self.film = Some((maker, told)),
+            Ok(true) => {
+                self.film = Some((maker, Instant::now()));
+                return self.say(&progress);
+            }
+            Ok(false) => {
+                self.say(&progress)?;
+                return match maker.end() {
+                    Ok(film) => self.send_picture(Kind::Film, 0, [0, 0], Duration::ZERO, film.get_ref()),
+                    Err(error) => self.answer(Err(error)),
+                };
+            }
+        }
+        Ok(())
+    }
+
+    /// Tells the page that a run has gone on.
+    fn tell_growth(&mut self) -> std::result::Result<(), End> {
+        let Some(live) = self.shared.live.as_ref().filter(|_| self.growth.1.elapsed() >= GROWTH) else { return Ok(()) };
+        let mut state = live.state();
+        state["extent"] = self.shared.run.record().extent().into();
+        if state == self.growth.0 {
+            return Ok(());
+        }
+        self.growth = (state.clone(), Instant::now());
+        self.say(&json!({ "live": state }))
     }
 
     fn draw_whole(&mut self, kind: Kind, look: &Look) -> std::result::Result<(), End> {
@@ -294,17 +428,18 @@ impl Session<'_> {
 
     /// Tells the page of a state or a colouring that is new to it.
     fn tell(&mut self, look: &Look) -> std::result::Result<(), End> {
-        let told = self.told.replace(look.view.clone());
-        let place = |view: &View| (view.state, view.follow);
-        let colour = |view: &View| (view.colour, view.range);
-        let state = told.as_ref().is_none_or(|told| place(told) != place(&look.view));
+        let now = (look.view.clone(), self.shared.run.record().steps(look.view.state));
+        let told = self.told.replace(now.clone());
+        let place = |(view, steps): &(View, [u64; 2])| (view.state, view.follow, *steps);
+        let colour = |(view, _): &(View, [u64; 2])| (view.colour, view.range);
+        let state = told.as_ref().is_none_or(|told| place(told) != place(&now));
         if state {
             let state = self.shared.state(&look.view);
             self.say(&json!({ "state": state }))?;
         }
-        if state || told.is_none_or(|told| colour(&told) != colour(&look.view)) {
+        if state || told.is_none_or(|told| colour(&told) != colour(&now)) {
             let run = &self.shared.run;
-            let ready = run.artist().ready(&run.record, &look.view, self.shared.part(look.size));
+            let ready = run.artist().ready(&run.record(), &look.view, self.shared.part(look.size));
             self.send_picture(Kind::Colours, look.number, look.size, Duration::ZERO, ready.colours.as_flattened())?;
         }
         Ok(())

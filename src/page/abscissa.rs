@@ -2,7 +2,7 @@
 
 use super::source::Source;
 use crate::base::units::{ms, percent};
-use crate::engine::view::{Rupture, Sample};
+use crate::engine::view::{RunInfo, Rupture, Sample};
 use crate::observe::stress_strain::STRAIN;
 
 /// The quantity along the horizontal axis.
@@ -17,7 +17,12 @@ pub enum Abscissa {
 impl Abscissa {
     /// That of a run.
     pub fn of(source: &Source) -> Self {
-        if source.info.is_pulled() { Self::Strain } else { Self::Time }
+        Self::of_run(&source.info)
+    }
+
+    /// The same of a run that has no folder yet.
+    pub fn of_run(info: &RunInfo) -> Self {
+        if info.is_pulled() { Self::Strain } else { Self::Time }
     }
 
     /// Title of the axis, with its unit.

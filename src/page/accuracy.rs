@@ -30,7 +30,7 @@ fn shown(study: &Study) -> Markup {
             img.study alt="Error over run time, parameter by parameter" src={ "data:image/svg+xml;base64," (STANDARD.encode(plot)) };
         }
         @for table in &study.tables {
-            div.scroll { (cells(table)) }
+            div.scroll tabindex="0" role="group" aria-label=(table.title) { (cells(table)) }
         }
     }
 }

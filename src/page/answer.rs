@@ -7,7 +7,7 @@ use super::source::Source;
 use crate::base::error::Result;
 use crate::base::units::{mm, mpa};
 use crate::base::wording::counted;
-use crate::engine::view::Rupture;
+use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::summary::RunSummary;
 use crate::observe::wording::{layer_label, wire_number};
 use maud::{Markup, html};
@@ -46,7 +46,7 @@ fn warnings(source: &Source) -> Markup {
 pub fn headline(source: &Source) -> Markup {
     let wires = source.info.wires.len();
     match source.ruptures.first() {
-        Some(first) => first_rupture(source, first),
+        Some(first) => first_rupture(&source.info, first, source.summary.one_draw.is_some()),
         None if source.cut_short() && wires > 0 => html! { "No wire had broken when the run was cut short." },
         None if source.info.is_pulled() => html! { "No wire broke." },
         None if wires > 0 => html! { "Nothing broke: this body was not pulled until it snaps." },
@@ -54,13 +54,14 @@ pub fn headline(source: &Source) -> Markup {
     }
 }
 
-fn first_rupture(source: &Source, first: &Rupture) -> Markup {
-    let abscissa = Abscissa::of(source);
+/// Which wire snapped first, where and when; `one_draw` where bonds scatter, so that it is true of this strand alone.
+pub fn first_rupture(info: &RunInfo, first: &Rupture, one_draw: bool) -> Markup {
+    let abscissa = Abscissa::of_run(info);
     html! {
-        strong { "Wire " (wire_number(first.wire)) ", " (layer_label(&source.info, first.layer)) " layer," } " snapped first" @if source.summary.one_draw.is_some() { " in this strand" } ", at z = "
+        strong { "Wire " (wire_number(first.wire)) ", " (layer_label(info, first.layer)) " layer," } " snapped first" @if one_draw { " in this strand" } ", at z = "
         strong { (format!("{:.1} mm", mm(first.rest_z))) } " before loading (" (format!("{:.1} mm", mm(first.position[2])))
         " when it snapped), at " strong { (abscissa.moment(abscissa.at(first))) }
-        @if source.info.is_pulled() { " and " strong { (format!("{:.1} MPa", mpa(first.body_stress))) } " nominal stress" }
+        @if info.is_pulled() { " and " strong { (format!("{:.1} MPa", mpa(first.body_stress))) } " nominal stress" }
         "."
     }
 }
@@ -165,7 +166,7 @@ fn layers(source: &Source) -> Markup {
     let broken = &source.summary.wires_broken_by_layer;
     let abscissa = Abscissa::of(source);
     html! {
-        div.scroll { table {
+        div.scroll tabindex="0" role="group" aria-label="Layers" { table {
             caption { "Layer by layer, from the inside out" }
             thead { tr {
                 th { "layer" } th.number { "wires broken" } th.number { "of" } th.number { "first to break" }

@@ -28,7 +28,7 @@ fn table(source: &Source) -> Markup {
     let shown = &source.ruptures[..source.ruptures.len().min(MOST_ROWS)];
     let pulled = source.info.is_pulled();
     html! {
-        div.scroll { table {
+        div.scroll tabindex="0" role="group" aria-label="Breaks in order" { table {
             caption {
                 "z runs along the strand's axis from the lower end. The wire's stress is the true axial stress of the bond just before it broke"
                 @if pulled { "; the body's is the nominal stress then" } ". Every bond is in " code { "ruptures.csv" } "."

@@ -54,7 +54,7 @@ fn table(source: &Source) -> Markup {
         }
     };
     html! {
-        div.scroll { table {
+        div.scroll tabindex="0" role="group" aria-label="Energies at the end" { table {
             caption {
                 "At the end. Work is that of grips, holds and loads, plus the energy at the start. A run warns when more than "
                 (percent(ENERGY_LIMIT)) " % is unaccounted for."

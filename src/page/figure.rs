@@ -29,7 +29,7 @@ impl Figure {
         let figure = json!({ "data": self.data, "layout": self.layout });
         html! {
             figure class="chart" {
-                div class="plot" id=(self.id) role="img" aria-describedby={ (self.id) "-caption" }
+                div class="plot" id=(self.id) role="group" aria-labelledby={ (self.id) "-caption" }
                     style={ "height:" (self.height) "px" } {
                     noscript { "This chart needs JavaScript; its numbers are in the run's tables." }
                 }

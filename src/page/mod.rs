@@ -24,7 +24,7 @@ mod unrolled;
 mod wires;
 
 pub use abscissa::Abscissa;
-pub use answer::headline;
+pub use answer::{first_rupture, headline};
 pub use section::Section;
 pub use source::{Source, trajectory_in};
 

@@ -43,7 +43,7 @@ fn measures(source: &Source) -> Markup {
         ),
     ];
     html! {
-        div.scroll { table {
+        div.scroll tabindex="0" role="group" aria-label="Measures of loading" { table {
             caption {
                 "Greatest values. The quasi-static stage ends with the first rupture, which throws energy about; what comes after is given and judged by nobody."
             }

@@ -9,6 +9,7 @@ mod gif;
 mod palette;
 mod pictures;
 
+pub use film::Film;
 pub use pictures::Still;
 
 use crate::base::error::{Error, Result};

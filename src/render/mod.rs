@@ -15,6 +15,9 @@ pub mod animation;
 pub(crate) mod body;
 pub(crate) mod camera;
 pub(crate) mod canvas;
+// What only the interactive picture uses.
+#[cfg(feature = "explore")]
+pub(crate) mod caption;
 mod chart;
 mod close_up;
 pub mod colour;

@@ -124,9 +124,27 @@ impl Browser {
         self.wait_for("document.documentElement?.dataset.ready", "yes");
     }
 
+    /// Lets the page save files into a folder.
+    pub fn save_into(&mut self, folder: &Path) {
+        self.call("Browser.setDownloadBehavior", json!({ "behavior": "allow", "downloadPath": folder }));
+    }
+
     /// Errors in the page's console so far, since it was visited.
     pub fn complaints(&self) -> Vec<Value> {
         self.complaints.clone()
+    }
+
+    /// What the page breaks of the rules of accessibility of axe-core, whose script the variable AXE_FOR_TESTS names; `None`
+    /// where it is not set.
+    pub fn violations(&mut self) -> Option<Vec<String>> {
+        let file = std::env::var_os("AXE_FOR_TESTS")?;
+        let script = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        self.value(&format!("{script};void 0"));
+        let found = self.value(
+            "axe.run(document, { resultTypes: ['violations'] }).then(({ violations }) => violations.map(v => \
+             `${v.id}: ${v.help}: ${v.nodes.map(n => n.html.slice(0, 160) + ' ' + n.failureSummary).join(' | ')}`))",
+        );
+        Some(serde_json::from_value(found).expect("a list"))
     }
 
     pub fn size(&mut self, width: u32, height: u64) {

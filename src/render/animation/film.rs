@@ -2,7 +2,7 @@
 //! colours, but with those of four pixels in one, as such players want it (4:2:0).
 
 use super::pictures::{Pictures, Refuse};
-use crate::base::error::Result;
+use crate::base::error;
 use image::{RgbImage, imageops};
 use openh264::OpenH264API;
 use openh264::encoder::{
@@ -16,7 +16,7 @@ use shiguredo_mp4::bitstream::h264::{
 use shiguredo_mp4::boxes::SampleEntry;
 use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_maximum_moov_box_size};
 use std::fmt::Display;
-use std::io::{Error as IoError, Seek, SeekFrom, Write};
+use std::io::{Error as IoError, Result, Seek, SeekFrom, Write};
 use std::num::NonZeroU32;
 
 /// Quantiser of every picture (0 is best, 51 worst): lines and small print stay sharp, at a third of what 14 takes.
@@ -30,49 +30,95 @@ const LARGEST: [f64; 2] = [3840.0, 2160.0];
 /// Shortest side that it takes (px); smaller pictures are made larger.
 const LEAST: f64 = 16.0;
 
-/// Writes every picture once, with the time for which it is shown; what a player needs to know stands at the beginning of
-/// the file.
-pub(super) fn write(pictures: &Pictures, out: &mut (impl Write + Seek), refuse: &Refuse) -> Result<()> {
-    let other = |e: &dyn Display| refuse(IoError::other(e.to_string()));
-    let mut encoder = Encoder::with_api_config(OpenH264API::from_source(), settings()).map_err(|e| other(&e))?;
-    let reserved_moov_box_size = estimate_maximum_moov_box_size(&[pictures.len()]);
-    let options = Mp4FileMuxerOptions { reserved_moov_box_size, ..Default::default() };
-    let mut film = Mp4FileMuxer::with_options(options).map_err(|e| other(&e))?;
-    let begin = film.initial_boxes_bytes();
-    out.write_all(begin).map_err(refuse)?;
-    let mut data_offset = begin.len() as u64;
-    let length_size = LengthSize::FourBytes;
-    for (number, next) in pictures.iter().enumerate() {
-        let (picture, duration) = next?;
+/// A film that is being written.
+pub struct Film<W: Write + Seek> {
+    out: W,
+    encoder: Encoder,
+    film: Mp4FileMuxer,
+    data_offset: u64,
+    begun: bool,
+}
+
+impl<W: Write + Seek> Film<W> {
+    /// Begins a film of so many pictures: what a player needs to know stands at the beginning of the file.
+    ///
+    /// # Errors
+    /// When it cannot be encoded or written.
+    pub fn begin(mut out: W, pictures: usize) -> Result<Self> {
+        let encoder = Encoder::with_api_config(OpenH264API::from_source(), settings()).map_err(other)?;
+        let reserved_moov_box_size = estimate_maximum_moov_box_size(&[pictures]);
+        let options = Mp4FileMuxerOptions { reserved_moov_box_size, ..Default::default() };
+        let film = Mp4FileMuxer::with_options(options).map_err(other)?;
+        let begin = film.initial_boxes_bytes();
+        out.write_all(begin)?;
+        let data_offset = begin.len() as u64;
+        Ok(Self { out, encoder, film, data_offset, begun: false })
+    }
+
+    /// Adds a picture that is shown for so long (ms).
+    ///
+    /// # Errors
+    /// When it cannot be encoded or written.
+    pub fn add(&mut self, picture: RgbImage, duration: u32) -> Result<()> {
+        let length_size = LengthSize::FourBytes;
         let picture = encodable(picture);
         let size = (picture.width() as usize, picture.height() as usize);
         let yuv = YUVBuffer::from_rgb_source(RgbSliceU8::new(picture.as_raw(), size));
-        let encoded = encoder.encode(&yuv).map_err(|e| other(&e))?;
+        let encoded = self.encoder.encode(&yuv).map_err(other)?;
         let keyframe = matches!(encoded.frame_type(), FrameType::IDR);
         let stream = encoded.to_vec();
-        let sample_entry = (number == 0).then(|| {
+        let sample_entry = (!self.begun).then(|| {
             build_avc1_box_from_annexb(&stream, &H264SampleEntryConfig { length_size }).map(SampleEntry::Avc1)
         });
-        let data = annexb_to_length_prefixed(&stream, length_size).map_err(|e| other(&e))?;
-        out.write_all(&data).map_err(refuse)?;
+        let data = annexb_to_length_prefixed(&stream, length_size).map_err(other)?;
+        self.out.write_all(&data)?;
         let sample = Sample {
             track_kind: TrackKind::Video,
-            sample_entry: sample_entry.transpose().map_err(|e| other(&e))?,
+            sample_entry: sample_entry.transpose().map_err(other)?,
             keyframe,
             timescale: MILLISECONDS,
             duration,
             composition_time_offset: None,
-            data_offset,
+            data_offset: self.data_offset,
             data_size: data.len(),
         };
-        film.append_sample(&sample).map_err(|e| other(&e))?;
-        data_offset += data.len() as u64;
+        self.film.append_sample(&sample).map_err(other)?;
+        self.data_offset += data.len() as u64;
+        self.begun = true;
+        Ok(())
     }
-    for (at, bytes) in film.finalize().map_err(|e| other(&e))?.offset_and_bytes_pairs() {
-        out.seek(SeekFrom::Start(at)).and_then(|_| out.write_all(bytes)).map_err(refuse)?;
+
+    /// Its size so far (bytes).
+    #[cfg(feature = "explore")]
+    pub(crate) fn bytes(&self) -> u64 {
+        self.data_offset
     }
-    out.seek(SeekFrom::End(0)).map_err(refuse)?;
-    Ok(())
+
+    /// Writes what a player needs to know of all pictures.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn end(mut self) -> Result<W> {
+        for (at, bytes) in self.film.finalize().map_err(other)?.offset_and_bytes_pairs() {
+            self.out.seek(SeekFrom::Start(at)).and_then(|_| self.out.write_all(bytes))?;
+        }
+        self.out.seek(SeekFrom::End(0))?;
+        Ok(self.out)
+    }
+}
+
+fn other(error: impl Display) -> IoError {
+    IoError::other(error.to_string())
+}
+
+/// Writes every picture once, with the time for which it is shown.
+pub(super) fn write(pictures: &Pictures, out: &mut (impl Write + Seek), refuse: &Refuse) -> error::Result<()> {
+    let mut film = Film::begin(out, pictures.len()).map_err(refuse)?;
+    for next in pictures.iter() {
+        let (picture, duration) = next?;
+        film.add(picture, duration).map_err(refuse)?;
+    }
+    film.end().map(|_| ()).map_err(refuse)
 }
 
 /// The same bits on every machine: one thread, and nothing that is left to the rate of the bits.
