@@ -1,13 +1,14 @@
 //! Several materials in one scene, against closed forms, and one material by a name against the same without.
 
 use std::path::Path;
+use strandsnap::base::vectors::Vectors;
 use strandsnap::engine::Engine;
 use strandsnap::reference::hertz::Pair;
 use strandsnap::reference::plasticity::tension_point;
-use strandsnap::reference::strand::{self, Wire};
+use strandsnap::reference::strand;
 use strandsnap::scene::spec::{BondLawSpec, RuptureCriterion, Spec};
 use strandsnap::scene::{self, Scene};
-use strandsnap::strand as assembly;
+use strandsnap::strand as body;
 use strandsnap::strand::theory::Theory;
 
 const STEEL: &str = r#"density = "7800 kg/m^3"
@@ -25,7 +26,7 @@ fn load(text: &str, set: &[&str]) -> Scene {
 }
 
 fn engine_of(scene: &Scene) -> Engine {
-    Engine::new(&scene.spec, &scene.plan, assembly::build(&scene.spec).unwrap()).unwrap()
+    Engine::new(&scene.spec, &scene.plan, body::build(&scene.spec).unwrap()).unwrap()
 }
 
 fn close(value: f64, right: f64, tolerance: f64, what: &str) {
@@ -357,20 +358,25 @@ fn a_name_changes_no_bit_and_neither_do_two_that_are_alike() {
 #[test]
 fn smooth_wires_of_two_materials_that_are_alike_move_alike() {
     let set = ["contact.shape=wire", "strand.length=16 mm"];
-    let [one, two] = [0, 2].map(|k| {
-        let mut engine = engine_of(&load(&three_ways()[k], &set));
-        (0..400).for_each(|_| engine.step().unwrap());
-        engine
-    });
-    let far = (0..one.state().len()).map(|p| one.state().x.get(p).distance(two.state().x.get(p))).fold(0.0, f64::max);
-    assert!(far < 1e-12, "{far} m apart");
+    let [mut one, mut two] = [0, 2].map(|k| engine_of(&load(&three_ways()[k], &set)));
+    let apart = |one: &Engine, two: &Engine| {
+        let (one, two) = (one.state(), two.state());
+        (0..one.len()).map(|p| one.x.get(p).distance(two.x.get(p))).fold(0.0, f64::max)
+    };
+    let mut seen = Vec::new();
+    for _ in 0..20 {
+        (0..10).for_each(|_| [&mut one, &mut two].into_iter().for_each(|engine| engine.step().unwrap()));
+        seen.push(apart(&one, &two));
+    }
+    // From the first neighbour search in which rounding decides on a bond that is nearest, they part.
+    assert!(seen.iter().all(|far| *far < 1e-15), "{seen:?}");
     assert!(one.contact_counts().2 > 50 && one.contact_counts() == two.contact_counts());
 }
 
-/// Stiffness of an ACSR conductor, against the sum rule Σ n A E cos³β and, with Poisson's contraction, against strand theory:
-/// wires here do not thin elastically and only contacts give, so that it lies between the two.
+/// Stiffness of an ACSR conductor: what stretch, radius and turn of its wires explain, each with its own modulus, and at most what
+/// the sum rule Σ n A E cos³β says, which lets no wire give where it touches.
 #[test]
-fn an_acsr_conductor_is_as_stiff_as_the_sum_of_its_wires() {
+fn an_acsr_conductor_is_as_stiff_as_its_wires_by_their_shape_and_no_stiffer_than_the_sum_rule() {
     let set = [
         "materials.steel.law=elastic",
         "materials.steel.hardening=",
@@ -402,10 +408,8 @@ fn an_acsr_conductor_is_as_stiff_as_the_sum_of_its_wires() {
         .map(|layer| scene.spec.material_at(layer.material).material.young)
         .collect();
     let hruska = strand::stiffness_sum(&theory.layers, &young);
-    let contracting = strand::elastic_of_materials(&theory.layers, &elastic(&scene.spec), Wire::Inextensible).force;
-    assert!(contracting < hruska);
     let mut engine = engine_of(&scene);
-    let mut points: Vec<[f64; 4]> = Vec::new();
+    let mut points: Vec<[f64; 5]> = Vec::new();
     while engine.strain() < 2.5e-3 {
         engine.step().unwrap();
         if engine.strain() > 1e-3 && engine.steps().is_multiple_of(10) {
@@ -414,7 +418,7 @@ fn an_acsr_conductor_is_as_stiff_as_the_sum_of_its_wires() {
                 let wires = engine.assembly().wires.iter().zip(&sample.wire_pull);
                 wires.filter(|(wire, _)| wire.material == number).map(|(_, force)| force).sum::<f64>()
             };
-            points.push([sample.strain, sample.grip_force[1], of(0), of(1)]);
+            points.push([sample.strain, sample.grip_force[1], of(0), of(1), from_its_shape(&engine, &theory.layers)]);
         }
     }
     let (n, mean) = (points.len() as f64, |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64);
@@ -422,10 +426,16 @@ fn an_acsr_conductor_is_as_stiff_as_the_sum_of_its_wires() {
         let both: f64 = points.iter().map(|p| (p[0] - mean(0)) * (p[k] - mean(k))).sum();
         both / points.iter().map(|p| (p[0] - mean(0)).powi(2)).sum::<f64>()
     };
-    println!("{n} points; measured {:.4e} N, Hruska {hruska:.4e} N, Costello {contracting:.4e} N", slope(1));
+    let (measured, shape) = (slope(1), slope(4));
+    println!(
+        "{n} points; {measured:.4e} N, by shape {shape:.4e}, by the sum rule {hruska:.4e}: {:.4}",
+        measured / hruska
+    );
     println!("by material {:.4e} and {:.4e} N", slope(2), slope(3));
-    let measured = slope(1);
-    assert!(measured < 1.002 * hruska && measured > 0.998 * contracting, "{measured} of {contracting} to {hruska}");
+    close(measured, shape, 3e-3, "force per strain, against the shape of the wires");
+    close(slope(2) + slope(3), measured, 2e-3, "both materials together");
+    // Crossing wires give where they touch, which lets the layers in: the sum rule is the bound of wires that do not.
+    assert!(measured < hruska && measured > 0.94 * hruska, "{measured} of {hruska}");
     // Who carries how much: each material by the sum rule over its own layers.
     for (number, k) in [(0, 2), (1, 3)] {
         let own: Vec<f64> = scene
@@ -439,14 +449,33 @@ fn an_acsr_conductor_is_as_stiff_as_the_sum_of_its_wires() {
             .map(|(layer, young)| if layer.material == number { *young } else { 0.0 })
             .collect();
         let right = strand::stiffness_sum(&theory.layers, &own);
-        close(slope(k), right, 0.02, &format!("material {number}"));
+        assert!(slope(k) < right && slope(k) > 0.92 * right, "material {number}: {} of {right}", slope(k));
     }
 }
 
-fn elastic(spec: &Spec) -> Vec<[f64; 2]> {
-    let layers = &spec.strand.as_ref().unwrap().layers;
-    let one = |number: usize| spec.material_at(number).material;
-    layers.iter().map(|layer| [one(layer.material).young, one(layer.material).poisson]).collect()
+/// Force along the strand (N) that stretch, radius and turn of every wire's middle third explain by the strain of a helix, each
+/// wire with the modulus of its own material.
+fn from_its_shape(engine: &Engine, layers: &[strand::Layer]) -> f64 {
+    let (a, s) = (engine.assembly(), engine.state());
+    let wire = |w: &body::assembly::Wire| {
+        let (low, high) = (w.first + w.len / 3, w.first + 2 * w.len / 3);
+        let strain = (s.x.z[high] - s.x.z[low]) / (a.position.z[high] - a.position.z[low]) - 1.0;
+        let radius = |x: &Vectors| (low..=high).map(|p| x.x[p].hypot(x.y[p])).sum::<f64>();
+        let turn = |x: &Vectors| {
+            let between = |p: usize| {
+                let (from, to) = (x.get(p).truncate(), x.get(p + 1).truncate());
+                from.perp_dot(to).atan2(from.dot(to))
+            };
+            (low..high).map(between).sum::<f64>()
+        };
+        let layer = &layers[w.layer];
+        let around =
+            if layer.radius > 0.0 { radius(&s.x) / radius(&a.position) * turn(&s.x) / turn(&a.position) } else { 1.0 };
+        let x = strand::wire_strain(strain, layer.lay_angle(), around);
+        let young = engine.spec().material_at(w.material).material.young;
+        young * w.area() * x.ln_1p() * (1.0 + strain) * layer.lay_angle().cos() / (1.0 + x)
+    };
+    a.wires.iter().map(wire).sum()
 }
 
 /// What cannot be done with several materials says so.

@@ -159,6 +159,18 @@ fn of_materials(found: &mut Found, raw: &RawScene, spec: &Spec) {
     for name in raw.materials.keys().filter(|name| !used(Some(name))) {
         found.told(true, format!("materials.{name}"), "no body is of this material");
     }
+    for (name, material) in raw.materials.iter().filter(|_| spec.contact.is_none()) {
+        let given = [
+            ("hardness_factor", material.hardness_factor.is_some()),
+            ("hardness_strain", material.hardness_strain.is_some()),
+            ("limiting_pressure", material.limiting_pressure.is_some()),
+        ];
+        for (key, given) in given {
+            let switch = InFile::ToldUnless("contact.normal");
+            let why = "the scene has no contacts";
+            found.add(given, format!("materials.{name}.{key}"), why, switch, AsOption::Refused);
+        }
+    }
     let pairs = raw.contact.iter().flat_map(|contact| contact.pair.iter().enumerate());
     for (index, pair) in pairs {
         let here = pair.materials.iter().flatten().all(|name| used(Some(name)));

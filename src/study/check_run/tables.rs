@@ -84,7 +84,7 @@ impl Table {
 
 /// Columns that hold words.
 fn is_words(head: &str) -> bool {
-    ["layer", "cause", "broken", "first_rupture_cause"].contains(&head)
+    ["layer", "material", "cause", "broken", "first_rupture_cause"].contains(&head)
 }
 
 #[cfg(test)]

@@ -5,8 +5,10 @@ use super::comparison::Comparison;
 use super::contacts::collide;
 use super::support::{Context, set};
 use crate::base::error::Result;
+use crate::base::vectors::Vectors;
+use crate::engine::Engine;
 use crate::reference::hertz::Pair;
-use crate::reference::strand::{Wire, elastic_of_materials, stiffness_sum};
+use crate::reference::strand::{Layer, stiffness_sum, wire_strain};
 use crate::strand::theory::Theory;
 
 pub const WIRES: VerificationCase = VerificationCase {
@@ -25,8 +27,8 @@ pub const SPHERES: VerificationCase = VerificationCase {
 
 pub const CONDUCTOR: VerificationCase = VerificationCase {
     name: "acsr-stiffness",
-    about: "an ACSR conductor, steel 1 + 6 under aluminium 12 + 18 + 24, between the bounds of strand theory, and each metal's share",
-    source: "Hruska 1951: Σ n A E cos³β; Costello, Theory of Wire Rope, 1997, chapter 3",
+    about: "an ACSR conductor, steel 1 + 6 under aluminium 12 + 18 + 24: stiffness, and each metal's share",
+    source: "Hruska 1951: Σ n A E cos³β, the bound of wires that do not give; strain of a helix",
     run: conductor,
 };
 
@@ -95,25 +97,44 @@ fn elastic() -> Vec<String> {
     options
 }
 
-/// Wires do not thin elastically here and only contacts give, so that the conductor lies between Hruska's sum and Costello's
-/// value, which lets wires thin.
+/// What the wires of each material carry along the strand (N) by stretch, radius and turn of every wire's middle third, as the
+/// strain of a helix has it.
+fn by_shape(engine: &Engine, layers: &[Layer], materials: usize) -> Vec<f64> {
+    let (a, s) = (engine.assembly(), engine.state());
+    let mut carried = vec![0.0; materials];
+    for w in &a.wires {
+        let (low, high) = (w.first + w.len / 3, w.first + 2 * w.len / 3);
+        let strain = (s.x.z[high] - s.x.z[low]) / (a.position.z[high] - a.position.z[low]) - 1.0;
+        let radius = |x: &Vectors| (low..=high).map(|p| x.x[p].hypot(x.y[p])).sum::<f64>();
+        let turn = |x: &Vectors| {
+            let between = |p: usize| {
+                let (from, to) = (x.get(p).truncate(), x.get(p + 1).truncate());
+                from.perp_dot(to).atan2(from.dot(to))
+            };
+            (low..high).map(between).sum::<f64>()
+        };
+        let layer = &layers[w.layer];
+        let around =
+            if layer.radius > 0.0 { radius(&s.x) / radius(&a.position) * turn(&s.x) / turn(&a.position) } else { 1.0 };
+        let x = wire_strain(strain, layer.lay_angle(), around);
+        let young = engine.spec().material_at(w.material).material.young;
+        carried[w.material] += young * w.area() * x.ln_1p() * (1.0 + strain) * layer.lay_angle().cos() / (1.0 + x);
+    }
+    carried
+}
+
+/// Crossing wires give where they touch, which lets the layers in: the conductor is softer than Hruska's sum, and as stiff as
+/// the shape of its wires says.
 fn conductor(context: &Context) -> Result<Vec<Comparison>> {
     let mut simulation = context.simulation("acsr", &elastic())?;
-    let layers = simulation.spec.strand.as_ref().map_or(&[][..], |strand| &strand.layers[..]);
-    let constants = |number: usize| {
-        let material = simulation.spec.material_at(number).material;
-        [material.young, material.poisson]
-    };
-    let materials: Vec<[f64; 2]> = layers.iter().map(|layer| constants(layer.material)).collect();
-    let of: Vec<usize> = layers.iter().map(|layer| layer.material).collect();
     let theory = Theory::of_pull(&simulation.spec).expect("a pulled strand has a theory");
-    let sum = |counts: &dyn Fn(usize) -> bool| {
-        let young: Vec<f64> = (0..of.len()).map(|k| if counts(of[k]) { materials[k][0] } else { 0.0 }).collect();
-        stiffness_sum(&theory.layers, &young)
-    };
-    let (plain, thinning) =
-        (sum(&|_| true), elastic_of_materials(&theory.layers, &materials, Wire::Inextensible).force);
-    let mut points: Vec<[f64; 4]> = Vec::new();
+    let layers = simulation.spec.strand.as_ref().map_or(&[][..], |strand| &strand.layers[..]);
+    let young: Vec<f64> =
+        layers.iter().map(|layer| simulation.spec.material_at(layer.material).material.young).collect();
+    let sum = stiffness_sum(&theory.layers, &young);
+    let names: Vec<String> = simulation.spec.materials().map(|one| one.label().to_owned()).collect();
+    // Strain, force of the grip, then what each material carries, by its bonds and by its shape.
+    let mut rows: Vec<Vec<f64>> = Vec::new();
     simulation.run(|engine| {
         if engine.strain() >= 1e-3 && engine.steps().is_multiple_of(10) {
             let sample = engine.sample();
@@ -121,25 +142,28 @@ fn conductor(context: &Context) -> Result<Vec<Comparison>> {
                 let wires = engine.assembly().wires.iter().zip(&sample.wire_pull);
                 wires.filter(|(wire, _)| wire.material == number).map(|(_, force)| force).sum::<f64>()
             };
-            points.push([sample.strain, sample.grip_force[1], share(0), share(1)]);
+            let mut row = vec![sample.strain, sample.grip_force[1]];
+            row.extend((0..names.len()).map(share));
+            row.extend(by_shape(engine, &theory.layers, names.len()));
+            rows.push(row);
         }
     })?;
-    let mean = |k: usize| points.iter().map(|point| point[k]).sum::<f64>() / points.len() as f64;
+    let mean = |k: usize| rows.iter().map(|row| row[k]).sum::<f64>() / rows.len() as f64;
     let slope = |k: usize| {
-        let both: f64 = points.iter().map(|point| (point[0] - mean(0)) * (point[k] - mean(k))).sum();
-        both / points.iter().map(|point| (point[0] - mean(0)).powi(2)).sum::<f64>()
+        let both: f64 = rows.iter().map(|row| (row[0] - mean(0)) * (row[k] - mean(k))).sum();
+        both / rows.iter().map(|row| (row[0] - mean(0)).powi(2)).sum::<f64>()
     };
-    let names: Vec<String> = simulation.spec.materials().map(|one| one.label().to_owned()).collect();
     let spent = simulation.finish();
-    let room = 2e-3;
-    let what = format!("force per strain (Costello {:.3} MN)", thinning * 1e-6);
+    let mn = |k: usize| slope(k) * 1e-6;
+    let of = |name: &str| format!("of it in {name}, against stretch, radius and turn of its wires");
     let mut found = vec![
-        Comparison::new(what, "MN", slope(1) * 1e-6, plain * 1e-6, spent).between(thinning / plain - 1.0 - room, room),
+        Comparison::new("force per strain, against the sum rule", "MN", mn(1), sum * 1e-6, spent)
+            .between(-0.06, 0.0)
+            .note("the sum rule lets no wire give where it touches; contra-laid layers touch in points"),
     ];
     for (number, name) in names.iter().enumerate() {
-        let right = sum(&|of| of == number);
-        let what = format!("of it in {name}");
-        found.push(Comparison::new(what, "MN", slope(2 + number) * 1e-6, right * 1e-6, spent).within(0.02));
+        let (bonds, shape) = (mn(2 + number), mn(2 + names.len() + number));
+        found.push(Comparison::new(of(name), "MN", bonds, shape, spent).within(3e-3));
     }
     Ok(found)
 }
