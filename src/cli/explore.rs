@@ -94,8 +94,9 @@ impl AddressArgs {
 #[cfg(feature = "explore")]
 fn check_run(run: &Path) -> Result<()> {
     let name = run.to_string_lossy();
-    let scene = !run.exists() && crate::scene::builtin::list().iter().any(|(known, _)| *known == name);
-    if !scene && !(run.is_file() && run.extension().is_some_and(|ending| ending == "toml")) {
+    let shipped = !run.exists() && crate::scene::builtin::list().iter().any(|(known, _)| *known == name);
+    let file = run.is_file() && run.extension().is_some_and(|ending| ending == "toml");
+    if !shipped && !file {
         return Ok(());
     }
     Err(crate::base::error::Error::input(

@@ -44,8 +44,12 @@ pub struct Artist {
     painter: Painter,
     body: Body,
     ready: VecDeque<(Key, Arc<Ready>)>,
-    occlusion: Option<(View, u64, Arc<Vec<[f32; 4]>>)>,
+    /// The last one, of which view and step.
+    occlusion: Option<((View, u64), Occlusion)>,
 }
+
+/// How much of its surroundings each particle hides.
+type Occlusion = Arc<Vec<[f32; 4]>>;
 
 /// What decides the shapes of a view: all but the camera.
 #[derive(Clone, PartialEq)]
@@ -182,8 +186,8 @@ impl Artist {
         Ready { snapshot, position, removed, segments, colours }
     }
 
-    fn occlusion(&mut self, record: &Record, view: View, step: u64) -> Arc<Vec<[f32; 4]>> {
-        if let Some((known, at, found)) = &self.occlusion
+    fn occlusion(&mut self, record: &Record, view: View, step: u64) -> Occlusion {
+        if let Some(((known, at), found)) = &self.occlusion
             && (known, *at) == (&view, step)
         {
             return found.clone();
@@ -191,7 +195,7 @@ impl Artist {
         let (info, snapshot) = (record.info(), record.snapshot(view.state));
         let (position, removed) = (self.exploded(&snapshot, &view), removed(info, &snapshot, &view));
         let made = Arc::new(occlusion(info, &position, &snapshot.radius, &removed));
-        self.occlusion = Some((view, step, made.clone()));
+        self.occlusion = Some(((view, step), made.clone()));
         made
     }
 

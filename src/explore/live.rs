@@ -1,8 +1,9 @@
-//! A run that is watched while it goes on: an observer that shows it at an address, and what a page can do to it.
+//! A run that is watched while it goes on: an observer that shows it at an address.
 //!
 //! The observer hands over what it is told and goes on; pages draw from it in threads of their own. Nothing of what the run
 //! computes or writes depends on whether anybody looks.
 
+use super::control::Control;
 use super::record::{Record, Told};
 use super::server::{Gate, Options, Server};
 use super::shared::{Pane, Shared};
@@ -13,105 +14,16 @@ use crate::observe::Observer;
 use crate::observe::planned::PlannedEnd;
 use crate::observe::wording::OneDraw;
 use crate::scene::spec::{Spec, StopSpec};
-use serde::Deserialize;
-use serde_json::{Value, json};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often a run that is held looks whether it is stopped.
+/// How often to look whether the last page has gone.
 const LOOK: Duration = Duration::from_millis(50);
 /// How long the address stays when the run is over and the last page has gone: a page that is loaded again comes back.
 const LEAVING: Duration = Duration::from_secs(5);
-/// Resolution of how far a run has come.
-const WHOLE: f64 = 1e6;
-
-/// How a run goes on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Pace {
-    /// By itself.
-    Going,
-    /// To its next state, then it is held.
-    Step,
-    /// Not at all, until it is let go or stopped.
-    Held,
-}
-
-/// What a page can do to a run that is going.
-pub struct Control {
-    pace: Mutex<Pace>,
-    changed: Condvar,
-    /// Ends the run cleanly.
-    stop: &'static AtomicBool,
-    /// It was a page that set it.
-    by_page: AtomicBool,
-    /// How far the run has come, of [`WHOLE`].
-    done: AtomicU32,
-    /// Why it ended.
-    end: Mutex<Option<String>>,
-}
-
-impl Control {
-    fn new(stop: &'static AtomicBool) -> Self {
-        Self {
-            pace: Mutex::new(Pace::Going),
-            changed: Condvar::new(),
-            stop,
-            by_page: AtomicBool::new(false),
-            done: AtomicU32::new(0),
-            end: Mutex::new(None),
-        }
-    }
-
-    fn pace(&self) -> MutexGuard<'_, Pace> {
-        self.pace.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn end(&self) -> MutexGuard<'_, Option<String>> {
-        self.end.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Holds the run, lets it go, or lets it go to its next state.
-    pub fn set(&self, pace: Pace) {
-        *self.pace() = pace;
-        self.changed.notify_all();
-    }
-
-    /// Ends the run as Ctrl-C does: its results so far are kept.
-    pub fn stop(&self) {
-        if self.end().is_none() && !self.stop.swap(true, Ordering::Relaxed) {
-            self.by_page.store(true, Ordering::Relaxed);
-        }
-        self.changed.notify_all();
-    }
-
-    /// What a page is told of how the run goes on.
-    pub fn state(&self) -> Value {
-        let word = match *self.pace() {
-            Pace::Going => "going",
-            Pace::Step => "step",
-            Pace::Held => "held",
-        };
-        let done = f64::from(self.done.load(Ordering::Relaxed)) / WHOLE;
-        json!({ "pace": word, "done": done, "stopping": self.stop.load(Ordering::Relaxed), "end": *self.end() })
-    }
-
-    /// Returns when the run may go on; `state`: it has come to a new one.
-    fn wait(&self, state: bool) {
-        let mut pace = self.pace();
-        if state && *pace == Pace::Step {
-            *pace = Pace::Held;
-        }
-        while *pace == Pace::Held && !self.stop.load(Ordering::Relaxed) {
-            let waited = self.changed.wait_timeout(pace, LOOK);
-            pace = waited.unwrap_or_else(PoisonError::into_inner).0;
-        }
-    }
-}
-
 /// Shows a run at an address while it goes on.
 pub struct Watcher {
     run: PathBuf,
@@ -162,7 +74,7 @@ impl Watcher {
 
     /// Whether the run was stopped by a page.
     pub fn stopped_by_page(&self) -> bool {
-        self.control.by_page.load(Ordering::Relaxed)
+        self.control.stopped_by_page()
     }
 
     /// Whether a page is open.
@@ -211,7 +123,7 @@ impl Observer for Watcher {
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
         let done = self.end.fraction(sample.strain, sample.time, sample.step).min(1.0);
-        self.control.done.store((done * WHOLE) as u32, Ordering::Relaxed);
+        self.control.set_done(done);
         self.tell(Told::Row(sample.clone()));
         self.control.wait(false);
         Ok(())
@@ -246,44 +158,5 @@ impl Drop for Watcher {
             // What became of the address matters no more.
             drop(shown.thread.take().map(JoinHandle::join));
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::sync::mpsc::channel;
-
-    #[test]
-    fn a_held_run_waits_a_step_lets_one_state_by_and_a_stop_ends_the_waiting() {
-        static STOP: AtomicBool = AtomicBool::new(false);
-        let control = Arc::new(Control::new(&STOP));
-        control.set(Pace::Held);
-        let (send, passed) = channel();
-        let waiting = control.clone();
-        let thread = std::thread::spawn(move || {
-            for number in 0.. {
-                // A row, then the state that goes with it, as runs have them.
-                waiting.wait(false);
-                waiting.wait(true);
-                if send.send(number).is_err() || STOP.load(Ordering::Relaxed) {
-                    break;
-                }
-            }
-        });
-        let soon = Duration::from_millis(200);
-        assert!(passed.recv_timeout(soon).is_err(), "a held run goes on");
-        control.set(Pace::Step);
-        // The state is held as soon as it is there: what comes after it does not pass.
-        assert!(passed.recv_timeout(soon).is_err());
-        assert_eq!(control.state()["pace"], "held");
-        control.set(Pace::Step);
-        assert_eq!(passed.recv_timeout(Duration::from_secs(10)), Ok(0));
-        assert!(passed.recv_timeout(soon).is_err(), "one step was asked for");
-        control.stop();
-        assert!(passed.recv_timeout(Duration::from_secs(10)).is_ok());
-        drop(passed);
-        thread.join().unwrap();
-        assert!(control.by_page.load(Ordering::Relaxed) && control.state()["stopping"] == true);
     }
 }

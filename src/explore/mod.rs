@@ -4,6 +4,7 @@
 //! [`Server`] answers one page and its socket at a local address; a `session` is one browser that looks, with a [`View`] of
 //! its own; [`record`] holds the run and tells it to the page; [`draw`] draws it with the renderer.
 
+mod control;
 pub mod draw;
 mod film;
 mod http;

@@ -3,9 +3,9 @@
 //! While something moves, pictures are small and compressed with loss; one is on its way at a time, and of the views that
 //! came meanwhile only the newest is drawn. A moment after the last move comes the whole picture without loss.
 
+use super::control::Pace;
 use super::draw::Picture;
 use super::film::{self, Maker};
-use super::live::Pace;
 use super::path::Path as CameraPath;
 use super::shared::Shared;
 use super::view::View;

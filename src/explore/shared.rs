@@ -1,7 +1,7 @@
 //! What all sessions share: the run, a second one beside it, and those who draw them.
 
+use super::control::Control;
 use super::draw::{Artist, Picture};
-use super::live::Control;
 use super::record::{Record, Told};
 use super::view::View;
 use crate::base::error::{Error, Result};

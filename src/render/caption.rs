@@ -36,9 +36,10 @@ pub fn caption(image: RgbImage, fonts: &Fonts, style: &Style, lines: &[String], 
         let kind = Type { size, weight: Weight::Bold, colour: style.text, align: Align::Left };
         canvas.text(edge, h - edge - height * number as f32, kind, line);
     }
-    let (right, y) = (w - edge, h - edge);
+    // In the middle of a row of pixels, so that it is sharp.
+    let (right, y) = (w - edge, (h - edge).floor() + 0.5);
     let (left, tick) = (right - bar, 0.35 * edge);
-    let width = 1.6 * canvas.unit;
+    let width = (1.6 * canvas.unit).max(1.0);
     canvas.polyline(&[[left, y - tick], [left, y], [right, y], [right, y - tick]], width, style.text, 1.0);
     let size = (TEXT * canvas.unit).min(size * 1.2) * 0.8;
     let kind = Type { size, weight: Weight::Regular, colour: style.text, align: Align::Centre };
