@@ -114,11 +114,11 @@ impl Artist {
         let style = view.theme.style();
         let ready = self.ready(record, view, size);
         let camera = self.camera(record.info(), &ready.snapshot, view, size);
-        let seen: Vec<wires::Segment> = ready.segments.iter().filter(|s| camera.sees(s.a, s.b)).copied().collect();
         // Deeper parts darken over the strand's own depth, or over what is seen of it where the eye looks along it.
         let along = (camera.rotation * Vec3::Z).z.abs();
         let fade = self.body.radius * (1.0 + view.explode as f32) + along * size[0] as f32 / camera.scale;
-        let drawings = [Drawing { camera, instances: 0..seen.len() as u32, fade }];
+        let mut seen = Vec::new();
+        let drawings = [Drawing::new(camera, fade, &ready.segments, &mut seen)];
         let segments = self.painter.upload(&seen);
         self.painter.draw([0.0, 0.0], &style, &segments, &drawings)?;
         let mut image = RgbImage::new(size[0], size[1]);

@@ -158,15 +158,13 @@ impl Solid {
         let mut drawings = Vec::new();
         let mut own: Option<(View, Option<Looks>)> = None;
         for shot in shots {
-            let start = all.len() as u32;
             if own.as_ref().is_none_or(|(view, _)| *view != shot.view) {
                 own = Some((shot.view, of(shot.view).panel.looks(data, &shot.camera)));
             }
             let looks = own.as_ref().and_then(|(_, looks)| looks.as_ref()).unwrap_or(&whole);
             let stride = stride(data, &shot.camera);
             let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer);
-            all.extend(segments.into_iter().filter(|s| shot.camera.sees(s.a, s.b)));
-            drawings.push(Drawing { camera: shot.camera, instances: start..all.len() as u32, fade: shot.fade });
+            drawings.push(Drawing::new(shot.camera, shot.fade, &segments, &mut all));
         }
         let segments = self.painter.upload(&all);
         self.painter.draw([self.area.x, self.area.y], data.style, &segments, &drawings)
