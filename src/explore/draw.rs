@@ -10,7 +10,7 @@ use crate::render::body::Body;
 use crate::render::camera::Camera;
 use crate::render::canvas::Rect;
 use crate::render::colour::ColourScale;
-use crate::render::occlusion::occlusion;
+use crate::render::occlusion::Occlusion;
 use crate::render::painter::{Drawing, Painter};
 use crate::render::style::Rgb;
 use crate::render::wires::{self, Looks};
@@ -169,14 +169,9 @@ impl Artist {
             let dimmed = view.selected.is_some_and(|selected| selected != wire);
             (if bright { 1.0 } else { depth[wire] }) * if dimmed { DIMMED } else { 1.0 }
         });
-        let looks = Looks {
-            occlusion: occlusion.to_vec(),
-            colour: colours.clone(),
-            shade: shade.collect(),
-            position: position.clone(),
-            removed: removed.clone(),
-        };
-        let segments = wires::segments(info, &snapshot, &looks, *stride, None);
+        let looks = Looks::new(info, &snapshot, position.clone(), &colours, shade.collect(), removed.clone());
+        let looks = looks.with_occlusion(Occlusion::known(occlusion.to_vec()));
+        let segments = wires::segments(info, &snapshot, &looks, *stride, None, |_, _| true);
         Ready { snapshot, position, removed, segments, colours }
     }
 
@@ -188,7 +183,7 @@ impl Artist {
         }
         let (info, snapshot) = (record.info(), record.snapshot(view.state));
         let (position, removed) = (self.exploded(&snapshot, &view), removed(info, &snapshot, &view));
-        let made = Arc::new(occlusion(info, &position, &snapshot.radius, &removed));
+        let made = Arc::new(Occlusion::new(info, &position, &snapshot.radius, &removed).all());
         self.occlusion = Some((view, made.clone()));
         made
     }

@@ -163,7 +163,8 @@ impl Solid {
             }
             let looks = own.as_ref().and_then(|(_, looks)| looks.as_ref()).unwrap_or(&whole);
             let stride = stride(data, &shot.camera);
-            let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer);
+            let sees = |a, b| shot.camera.sees(a, b);
+            let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer, sees);
             drawings.push(Drawing::new(shot.camera, shot.fade, &segments, &mut all));
         }
         let segments = self.painter.upload(&all);
