@@ -265,8 +265,8 @@ fn removed(info: &RunInfo, snapshot: &Snapshot, view: &View) -> Vec<bool> {
     removed
 }
 
-/// Bonds that make up about eight pixels.
+/// Most bonds of a segment.
 fn stride(info: &RunInfo, view: &View, size: [u32; 2]) -> usize {
     let spacing = 2.0 * mm(f64::from(info.radius.first().copied().unwrap_or(1e-3)));
-    (8.0 * view.height / (spacing * f64::from(size[1]))).clamp(1.0, 8.0) as usize
+    wires::stride((spacing * f64::from(size[1]) / view.height) as f32)
 }

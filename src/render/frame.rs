@@ -136,12 +136,6 @@ fn of(view: View) -> &'static Entry {
     PANELS.iter().find(|entry| entry.view == view).expect("every view has its row")
 }
 
-/// Bonds that make up about eight pixels.
-fn stride(data: &Data, camera: &super::camera::Camera) -> usize {
-    let spacing = 2.0 * data.info.radius.first().copied().unwrap_or(1e-3);
-    (8.0 / (spacing * camera.scale)).clamp(1.0, 8.0) as usize
-}
-
 impl Solid {
     fn open(layout: &Layout) -> Result<Option<Self>> {
         let solid = layout.panels.iter().filter(|(view, _)| !of(*view).flat).map(|(_, area)| *area);
@@ -156,13 +150,14 @@ impl Solid {
         let whole = Looks::new(data.info, data.snapshot, position, data.colours, data.body.shade(), Vec::new());
         let mut all: Vec<Segment> = Vec::new();
         let mut drawings = Vec::new();
+        let spacing = 2.0 * data.info.radius.first().copied().unwrap_or(1e-3);
         let mut own: Option<(View, Option<Looks>)> = None;
         for shot in shots {
             if own.as_ref().is_none_or(|(view, _)| *view != shot.view) {
                 own = Some((shot.view, of(shot.view).panel.looks(data, &shot.camera)));
             }
             let looks = own.as_ref().and_then(|(_, looks)| looks.as_ref()).unwrap_or(&whole);
-            let stride = stride(data, &shot.camera);
+            let stride = wires::stride(spacing * shot.camera.scale);
             let sees = |a, b| shot.camera.sees(a, b);
             let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer, sees);
             drawings.push(Drawing::new(shot.camera, shot.fade, &segments, &mut all));

@@ -44,6 +44,14 @@ pub const BROKEN: f32 = 4.0;
 /// ductile copper necks before it parts. The particle itself is a sphere, so the tip stays inside what collides.
 const TIP: [f32; 2] = [0.8, 0.55];
 
+/// Steps of the 8 bits of a colour that a longer segment may lack.
+const SHADES: i32 = 3;
+
+/// Most bonds that a segment may stand for, where particles lie `spacing` pixels apart: it is about sixteen pixels long.
+pub fn stride(spacing: f32) -> usize {
+    (16.0 / spacing).clamp(1.0, 16.0) as usize
+}
+
 /// What is drawn of a snapshot, per particle.
 pub struct Looks {
     /// Centres (m): those of the snapshot, or moved apart.
@@ -107,8 +115,8 @@ fn tangents(info: &RunInfo, snapshot: &Snapshot, position: &[[f32; 3]]) -> Vec<V
     all
 }
 
-/// The segments of every wire and sphere. Where a wire is straight, up to `stride` bonds share a segment: small
-/// pictures need no more. Of one layer alone where `layer` names it, and of what a camera `sees` between two spheres.
+/// The segments of every wire and sphere. Where a wire is straight and its colour changes evenly, up to `stride` bonds share a
+/// segment: small pictures need no more. Of one layer alone where `layer` names it, and of what a camera `sees` between two spheres.
 pub fn segments(
     info: &RunInfo,
     snapshot: &Snapshot,
@@ -145,7 +153,7 @@ impl Chain<'_> {
         while i < last {
             let mut j = i + 1;
             if self.drawn(i) {
-                while j < last && j - i < stride && self.drawn(j) && self.straight(i, j + 1) {
+                while j < last && j - i < stride && self.drawn(j) && self.straight(i, j + 1) && self.fades(i, j + 1) {
                     j += 1;
                 }
                 // The tips reach no further than the spheres.
@@ -177,6 +185,18 @@ impl Chain<'_> {
     /// Whether the wire turns by less than 2.5° between two particles.
     fn straight(&self, i: usize, j: usize) -> bool {
         self.tangent(i).dot(self.tangent(j)) > 0.999
+    }
+
+    /// Whether colours between two particles are what lies between theirs.
+    fn fades(&self, i: usize, j: usize) -> bool {
+        let colour = |k: usize| self.looks.colour[k].map(i32::from);
+        let [from, to] = [i, j].map(colour);
+        let length = (j - i) as i32;
+        (i + 1..j).all(|k| {
+            let (between, at) = (colour(k), (k - i) as i32);
+            let off = |c: usize| (length * (between[c] - from[c]) - at * (to[c] - from[c])).abs();
+            self.info.in_grip(k) == self.info.in_grip(i) && (0..3).all(|c| off(c) <= SHADES * length)
+        }) && self.info.in_grip(i) == self.info.in_grip(j)
     }
 
     fn holds_before(&self, i: usize) -> bool {
