@@ -119,8 +119,7 @@ impl Artist {
         let fade = self.body.radius * (1.0 + view.explode as f32) + along * size[0] as f32 / camera.scale;
         let mut seen = Vec::new();
         let drawings = [Drawing::new(camera, fade, &ready.segments, &mut seen)];
-        let segments = self.painter.upload(&seen);
-        self.painter.draw([0.0, 0.0], &style, &segments, &drawings)?;
+        self.painter.draw([0.0, 0.0], &style, &seen, &drawings);
         let mut image = RgbImage::new(size[0], size[1]);
         let width = size[0] as usize * 3;
         let bytes: &mut [u8] = &mut image;

@@ -2,6 +2,8 @@
 
 use crate::engine::view::RunInfo;
 use glam::Vec3;
+#[cfg(feature = "explore")]
+use rayon::prelude::*;
 use std::cell::RefCell;
 
 /// Reach over the particle's own diameter (-).
@@ -40,8 +42,10 @@ impl Occlusion {
     /// That of every particle.
     #[cfg(feature = "explore")]
     pub fn all(&self) -> Vec<[f32; 4]> {
-        let count = self.known.borrow().len();
-        (0..count).map(|i| self.at(i)).collect()
+        match &self.around {
+            Some(around) => (0..around.all.len()).into_par_iter().map(|i| around.occlusion(i)).collect(),
+            None => self.known.borrow().clone(),
+        }
     }
 
     /// That of particle `i`.

@@ -149,8 +149,7 @@ impl Painter {
         Ok(())
     }
 
-    /// Copies segments to the adapter, to be drawn any number of times.
-    pub fn upload(&self, segments: &[Segment]) -> wgpu::Buffer {
+    fn upload(&self, segments: &[Segment]) -> wgpu::Buffer {
         self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("segments"),
             contents: bytemuck::cast_slice(segments),
@@ -158,8 +157,9 @@ impl Painter {
         })
     }
 
-    /// Draws into a picture whose top left corner is pixel `origin` of the panels.
-    pub fn draw(&self, origin: [f32; 2], style: &Style, segments: &wgpu::Buffer, drawings: &[Drawing]) -> Result<()> {
+    /// Begins to draw a picture whose top left corner is pixel `origin` of the panels; it is there when it is read.
+    pub fn draw(&self, origin: [f32; 2], style: &Style, segments: &[Segment], drawings: &[Drawing]) {
+        let segments = self.upload(segments);
         let views: Vec<_> = drawings.iter().map(|d| self.bind(d, style)).collect();
         self.target.draw(&self.gpu, super::colour::linear4(style.panel), |pass| {
             for (drawing, view) in drawings.iter().zip(&views) {
@@ -180,10 +180,10 @@ impl Painter {
             }
             // On the GL backend the last scissor also cuts what is resolved when the pass ends.
             pass.set_scissor_rect(0, 0, self.target.size[0], self.target.size[1]);
-        })
+        });
     }
 
-    /// Hands the rows of the picture, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
+    /// Waits for the picture that was drawn last and hands its rows, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
     pub fn read(&self, row: impl FnMut(u32, &[u8])) -> Result<()> {
         self.target.read(&self.gpu, row)
     }
