@@ -51,7 +51,7 @@ enum Shape {
 
 const SHAPES: usize = 3;
 /// Component of a wire's direction along the line of sight up to which it is a roof (-).
-const STEEP: f32 = 0.97;
+const STEEP: f32 = 0.85;
 /// By how much a roof may turn in the picture, and a tube in space: cosines (-).
 const TURN: [f32; 2] = [0.95, 0.5];
 /// Radius up to which a roof is flat (px): by how much wires press into one another is too little to be seen.
@@ -111,8 +111,8 @@ fn xyz([x, y, z, _]: [f32; 4]) -> Vec3 {
 /// adapter is lost or cannot draw the size that is asked for.
 pub struct Painter {
     gpu: Gpu,
-    /// By [`Shape`].
-    pipelines: [wgpu::RenderPipeline; SHAPES],
+    /// By [`Shape`]; the last one is for thin roofs.
+    pipelines: [wgpu::RenderPipeline; SHAPES + 1],
     layout: wgpu::BindGroupLayout,
     target: Target,
 }
@@ -171,7 +171,9 @@ impl Painter {
                 pass.set_vertex_buffer(0, segments.slice(..));
                 let [roof, tube] = drawing.facets.map(|facets| 2 * (facets + 1));
                 let corners = [roof, tube, 4];
-                for ((pipeline, corners), which) in self.pipelines.iter().zip(corners).zip(&drawing.segments) {
+                let [thick, tubes, capsules, thin] = &self.pipelines;
+                let pipelines = [if drawing.facets[0] == 1 { thin } else { thick }, tubes, capsules];
+                for ((pipeline, corners), which) in pipelines.into_iter().zip(corners).zip(&drawing.segments) {
                     if !which.is_empty() {
                         pass.set_pipeline(pipeline);
                         pass.draw(0..corners, which.clone());
@@ -203,7 +205,7 @@ impl Painter {
                 1.0 / camera.scale,
             ],
             rim: [r, g, b, style.edge],
-            fade: [drawing.facets[1] as f32, drawing.fade, drawing.facets[0] as f32, 0.0],
+            fade: [drawing.facets[1] as f32, drawing.fade, drawing.facets[0] as f32, STEEP],
             signal: super::colour::signal4(),
             cut: super::colour::linear4(style.cut),
         };
@@ -229,7 +231,7 @@ fn check(gpu: &Gpu, [w, h]: [u32; 2]) -> Result<()> {
     Ok(())
 }
 
-fn compile(gpu: &Gpu) -> (wgpu::BindGroupLayout, [wgpu::RenderPipeline; SHAPES]) {
+fn compile(gpu: &Gpu) -> (wgpu::BindGroupLayout, [wgpu::RenderPipeline; SHAPES + 1]) {
     let device = &gpu.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("wires"),
@@ -251,46 +253,50 @@ fn compile(gpu: &Gpu) -> (wgpu::BindGroupLayout, [wgpu::RenderPipeline; SHAPES])
     let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4,
         4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4];
     let of_capsules = if gpu.samples_shaded { "fs_sampled" } else { "fs_whole" };
-    let pipelines = [["vs_roof", "fs_roof"], ["vs_tube", "fs_tube"], ["vs", of_capsules]].map(|[vertex, fragment]| {
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("wires"),
-            layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: None,
-                bind_group_layouts: &[Some(&layout)],
-                immediate_size: 0,
-            })),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some(vertex),
-                compilation_options: Default::default(),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Segment>() as u64,
-                    step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: &attributes,
-                })],
-            },
-            primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Less),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(fragment),
-                compilation_options: Default::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: COLOUR,
-                    blend: None,
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
-    });
+    let pipelines = [["vs_roof", "fs_roof"], ["vs_tube", "fs_tube"], ["vs", of_capsules], ["vs_roof", "fs_thin_roof"]]
+        .map(|[vertex, fragment]| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("wires"),
+                layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: None,
+                    bind_group_layouts: &[Some(&layout)],
+                    immediate_size: 0,
+                })),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some(vertex),
+                    compilation_options: Default::default(),
+                    buffers: &[Some(wgpu::VertexBufferLayout {
+                        array_stride: size_of::<Segment>() as u64,
+                        step_mode: wgpu::VertexStepMode::Instance,
+                        attributes: &attributes,
+                    })],
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology: wgpu::PrimitiveTopology::TriangleStrip,
+                    ..Default::default()
+                },
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Less),
+                    stencil: Default::default(),
+                    bias: Default::default(),
+                }),
+                multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(fragment),
+                    compilation_options: Default::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format: COLOUR,
+                        blend: None,
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        });
     (layout, pipelines)
 }

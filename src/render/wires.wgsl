@@ -8,7 +8,8 @@ struct View {
   centre: vec4<f32>,   // xyz [m]
   scale: vec4<f32>,    // x, y: view m -> clip; z: half depth [m]; w: size of a pixel [m]
   rim: vec4<f32>,      // rgb: light added along silhouettes; w: darkening along silhouettes
-  fade: vec4<f32>,     // x: facets of a tube, z: of a roof (1: it is flat) [-], y: radius over which depth darkens [m]
+  fade: vec4<f32>,     // x: facets of a tube, z: of a roof (1: it is flat) [-],
+                       // w: how steep a wire is that has no roof, y: radius over which depth darkens [m]
   signal: vec4<f32>,   // colour of broken ends, linear
   cut: vec4<f32>,      // colour of faces where a wire was cut to show what lies behind, linear
 };
@@ -315,12 +316,12 @@ fn sideways(tangent: vec3<f32>) -> vec3<f32> {
   return normalize(vec3<f32>(-tangent.y, tangent.x + 1e-9, 0.0));
 }
 
-// A corner of a roof or tube: one end of the segment or the other, at `normal` from the axis.
-fn corner(in: Segment, far: bool, tangent: vec3<f32>, normal: vec3<f32>) -> Side {
+// A corner of a roof or tube: one end of the segment or the other, `out` radii from the axis.
+fn corner(in: Segment, far: bool, tangent: vec3<f32>, normal: vec3<f32>, out: f32) -> Side {
   let end = select(in.a, in.b, far);
   let occlusion = select(in.oa, in.ob, far);
   let axis = view.rotation * (end.xyz - view.centre.xyz);
-  let p = axis + normal * end.w;
+  let p = axis + normal * (out * end.w);
   var o: Side;
   o.normal = normal;
   o.radius = end.w;
@@ -336,7 +337,7 @@ fn corner(in: Segment, far: bool, tangent: vec3<f32>, normal: vec3<f32>) -> Side
   let tangent = view.rotation * select(in.ta.xyz, in.tb.xyz, far);
   let across = sideways(tangent);
   let u = 2.0 * f32(vertex >> 1u) / view.fade.z - 1.0;
-  return corner(in, far, tangent, across * u + cross(tangent, across) * (1.0 - abs(u)));
+  return corner(in, far, tangent, across * u + cross(tangent, across) * (1.0 - abs(u)), 1.0);
 }
 
 @vertex fn vs_tube(@builtin(vertex_index) vertex: u32, in: Segment) -> Side {
@@ -344,7 +345,12 @@ fn corner(in: Segment, far: bool, tangent: vec3<f32>, normal: vec3<f32>) -> Side
   let tangent = view.rotation * select(in.ta.xyz, in.tb.xyz, far);
   let angle = 6.2831853 * f32(vertex >> 1u) / view.fade.x;
   let across = normalize(vec3<f32>(0.0, -tangent.z, tangent.y));
-  return corner(in, far, tangent, across * sin(angle) + cross(tangent, across) * cos(angle));
+  let normal = across * sin(angle) + cross(tangent, across) * cos(angle);
+  // Where a roof goes on, the half that is seen has its shape.
+  let u = abs(dot(normal, sideways(tangent)));
+  let up = dot(normal, cross(tangent, sideways(tangent)));
+  let roofed = abs(tangent.z) < view.fade.w && up > 0.0;
+  return corner(in, far, tangent, normal, select(1.0, 1.0 / (u + up), roofed));
 }
 
 fn side(in: Side, normal: vec3<f32>, tangent: vec3<f32>) -> vec4<f32> {
@@ -360,12 +366,27 @@ fn side(in: Side, normal: vec3<f32>, tangent: vec3<f32>) -> vec4<f32> {
   return lit(point, in.clip.xy);
 }
 
+// Light of a roof as far to the side of its axis as `u` radii.
+fn roof(in: Side, tangent: vec3<f32>, across: vec3<f32>, u: f32) -> vec4<f32> {
+  // A pixel that is covered in part is lit as what it covers, a quarter of a pixel inside the outline.
+  let edge = max(1.0 - 0.25 * view.scale.w / in.radius, 0.5);
+  let v = clamp(u, -edge, edge);
+  return side(in, across * v + cross(tangent, across) * sqrt(1.0 - v * v), tangent);
+}
+
 @fragment fn fs_roof(in: Side) -> @location(0) vec4<f32> {
   let tangent = normalize(in.tangent.xyz);
   let across = sideways(tangent);
-  let u = clamp(dot(in.normal, across), -1.0, 1.0);
-  let normal = across * u + cross(tangent, across) * sqrt(1.0 - u * u);
-  return side(in, normal, tangent);
+  return roof(in, tangent, across, dot(in.normal, across));
+}
+
+// A wire a few pixels wide: its light changes within a pixel.
+@fragment fn fs_thin_roof(in: Side) -> @location(0) vec4<f32> {
+  let tangent = normalize(in.tangent.xyz);
+  let across = sideways(tangent);
+  let u = dot(in.normal, across);
+  let step = 0.25 * view.scale.w / in.radius;
+  return 0.5 * (roof(in, tangent, across, u - step) + roof(in, tangent, across, u + step));
 }
 
 @fragment fn fs_tube(in: Side) -> @location(0) vec4<f32> {
