@@ -64,7 +64,7 @@ fn every_shader_is_valid() {
     );
     validator.validate(&module).expect("the shader is valid");
     let names: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-    assert_eq!(names, ["vs", "fs_sampled", "fs_whole"]);
+    assert_eq!(names, ["vs", "fs_sampled", "fs_whole", "vs_roof", "vs_tube", "fs_roof", "fs_thin_roof", "fs_tube"]);
 }
 
 #[test]

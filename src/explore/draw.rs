@@ -10,7 +10,7 @@ use crate::render::body::Body;
 use crate::render::camera::Camera;
 use crate::render::canvas::Rect;
 use crate::render::colour::ColourScale;
-use crate::render::occlusion::occlusion;
+use crate::render::occlusion::Occlusion;
 use crate::render::painter::{Drawing, Painter};
 use crate::render::style::Rgb;
 use crate::render::wires::{self, Looks};
@@ -120,13 +120,12 @@ impl Artist {
         let style = view.theme.style();
         let ready = self.ready(record, view, size);
         let camera = self.camera(record.info(), &ready.snapshot, view, size);
-        let seen: Vec<wires::Segment> = ready.segments.iter().filter(|s| camera.sees(s.a, s.b)).copied().collect();
         // Deeper parts darken over the strand's own depth, or over what is seen of it where the eye looks along it.
         let along = (camera.rotation * Vec3::Z).z.abs();
         let fade = self.body.radius * (1.0 + view.explode as f32) + along * size[0] as f32 / camera.scale;
-        let drawings = [Drawing { camera, instances: 0..seen.len() as u32, fade }];
-        let segments = self.painter.upload(&seen);
-        self.painter.draw([0.0, 0.0], &style, &segments, &drawings)?;
+        let mut seen = Vec::new();
+        let drawings = [Drawing::new(camera, fade, &ready.segments, &mut seen)];
+        self.painter.draw([0.0, 0.0], &style, &seen, &drawings);
         let mut image = RgbImage::new(size[0], size[1]);
         let width = size[0] as usize * 3;
         let bytes: &mut [u8] = &mut image;
@@ -175,14 +174,9 @@ impl Artist {
             let dimmed = view.selected.is_some_and(|selected| selected != wire);
             (if bright { 1.0 } else { depth[wire] }) * if dimmed { DIMMED } else { 1.0 }
         });
-        let looks = Looks {
-            occlusion: occlusion.to_vec(),
-            colour: colours.clone(),
-            shade: shade.collect(),
-            position: position.clone(),
-            removed: removed.clone(),
-        };
-        let segments = wires::segments(info, &snapshot, &looks, *stride, None);
+        let looks = Looks::new(info, &snapshot, position.clone(), &colours, shade.collect(), removed.clone());
+        let looks = looks.with_occlusion(Occlusion::known(occlusion.to_vec()));
+        let segments = wires::segments(info, &snapshot, &looks, *stride, None, |_, _| true);
         Ready { snapshot, position, removed, segments, colours }
     }
 
@@ -194,7 +188,7 @@ impl Artist {
         }
         let (info, snapshot) = (record.info(), record.snapshot(view.state));
         let (position, removed) = (self.exploded(&snapshot, &view), removed(info, &snapshot, &view));
-        let made = Arc::new(occlusion(info, &position, &snapshot.radius, &removed));
+        let made = Arc::new(Occlusion::new(info, &position, &snapshot.radius, &removed).all());
         self.occlusion = Some(((view, step), made.clone()));
         made
     }
@@ -276,8 +270,8 @@ fn removed(info: &RunInfo, snapshot: &Snapshot, view: &View) -> Vec<bool> {
     removed
 }
 
-/// Bonds that make up about eight pixels.
+/// Most bonds of a segment.
 fn stride(info: &RunInfo, view: &View, size: [u32; 2]) -> usize {
     let spacing = 2.0 * mm(f64::from(info.radius.first().copied().unwrap_or(1e-3)));
-    (8.0 * view.height / (spacing * f64::from(size[1]))).clamp(1.0, 8.0) as usize
+    wires::stride((spacing * f64::from(size[1]) / view.height) as f32)
 }

@@ -18,7 +18,7 @@ pub struct Timings {
     pub draw: Duration,
     /// Copying the picture back.
     pub read_back: Duration,
-    /// Charts and text.
+    /// Charts and text, on a thread of its own where frames are written.
     pub overlay: Duration,
     /// PNG encoding and writing, on a thread of its own.
     pub encode: Duration,
@@ -71,10 +71,10 @@ impl Timings {
 impl fmt::Display for Timings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [draw, back, overlay, encode] = self.per_frame_ms();
-        let drawing = draw + back + overlay;
+        let drawing = draw + back;
         write!(
             f,
-            "{}, {drawing:.1} ms each (draw {draw:.1}, read-back {back:.1}, charts and text {overlay:.1}), beside it \
+            "{}, {drawing:.1} ms each (draw {draw:.1}, read-back {back:.1}), beside it charts and text {overlay:.1} ms, \
              PNG {encode:.1} ms",
             self.frames
         )

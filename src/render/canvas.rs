@@ -167,9 +167,21 @@ impl Canvas<'_> {
     /// Fills a rectangle; edges between pixels are anti-aliased.
     pub fn fill(&mut self, r: Rect, colour: Rgb, alpha: f32) {
         let cover = |p: i32, low: f32, high: f32| (high.min(p as f32 + 1.0) - low.max(p as f32)).clamp(0.0, 1.0);
-        for y in r.y.floor() as i32..r.bottom().ceil() as i32 {
+        let (w, h) = (self.image.width() as i32, self.image.height() as i32);
+        let [from, to] = [r.x.floor(), r.right().ceil()].map(|x| (x as i32).clamp(0, w));
+        // Columns that are covered from edge to edge.
+        let [first, last] = [r.x.ceil(), r.right().floor()].map(|x| (x as i32).clamp(from, to));
+        for y in (r.y.floor() as i32).max(0)..(r.bottom().ceil() as i32).min(h) {
             let cy = cover(y, r.y, r.bottom());
-            for x in r.x.floor() as i32..r.right().ceil() as i32 {
+            let whole = alpha * cy >= 1.0 && first < last;
+            if whole {
+                let row = (y * w) as usize;
+                let inner = (row + first as usize) * 3..(row + last as usize) * 3;
+                let bytes: &mut [u8] = &mut self.image;
+                bytes[inner].as_chunks_mut().0.fill(colour);
+            }
+            let edges = if whole { [from..first, last..to] } else { [from..to, to..to] };
+            for x in edges.into_iter().flatten() {
                 self.blend(x, y, colour, alpha * cy * cover(x, r.x, r.right()));
             }
         }

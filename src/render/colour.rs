@@ -4,6 +4,7 @@ use super::style::{Rgb, SIGNAL};
 use crate::engine::view::{RunInfo, Snapshot};
 use crate::observe::colouring::{range, shown};
 use crate::scene::spec::ColourBy;
+use std::sync::LazyLock;
 
 /// Categorical palette: Okabe & Ito (2008) without vermilion, which is too near the colour of ruptures, and with
 /// three more hues that stay apart for readers with colour-vision deficiency.
@@ -22,20 +23,41 @@ const PALETTE: [Rgb; 9] = [
 /// Where in its map a range starts (-). The very darkest colours would vanish before a dark ground.
 pub const DARKEST: f64 = 0.1;
 
+/// Colours of a map: so many that the next one differs by a step of the 8 bits at most.
+const STEPS: usize = 1024;
+type Table = [Rgb; STEPS];
+static VIRIDIS: LazyLock<Table> = LazyLock::new(|| table(colorous::VIRIDIS));
+static CIVIDIS: LazyLock<Table> = LazyLock::new(|| table(colorous::CIVIDIS));
+
+fn table(map: colorous::Gradient) -> Table {
+    std::array::from_fn(|k| {
+        let c = map.eval_continuous(DARKEST + (1.0 - DARKEST) * k as f64 / (STEPS - 1) as f64);
+        [c.r, c.g, c.b]
+    })
+}
+
+/// Linear light of every sRGB byte.
+static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|byte| {
+        let v = byte as f32 / 255.0;
+        if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    })
+});
+
 /// A quantity, its fixed range and its colours.
 pub struct ColourScale {
     by: ColourBy,
     /// In SI.
     range: [f64; 2],
-    map: Option<colorous::Gradient>,
+    map: Option<&'static Table>,
 }
 
 impl ColourScale {
     /// The scale of `by` over the range that [`RunInfo`] fixes for the whole sequence.
     pub fn new(info: &RunInfo, by: ColourBy) -> Self {
         let map = match by {
-            ColourBy::Stress | ColourBy::Utilisation => colorous::VIRIDIS,
-            _ => colorous::CIVIDIS,
+            ColourBy::Stress | ColourBy::Utilisation => &*VIRIDIS,
+            _ => &*CIVIDIS,
         };
         let range = range(info, by);
         Self { by, range: range.unwrap_or([0.0, 1.0]), map: range.map(|_| map) }
@@ -86,8 +108,7 @@ impl ColourScale {
         let Some(map) = self.map else {
             return [128; 3];
         };
-        let c = map.eval_continuous(DARKEST + (1.0 - DARKEST) * fraction.clamp(0.0, 1.0));
-        [c.r, c.g, c.b]
+        map[(fraction.clamp(0.0, 1.0) * (STEPS - 1) as f64).round() as usize]
     }
 
     fn of_value(&self, value: f32) -> Rgb {
@@ -160,8 +181,7 @@ pub fn desaturated(colour: Rgb) -> Rgb {
 
 /// sRGB byte to linear light (IEC 61966-2-1) (-).
 pub fn linear(byte: u8) -> f32 {
-    let v = f32::from(byte) / 255.0;
-    if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    LINEAR[usize::from(byte)]
 }
 
 /// Linear RGB of a colour, with alpha 1.
@@ -192,6 +212,15 @@ mod tests {
         }
         for c in PALETTE {
             assert!(distance(c, SIGNAL) > 100.0, "{c:?}");
+        }
+    }
+
+    #[test]
+    fn neighbours_in_a_table_differ_by_a_step_at_most() {
+        for table in [&*VIRIDIS, &*CIVIDIS] {
+            for pair in table.windows(2) {
+                assert!((0..3).all(|k| pair[0][k].abs_diff(pair[1][k]) <= 1), "{pair:?}");
+            }
         }
     }
 

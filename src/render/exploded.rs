@@ -41,7 +41,7 @@ impl Panel for Exploded {
                 *p = (Vec3::from(*p) + shift).to_array();
             }
         }
-        Some(Looks { colour: colours(data), ..data.looks(position, Vec::new()) })
+        Some(data.looks(position, Vec::new()).with_colours(colours(data)))
     }
 
     fn annotate(&self, canvas: &mut Canvas, shot: &Shot, data: &Data, _frame: &[Shot]) {

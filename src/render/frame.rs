@@ -2,6 +2,7 @@
 
 use super::body::Body;
 use super::canvas::{Canvas, Fonts, Rect};
+use super::close_up::Focus;
 use super::colour::ColourScale;
 use super::data::Data;
 use super::history::History;
@@ -9,7 +10,7 @@ use super::layout::{Layout, layout};
 use super::painter::{Drawing, Painter};
 use super::panel::Shot;
 use super::panels::{Entry, PANELS, usual};
-use super::style::Style;
+use super::style::{Rgb, Style};
 use super::wires::{self, Looks, Segment};
 use super::{header, marks};
 use crate::base::error::{Error, Result};
@@ -18,10 +19,19 @@ use crate::observe::timings::Timings;
 use crate::scene::look::FRAME_SIDE;
 use crate::scene::spec::{OutputSpec, View};
 use image::{Rgb as Pixel, RgbImage};
+use std::cell::LazyCell;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Draws frames of one run.
 pub struct Renderer {
+    sheet: Arc<Sheet>,
+    solid: Option<Solid>,
+    timings: Timings,
+}
+
+/// What all frames of a run have in common, and what draws over their wires.
+pub(super) struct Sheet {
     info: RunInfo,
     look: OutputSpec,
     style: Style,
@@ -29,8 +39,21 @@ pub struct Renderer {
     body: Body,
     layout: Layout,
     fonts: Fonts,
-    solid: Option<Solid>,
-    timings: Timings,
+}
+
+/// What a frame shows of its wires.
+pub(super) struct Scene {
+    colours: Vec<Rgb>,
+    focus: Focus,
+    shots: Vec<Shot>,
+    segments: Vec<Segment>,
+    drawings: Vec<Drawing>,
+}
+
+/// A frame with its wires, without charts and text.
+pub(super) struct Wires {
+    scene: Scene,
+    picture: RgbImage,
 }
 
 /// What the adapter needs, present when some panel is three-dimensional.
@@ -56,17 +79,17 @@ impl Renderer {
             ));
         }
         let layout = layout(look.frame_size, &views);
-        Ok(Self {
+        let solid = Solid::open(&layout)?;
+        let sheet = Sheet {
             style: look.theme.style(),
             scale: ColourScale::new(info, look.colour),
             body: Body::of(info),
             fonts: Fonts::embedded(),
-            solid: Solid::open(&layout)?,
-            timings: Timings::default(),
             info: info.clone(),
             look: look.clone(),
             layout,
-        })
+        };
+        Ok(Self { sheet: Arc::new(sheet), solid, timings: Timings::default() })
     }
 
     /// Name of the adapter; `None` when no panel needs one.
@@ -81,13 +104,13 @@ impl Renderer {
 
     /// The panels of the frame and their places in pixels: x, y, width, height.
     pub fn panels(&self) -> Vec<(View, [u32; 4])> {
-        self.layout.panels.iter().map(|(v, r)| (*v, [r.x, r.y, r.w, r.h].map(|c| c as u32))).collect()
+        self.sheet.layout.panels.iter().map(|(v, r)| (*v, [r.x, r.y, r.w, r.h].map(|c| c as u32))).collect()
     }
 
     /// Tells a history of its next snapshot, after rows and ruptures up to it were added: to be called for every snapshot of
     /// a run, also for those that are not drawn.
     pub fn follow(&self, history: &mut History, snapshot: &Snapshot) {
-        history.follow(&self.info, &self.body, &self.look.camera, snapshot);
+        history.follow(&self.sheet.info, &self.sheet.body, &self.sheet.look.camera, snapshot);
     }
 
     /// Draws one frame of the snapshot that a history was told last.
@@ -95,9 +118,59 @@ impl Renderer {
     /// # Errors
     /// When the adapter is lost.
     pub fn draw(&mut self, snapshot: &Snapshot, history: &History) -> Result<RgbImage> {
+        let scene = self.prepare(snapshot, history);
+        self.begin(&scene);
+        let wires = self.collect(scene)?;
         let start = Instant::now();
-        let colours = self.scale.particles(&self.info, snapshot);
-        let data = Data {
+        let picture = self.sheet.finish(wires, snapshot, history);
+        self.timings.overlay += start.elapsed();
+        Ok(picture)
+    }
+
+    /// What draws over the wires, on any thread.
+    pub(super) fn sheet(&self) -> Arc<Sheet> {
+        self.sheet.clone()
+    }
+
+    /// Makes one frame of the snapshot that a history was told last ready to be drawn.
+    pub(super) fn prepare(&mut self, snapshot: &Snapshot, history: &History) -> Scene {
+        let start = Instant::now();
+        let scene = self.sheet.scene(snapshot, history);
+        self.timings.draw += start.elapsed();
+        scene
+    }
+
+    /// Has the adapter draw a scene; the one before must have been collected.
+    pub(super) fn begin(&mut self, scene: &Scene) {
+        let start = Instant::now();
+        if let Some(Solid { painter, area }) = &self.solid {
+            painter.draw([area.x, area.y], &self.sheet.style, &scene.segments, &scene.drawings);
+        }
+        self.timings.draw += start.elapsed();
+    }
+
+    /// Waits for the scene that was begun last.
+    ///
+    /// # Errors
+    /// When the adapter is lost.
+    pub(super) fn collect(&mut self, scene: Scene) -> Result<Wires> {
+        let [w, h] = self.sheet.look.frame_size;
+        let mut picture = RgbImage::from_pixel(w, h, Pixel(self.sheet.style.page));
+        let start = Instant::now();
+        let mut drawn = start;
+        if let Some(solid) = &self.solid {
+            drawn = solid.read_into(&mut picture, &scene.shots)?;
+        }
+        self.timings.draw += drawn - start;
+        self.timings.read_back += drawn.elapsed();
+        self.timings.frames += 1;
+        Ok(Wires { scene, picture })
+    }
+}
+
+impl Sheet {
+    fn data<'a>(&'a self, snapshot: &'a Snapshot, history: &'a History, colours: &'a [Rgb], focus: Focus) -> Data<'a> {
+        Data {
             info: &self.info,
             body: &self.body,
             snapshot,
@@ -105,41 +178,59 @@ impl Renderer {
             measured: &history.measured,
             ruptures: &history.ruptures,
             scale: &self.scale,
-            colours: &colours,
+            colours,
             style: &self.style,
             camera: &self.look.camera,
-            focus: history.focus(&self.info, &self.body),
-        };
-        let [w, h] = self.look.frame_size;
-        let mut picture = RgbImage::from_pixel(w, h, Pixel(self.style.page));
-        let unit = self.layout.unit;
-        let panels = self.layout.panels.iter();
-        let shots: Vec<_> = panels.flat_map(|(view, area)| of(*view).panel.shots(&data, *area, unit)).collect();
-        if let Some(solid) = &self.solid {
-            solid.draw(&data, &shots)?;
-            self.timings.draw += start.elapsed();
-            let start = Instant::now();
-            solid.read_into(&mut picture, &shots)?;
-            self.timings.read_back += start.elapsed();
+            focus,
         }
-        let start = Instant::now();
-        let mut canvas = Canvas { image: picture, fonts: &self.fonts, unit };
-        overlay(&mut canvas, &data, &self.layout, &shots);
-        self.timings.overlay += start.elapsed();
-        self.timings.frames += 1;
-        Ok(canvas.image)
     }
+
+    fn scene(&self, snapshot: &Snapshot, history: &History) -> Scene {
+        let colours = self.scale.particles(&self.info, snapshot);
+        let focus = history.focus(&self.info, &self.body);
+        let data = self.data(snapshot, history, &colours, focus);
+        let panels = self.layout.panels.iter();
+        let shots: Vec<Shot> =
+            panels.flat_map(|(view, area)| of(*view).panel.shots(&data, *area, self.layout.unit)).collect();
+        let (segments, drawings) = wires_of(&data, &shots);
+        Scene { focus, shots, segments, drawings, colours }
+    }
+
+    /// Draws charts and text over the wires.
+    pub(super) fn finish(&self, wires: Wires, snapshot: &Snapshot, history: &History) -> RgbImage {
+        let Wires { scene, picture } = wires;
+        let data = self.data(snapshot, history, &scene.colours, scene.focus);
+        let mut canvas = Canvas { image: picture, fonts: &self.fonts, unit: self.layout.unit };
+        overlay(&mut canvas, &data, &self.layout, &scene.shots);
+        canvas.image
+    }
+}
+
+/// The segments of all shots and how they are drawn.
+fn wires_of(data: &Data, shots: &[Shot]) -> (Vec<Segment>, Vec<Drawing>) {
+    let whole = LazyCell::new(|| {
+        let position = data.snapshot.position.clone();
+        Looks::new(data.info, data.snapshot, position, data.colours, data.body.shade(), Vec::new())
+    });
+    let spacing = 2.0 * data.info.radius.first().copied().unwrap_or(1e-3);
+    let (mut all, mut drawings) = (Vec::new(), Vec::new());
+    let mut own: Option<(View, Option<Looks>)> = None;
+    for shot in shots {
+        if own.as_ref().is_none_or(|(view, _)| *view != shot.view) {
+            own = Some((shot.view, of(shot.view).panel.looks(data, &shot.camera)));
+        }
+        let looks = own.as_ref().and_then(|(_, looks)| looks.as_ref()).unwrap_or_else(|| &whole);
+        let stride = wires::stride(spacing * shot.camera.scale);
+        let sees = |a, b| shot.camera.sees(a, b);
+        let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer, sees);
+        drawings.push(Drawing::new(shot.camera, shot.fade, &segments, &mut all));
+    }
+    (all, drawings)
 }
 
 /// The row of a view in the table.
 fn of(view: View) -> &'static Entry {
     PANELS.iter().find(|entry| entry.view == view).expect("every view has its row")
-}
-
-/// Bonds that make up about eight pixels.
-fn stride(data: &Data, camera: &super::camera::Camera) -> usize {
-    let spacing = 2.0 * data.info.radius.first().copied().unwrap_or(1e-3);
-    (8.0 / (spacing * camera.scale)).clamp(1.0, 8.0) as usize
 }
 
 impl Solid {
@@ -151,33 +242,14 @@ impl Solid {
         Ok(Some(Self { painter: Painter::open([area.w as u32, area.h as u32])?, area }))
     }
 
-    fn draw(&self, data: &Data, shots: &[Shot]) -> Result<()> {
-        let position = data.snapshot.position.clone();
-        let whole = Looks::new(data.info, data.snapshot, position, data.colours, data.body.shade(), Vec::new());
-        let mut all: Vec<Segment> = Vec::new();
-        let mut drawings = Vec::new();
-        let mut own: Option<(View, Option<Looks>)> = None;
-        for shot in shots {
-            let start = all.len() as u32;
-            if own.as_ref().is_none_or(|(view, _)| *view != shot.view) {
-                own = Some((shot.view, of(shot.view).panel.looks(data, &shot.camera)));
-            }
-            let looks = own.as_ref().and_then(|(_, looks)| looks.as_ref()).unwrap_or(&whole);
-            let stride = stride(data, &shot.camera);
-            let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer);
-            all.extend(segments.into_iter().filter(|s| shot.camera.sees(s.a, s.b)));
-            drawings.push(Drawing { camera: shot.camera, instances: start..all.len() as u32, fade: shot.fade });
-        }
-        let segments = self.painter.upload(&all);
-        self.painter.draw([self.area.x, self.area.y], data.style, &segments, &drawings)
-    }
-
-    /// Copies the panels, and nothing between them, into the picture.
-    fn read_into(&self, picture: &mut RgbImage, shots: &[Shot]) -> Result<()> {
+    /// Waits for the adapter and copies the panels, and nothing between them, into the picture; returns when it was drawn.
+    fn read_into(&self, picture: &mut RgbImage, shots: &[Shot]) -> Result<Instant> {
+        let mut drawn = None;
         let (left, top) = (self.area.x as usize, self.area.y as usize);
         let width = picture.width() as usize;
         let bytes: &mut [u8] = picture;
         self.painter.read(|y, row| {
+            drawn.get_or_insert_with(Instant::now);
             let y = top + y as usize;
             let crosses = |p: &Rect| (p.y as usize..p.bottom() as usize).contains(&y);
             for panel in shots.iter().map(|s| s.camera.panel).filter(crosses) {
@@ -188,7 +260,8 @@ impl Solid {
                     to.copy_from_slice(&from[..3]);
                 }
             }
-        })
+        })?;
+        Ok(drawn.unwrap_or_else(Instant::now))
     }
 }
 

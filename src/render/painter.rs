@@ -5,8 +5,10 @@ use super::camera::Camera;
 use super::canvas::Rect;
 use super::style::Style;
 use super::target::{COLOUR, DEPTH, SAMPLES, Target};
-use super::wires::Segment;
+use super::wires::{JOINT, Segment};
 use crate::base::error::{Error, Result};
+use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
 use std::ops::Range;
 use wgpu::util::DeviceExt;
 
@@ -26,21 +28,91 @@ struct ViewUniform {
     cut: [f32; 4],
 }
 
-/// Segments `instances` of the list, seen through a camera into its panel.
+/// Segments of a list, seen through a camera into its panel.
 pub struct Drawing {
-    /// The camera; its panel is in pixels of the frame.
-    pub camera: Camera,
-    /// Which segments.
-    pub instances: Range<u32>,
-    /// Depth over which things darken (m).
-    pub fade: f32,
+    camera: Camera,
+    /// Which segments, by [`Shape`].
+    segments: [Range<u32>; SHAPES],
+    /// Facets of a roof and of a tube.
+    facets: [u32; 2],
+    fade: f32,
+}
+
+/// What a segment is drawn as: see `wires.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shape {
+    /// A piece of wire that goes on at both ends.
+    Roof,
+    /// The same, where it points to the eye or turns.
+    Tube,
+    /// An end, a neck, a sphere.
+    Capsule,
+}
+
+const SHAPES: usize = 3;
+/// Component of a wire's direction along the line of sight up to which it is a roof (-).
+const STEEP: f32 = 0.85;
+/// By how much a roof may turn in the picture, and a tube in space: cosines (-).
+const TURN: [f32; 2] = [0.95, 0.5];
+/// Radius up to which a roof is flat (px): by how much wires press into one another is too little to be seen.
+const FLAT: f32 = 2.5;
+/// Fewest and most facets of a tube.
+const FACETS: std::ops::RangeInclusive<u32> = 8..=40;
+
+impl Drawing {
+    /// Adds those of `segments` that `camera` sees to the list `all`; its panel is in pixels of the frame. Things darken over
+    /// the depth `fade` (m).
+    pub fn new(camera: Camera, fade: f32, segments: &[Segment], all: &mut Vec<Segment>) -> Self {
+        let towards_eye = camera.to_eye();
+        let mut seen: [Vec<(f32, u32)>; SHAPES] = Default::default();
+        let mut widest = [0f32; SHAPES];
+        for (number, segment) in segments.iter().enumerate().filter(|(_, s)| camera.sees(s.a, s.b)) {
+            let shape = Shape::of(segment, &camera);
+            widest[shape as usize] = widest[shape as usize].max(segment.a[3]);
+            seen[shape as usize].push((towards_eye.dot(xyz(segment.a) + xyz(segment.b)), number as u32));
+        }
+        let ranges = seen.map(|mut seen| {
+            // From the eye into the depth: what is hidden is then not shaded.
+            seen.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            let start = all.len() as u32;
+            all.extend(seen.iter().map(|(_, number)| segments[*number as usize]));
+            start..all.len() as u32
+        });
+        let [roof, tube, _] = widest.map(|radius| radius * camera.scale);
+        // The outline of a tube is off by a tenth of a pixel at most: by the radius times (π / facets)² / 2.
+        let of_tube = (PI * (5.0 * tube).sqrt()).ceil() as u32;
+        let facets = [if roof < FLAT { 1 } else { 2 }, of_tube.clamp(*FACETS.start(), *FACETS.end())];
+        Self { camera, segments: ranges, facets, fade }
+    }
+}
+
+impl Shape {
+    fn of(segment: &Segment, camera: &Camera) -> Self {
+        if segment.tangent_a[3] != JOINT || segment.tangent_b[3] != JOINT {
+            return Self::Capsule;
+        }
+        let [a, b] = [segment.tangent_a, segment.tangent_b].map(|t| camera.rotation * xyz(t));
+        let turn = |a: Vec2, b: Vec2| a.dot(b) / (a.length_squared() * b.length_squared()).sqrt();
+        if a.z.abs().max(b.z.abs()) < STEEP && turn(a.truncate(), b.truncate()) > TURN[0] {
+            Self::Roof
+        } else if a.dot(b) > TURN[1] {
+            Self::Tube
+        } else {
+            Self::Capsule
+        }
+    }
+}
+
+fn xyz([x, y, z, _]: [f32; 4]) -> Vec3 {
+    Vec3::new(x, y, z)
 }
 
 /// The adapter, ready to draw wires into memory: what frames and the explorer share. Its functions fail when the
 /// adapter is lost or cannot draw the size that is asked for.
 pub struct Painter {
     gpu: Gpu,
-    pipeline: wgpu::RenderPipeline,
+    /// By [`Shape`]; the last one is for thin roofs.
+    pipelines: [wgpu::RenderPipeline; SHAPES + 1],
     layout: wgpu::BindGroupLayout,
     target: Target,
 }
@@ -54,11 +126,11 @@ impl Painter {
         // Two scopes, because what a backend cannot translate is reported as an internal error, not a validation one.
         let internal = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let (pipeline, layout) = compile(&gpu);
+        let (layout, pipelines) = compile(&gpu);
         let errors = [pollster::block_on(validation.pop()), pollster::block_on(internal.pop())];
         match errors.into_iter().flatten().next() {
             Some(e) => Err(failure(format!("the graphics adapter {} refused a shader: {e}", gpu.name))),
-            None => Ok(Self { gpu, pipeline, layout, target }),
+            None => Ok(Self { gpu, pipelines, layout, target }),
         }
     }
 
@@ -77,8 +149,7 @@ impl Painter {
         Ok(())
     }
 
-    /// Copies segments to the adapter, to be drawn any number of times.
-    pub fn upload(&self, segments: &[Segment]) -> wgpu::Buffer {
+    fn upload(&self, segments: &[Segment]) -> wgpu::Buffer {
         self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("segments"),
             contents: bytemuck::cast_slice(segments),
@@ -86,26 +157,35 @@ impl Painter {
         })
     }
 
-    /// Draws into a picture whose top left corner is pixel `origin` of the panels.
-    pub fn draw(&self, origin: [f32; 2], style: &Style, segments: &wgpu::Buffer, drawings: &[Drawing]) -> Result<()> {
+    /// Begins to draw a picture whose top left corner is pixel `origin` of the panels; it is there when it is read.
+    pub fn draw(&self, origin: [f32; 2], style: &Style, segments: &[Segment], drawings: &[Drawing]) {
+        let segments = self.upload(segments);
         let views: Vec<_> = drawings.iter().map(|d| self.bind(d, style)).collect();
         self.target.draw(&self.gpu, super::colour::linear4(style.panel), |pass| {
-            pass.set_pipeline(&self.pipeline);
-            for (drawing, view) in drawings.iter().zip(&views).filter(|(d, _)| !d.instances.is_empty()) {
+            for (drawing, view) in drawings.iter().zip(&views) {
                 let Rect { x, y, w, h } = drawing.camera.panel;
                 let (x, y) = (x - origin[0], y - origin[1]);
                 pass.set_viewport(x, y, w, h, 0.0, 1.0);
                 pass.set_scissor_rect(x as u32, y as u32, w as u32, h as u32);
                 pass.set_bind_group(0, view, &[]);
                 pass.set_vertex_buffer(0, segments.slice(..));
-                pass.draw(0..4, drawing.instances.clone());
+                let [roof, tube] = drawing.facets.map(|facets| 2 * (facets + 1));
+                let corners = [roof, tube, 4];
+                let [thick, tubes, capsules, thin] = &self.pipelines;
+                let pipelines = [if drawing.facets[0] == 1 { thin } else { thick }, tubes, capsules];
+                for ((pipeline, corners), which) in pipelines.into_iter().zip(corners).zip(&drawing.segments) {
+                    if !which.is_empty() {
+                        pass.set_pipeline(pipeline);
+                        pass.draw(0..corners, which.clone());
+                    }
+                }
             }
             // On the GL backend the last scissor also cuts what is resolved when the pass ends.
             pass.set_scissor_rect(0, 0, self.target.size[0], self.target.size[1]);
-        })
+        });
     }
 
-    /// Hands the rows of the picture, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
+    /// Waits for the picture that was drawn last and hands its rows, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
     pub fn read(&self, row: impl FnMut(u32, &[u8])) -> Result<()> {
         self.target.read(&self.gpu, row)
     }
@@ -125,7 +205,7 @@ impl Painter {
                 1.0 / camera.scale,
             ],
             rim: [r, g, b, style.edge],
-            fade: [0.0, drawing.fade, 0.0, 0.0],
+            fade: [drawing.facets[1] as f32, drawing.fade, drawing.facets[0] as f32, STEEP],
             signal: super::colour::signal4(),
             cut: super::colour::linear4(style.cut),
         };
@@ -151,7 +231,7 @@ fn check(gpu: &Gpu, [w, h]: [u32; 2]) -> Result<()> {
     Ok(())
 }
 
-fn compile(gpu: &Gpu) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
+fn compile(gpu: &Gpu) -> (wgpu::BindGroupLayout, [wgpu::RenderPipeline; SHAPES + 1]) {
     let device = &gpu.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("wires"),
@@ -172,44 +252,51 @@ fn compile(gpu: &Gpu) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
     });
     let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4,
         4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4];
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("wires"),
-        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        })),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vs"),
-            compilation_options: Default::default(),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Segment>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &attributes,
-            })],
-        },
-        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Less),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(if gpu.samples_shaded { "fs_sampled" } else { "fs_whole" }),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: COLOUR,
-                blend: None,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
-    (pipeline, layout)
+    let of_capsules = if gpu.samples_shaded { "fs_sampled" } else { "fs_whole" };
+    let pipelines = [["vs_roof", "fs_roof"], ["vs_tube", "fs_tube"], ["vs", of_capsules], ["vs_roof", "fs_thin_roof"]]
+        .map(|[vertex, fragment]| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("wires"),
+                layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: None,
+                    bind_group_layouts: &[Some(&layout)],
+                    immediate_size: 0,
+                })),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some(vertex),
+                    compilation_options: Default::default(),
+                    buffers: &[Some(wgpu::VertexBufferLayout {
+                        array_stride: size_of::<Segment>() as u64,
+                        step_mode: wgpu::VertexStepMode::Instance,
+                        attributes: &attributes,
+                    })],
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology: wgpu::PrimitiveTopology::TriangleStrip,
+                    ..Default::default()
+                },
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Less),
+                    stencil: Default::default(),
+                    bias: Default::default(),
+                }),
+                multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(fragment),
+                    compilation_options: Default::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format: COLOUR,
+                        blend: None,
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        });
+    (layout, pipelines)
 }

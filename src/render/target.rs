@@ -53,8 +53,8 @@ impl Target {
         Self { size, resolved, samples, depth, staging, row_bytes }
     }
 
-    /// Clears to `background` (linear RGB), lets `draw` record, and waits until it is drawn.
-    pub fn draw(&self, gpu: &Gpu, background: [f32; 4], draw: impl FnOnce(&mut wgpu::RenderPass)) -> Result<()> {
+    /// Clears to `background` (linear RGB), lets `draw` record, and has it drawn and copied back, without waiting for it.
+    pub fn draw(&self, gpu: &Gpu, background: [f32; 4], draw: impl FnOnce(&mut wgpu::RenderPass)) {
         let [r, g, b, a] = background.map(f64::from);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
@@ -79,13 +79,6 @@ impl Target {
             });
             draw(&mut pass);
         }
-        gpu.queue.submit([encoder.finish()]);
-        wait(gpu)
-    }
-
-    /// Copies the picture back and hands its rows, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
-    pub fn read(&self, gpu: &Gpu, mut row: impl FnMut(u32, &[u8])) -> Result<()> {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_texture_to_buffer(
             self.resolved.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
@@ -99,6 +92,10 @@ impl Target {
             self.resolved.size(),
         );
         gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Waits for the picture that was drawn last and hands its rows, top first, as RGBA bytes (sRGB) to `row(y, bytes)`.
+    pub fn read(&self, gpu: &Gpu, mut row: impl FnMut(u32, &[u8])) -> Result<()> {
         // A failed mapping shows as an error of `get_mapped_range` below.
         self.staging.slice(..).map_async(wgpu::MapMode::Read, |_| ());
         wait(gpu)?;

@@ -1,7 +1,7 @@
 //! Wires as a list of capsules, one per holding bond, for the shader `wires.wgsl`.
 
 use super::colour::{desaturated, linear4, signal4};
-use super::occlusion::occlusion;
+use super::occlusion::Occlusion;
 use super::style::Rgb;
 use crate::engine::view::{RunInfo, Snapshot, WireInfo};
 use glam::Vec3;
@@ -23,7 +23,7 @@ pub struct Segment {
     pub colour_a: [f32; 4],
     /// Linear colour at `b`.
     pub colour_b: [f32; 4],
-    /// Occlusion at `a`, see [`super::occlusion::occlusion`].
+    /// Occlusion at `a`, see [`Occlusion`].
     pub occlusion_a: [f32; 4],
     /// Occlusion at `b`.
     pub occlusion_b: [f32; 4],
@@ -44,18 +44,27 @@ pub const BROKEN: f32 = 4.0;
 /// ductile copper necks before it parts. The particle itself is a sphere, so the tip stays inside what collides.
 const TIP: [f32; 2] = [0.8, 0.55];
 
+/// Steps of the 8 bits of a colour that a longer segment may lack.
+const SHADES: i32 = 3;
+
+/// Most bonds that a segment may stand for, where particles lie `spacing` pixels apart: it is about sixteen pixels long.
+pub fn stride(spacing: f32) -> usize {
+    (16.0 / spacing).clamp(1.0, 16.0) as usize
+}
+
 /// What is drawn of a snapshot, per particle.
 pub struct Looks {
     /// Centres (m): those of the snapshot, or moved apart.
-    pub position: Vec<[f32; 3]>,
+    position: Vec<[f32; 3]>,
+    /// Direction of the wire: the mean of the bonds that hold a particle, or z where none does.
+    tangent: Vec<Vec3>,
     /// Colours, sRGB.
-    pub colour: Vec<Rgb>,
-    /// Occlusion.
-    pub occlusion: Vec<[f32; 4]>,
+    colour: Vec<Rgb>,
+    occlusion: Occlusion,
     /// Shade per wire (-): 1 outside, less further in, so that what lies below a gap reads as deeper.
-    pub shade: Vec<f32>,
+    shade: Vec<f32>,
     /// Particles that are left out, so that what lies behind them is seen; empty when none is.
-    pub removed: Vec<bool>,
+    removed: Vec<bool>,
 }
 
 impl Looks {
@@ -68,8 +77,20 @@ impl Looks {
         shade: Vec<f32>,
         removed: Vec<bool>,
     ) -> Self {
-        let occlusion = occlusion(info, &position, &snapshot.radius, &removed);
-        Self { position, colour: colours.to_vec(), occlusion, shade, removed }
+        let occlusion = Occlusion::new(info, &position, &snapshot.radius, &removed);
+        let tangent = tangents(info, snapshot, &position);
+        Self { position, tangent, colour: colours.to_vec(), occlusion, shade, removed }
+    }
+
+    /// The same in other colours.
+    pub fn with_colours(self, colour: Vec<Rgb>) -> Self {
+        Self { colour, ..self }
+    }
+
+    /// The same with an occlusion that was found before.
+    #[cfg(feature = "explore")]
+    pub fn with_occlusion(self, occlusion: Occlusion) -> Self {
+        Self { occlusion, ..self }
     }
 
     /// Whether particle `i` is shown.
@@ -78,23 +99,42 @@ impl Looks {
     }
 }
 
-/// The segments of every wire and sphere. Where a wire is straight, up to `stride` bonds share a segment: small
-/// pictures need no more. Of one layer alone where `layer` names it.
+/// Mean direction of the bonds that hold each particle; along z for a lone one.
+fn tangents(info: &RunInfo, snapshot: &Snapshot, position: &[[f32; 3]]) -> Vec<Vec3> {
+    let mut all = vec![Vec3::Z; position.len()];
+    for wire in &info.wires {
+        let mut before = Vec3::ZERO;
+        for i in wire.particles() {
+            let holds = i + 1 < wire.particles().end && snapshot.bond_state[i].holds();
+            let along = || Vec3::from(position[i + 1]) - Vec3::from(position[i]);
+            let after = if holds { along().normalize_or_zero() } else { Vec3::ZERO };
+            all[i] = (before + after).try_normalize().unwrap_or(Vec3::Z);
+            before = after;
+        }
+    }
+    all
+}
+
+/// The segments of every wire and sphere. Where a wire is straight and its colour changes evenly, up to `stride` bonds share a
+/// segment: small pictures need no more. Of one layer alone where `layer` names it, and of what a camera `sees` between two spheres.
 pub fn segments(
     info: &RunInfo,
     snapshot: &Snapshot,
     looks: &Looks,
     stride: usize,
     layer: Option<usize>,
+    sees: impl Fn([f32; 4], [f32; 4]) -> bool,
 ) -> Vec<Segment> {
-    let mut all = Vec::with_capacity(snapshot.position.len());
+    let mut all = Vec::new();
     let shown = |wire: &WireInfo| layer.is_none_or(|layer| layer == wire.layer);
     for (wire, shade) in info.wires.iter().zip(&looks.shade).filter(|(wire, _)| shown(wire)) {
         let chain = Chain { info, snapshot, looks, wire, shade: *shade };
-        chain.segments(stride, &mut all);
+        chain.segments(stride, &sees, &mut all);
     }
     let spheres = (info.wire_particles..snapshot.position.len()).filter(|i| layer.is_none() && looks.shows(*i));
-    all.extend(spheres.map(|i| sphere(snapshot, looks, i)));
+    let point = |i: usize| Vec3::from(looks.position[i]).extend(snapshot.radius[i]).to_array();
+    let spheres = spheres.filter(|i| sees(point(*i), point(*i)));
+    all.extend(spheres.map(|i| sphere(point(i), looks, i)));
     all
 }
 
@@ -107,23 +147,27 @@ struct Chain<'a> {
 }
 
 impl Chain<'_> {
-    fn segments(&self, stride: usize, all: &mut Vec<Segment>) {
+    fn segments(&self, stride: usize, sees: &impl Fn([f32; 4], [f32; 4]) -> bool, all: &mut Vec<Segment>) {
         let last = self.wire.first + self.wire.len.saturating_sub(1);
         let mut i = self.wire.first;
         while i < last {
             let mut j = i + 1;
             if self.drawn(i) {
-                while j < last && j - i < stride && self.drawn(j) && self.straight(i, j + 1) {
+                while j < last && j - i < stride && self.drawn(j) && self.straight(i, j + 1) && self.fades(i, j + 1) {
                     j += 1;
                 }
-                let segment = self.between(i, j);
-                all.push(segment);
-                all.extend(tips(&segment, self.looks.occlusion[i], self.looks.occlusion[j]));
+                // The tips reach no further than the spheres.
+                if sees(self.point(i), self.point(j)) {
+                    let segment = self.between(i, j);
+                    all.push(segment);
+                    all.extend(tips(&segment));
+                }
             }
             i = j;
         }
         for i in self.wire.particles() {
-            if self.looks.shows(i) && !self.holds_before(i) && !self.holds_after(i) {
+            let alone = self.looks.shows(i) && !self.holds_before(i) && !self.holds_after(i);
+            if alone && sees(self.point(i), self.point(i)) {
                 all.push(self.lone(i));
             }
         }
@@ -143,6 +187,18 @@ impl Chain<'_> {
         self.tangent(i).dot(self.tangent(j)) > 0.999
     }
 
+    /// Whether colours between two particles are what lies between theirs.
+    fn fades(&self, i: usize, j: usize) -> bool {
+        let colour = |k: usize| self.looks.colour[k].map(i32::from);
+        let [from, to] = [i, j].map(colour);
+        let length = (j - i) as i32;
+        (i + 1..j).all(|k| {
+            let (between, at) = (colour(k), (k - i) as i32);
+            let off = |c: usize| (length * (between[c] - from[c]) - at * (to[c] - from[c])).abs();
+            self.info.in_grip(k) == self.info.in_grip(i) && (0..3).all(|c| off(c) <= SHADES * length)
+        }) && self.info.in_grip(i) == self.info.in_grip(j)
+    }
+
     fn holds_before(&self, i: usize) -> bool {
         i > self.wire.first && self.holds(i - 1)
     }
@@ -151,16 +207,8 @@ impl Chain<'_> {
         i + 1 < self.wire.first + self.wire.len && self.holds(i)
     }
 
-    fn position(&self, i: usize) -> Vec3 {
-        Vec3::from(self.looks.position[i])
-    }
-
-    /// Mean direction of the bonds that hold particle `i`; along z for a lone one.
     fn tangent(&self, i: usize) -> Vec3 {
-        let from = if self.holds_before(i) { i - 1 } else { i };
-        let to = if self.holds_after(i) { i + 1 } else { i };
-        let one = |a: usize, b: usize| (self.position(b) - self.position(a)).normalize_or_zero();
-        (one(from, i) + one(i, to)).try_normalize().unwrap_or(Vec3::Z)
+        self.looks.tangent[i]
     }
 
     /// Kind of the end that a segment has at `i`; `outside` is the bond on its other side there, if there is one.
@@ -184,8 +232,8 @@ impl Chain<'_> {
             tangent_b: self.tangent(j).extend(kind_b).to_array(),
             colour_a: self.colour(i),
             colour_b: self.colour(j),
-            occlusion_a: self.looks.occlusion[i],
-            occlusion_b: self.looks.occlusion[j],
+            occlusion_a: self.looks.occlusion.at(i),
+            occlusion_b: self.looks.occlusion.at(j),
         }
     }
 
@@ -194,12 +242,12 @@ impl Chain<'_> {
         let tangent = self.tangent(i).extend(END).to_array();
         let broken = self.wire.len > 1;
         let colour = if broken { signal4() } else { self.colour(i) };
-        alone(self.point(i), tangent, colour, self.looks.occlusion[i])
+        alone(self.point(i), tangent, colour, self.looks.occlusion.at(i))
     }
 
     /// Centre and radius (m).
     fn point(&self, i: usize) -> [f32; 4] {
-        self.position(i).extend(self.snapshot.radius[i]).to_array()
+        Vec3::from(self.looks.position[i]).extend(self.snapshot.radius[i]).to_array()
     }
 
     fn colour(&self, i: usize) -> [f32; 4] {
@@ -211,7 +259,7 @@ impl Chain<'_> {
 }
 
 /// The necked tips of a segment's broken ends, each a short cone with a flat face.
-fn tips(segment: &Segment, at_a: [f32; 4], at_b: [f32; 4]) -> impl Iterator<Item = Segment> {
+fn tips(segment: &Segment) -> impl Iterator<Item = Segment> {
     let [a, b] = [segment.a, segment.b].map(|p| Vec3::new(p[0], p[1], p[2]));
     let along = (b - a).normalize_or_zero();
     let tip = |root: [f32; 4], out: Vec3, occlusion| {
@@ -228,14 +276,13 @@ fn tips(segment: &Segment, at_a: [f32; 4], at_b: [f32; 4]) -> impl Iterator<Item
             occlusion_b: occlusion,
         }
     };
-    let before = (segment.tangent_a[3] == NECK).then(|| tip(segment.a, -along, at_a));
-    let after = (segment.tangent_b[3] == NECK).then(|| tip(segment.b, along, at_b));
+    let before = (segment.tangent_a[3] == NECK).then(|| tip(segment.a, -along, segment.occlusion_a));
+    let after = (segment.tangent_b[3] == NECK).then(|| tip(segment.b, along, segment.occlusion_b));
     before.into_iter().chain(after)
 }
 
-fn sphere(snapshot: &Snapshot, looks: &Looks, i: usize) -> Segment {
-    let point = Vec3::from(looks.position[i]).extend(snapshot.radius[i]).to_array();
-    alone(point, Vec3::Z.extend(END).to_array(), linear4(looks.colour[i]), looks.occlusion[i])
+fn sphere(point: [f32; 4], looks: &Looks, i: usize) -> Segment {
+    alone(point, Vec3::Z.extend(END).to_array(), linear4(looks.colour[i]), looks.occlusion.at(i))
 }
 
 fn alone(point: [f32; 4], tangent: [f32; 4], colour: [f32; 4], occlusion: [f32; 4]) -> Segment {

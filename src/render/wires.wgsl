@@ -1,11 +1,15 @@
-// Wires as capsules: one quad per bond, the surface found per pixel (orthographic rays along -z of the view).
+// Wires, seen along -z of the view. Most of a wire is drawn as roofs: two quads from the sides of its outline to the line
+// nearest to the eye, shaded once per pixel with the normal of the round wire. Roofs decide what hides what as round wires
+// do, also where wires press a little into one another. Where a wire points to the eye it is drawn as a tube of facets; ends,
+// necks and spheres are capsules: one quad, the surface found per sample.
 
 struct View {
   rotation: mat3x3<f32>,
   centre: vec4<f32>,   // xyz [m]
   scale: vec4<f32>,    // x, y: view m -> clip; z: half depth [m]; w: size of a pixel [m]
   rim: vec4<f32>,      // rgb: light added along silhouettes; w: darkening along silhouettes
-  fade: vec4<f32>,     // x: depth of the axis in view [m], y: radius over which depth darkens [m]
+  fade: vec4<f32>,     // x: facets of a tube, z: of a roof (1: it is flat) [-],
+                       // w: how steep a wire is that has no roof, y: radius over which depth darkens [m]
   signal: vec4<f32>,   // colour of broken ends, linear
   cut: vec4<f32>,      // colour of faces where a wire was cut to show what lies behind, linear
 };
@@ -14,7 +18,7 @@ struct View {
 struct Segment {
   @location(0) a: vec4<f32>,   // first centre, radius [m]
   @location(1) b: vec4<f32>,   // second centre, radius [m]
-  @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 round end, 2 flat, 3 neck, 4 broken face
+  @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 round end, 2 flat, 3 neck, 4 broken face, 5 tube
   @location(3) tb: vec4<f32>,
   @location(4) ca: vec4<f32>,  // linear colour at a; w: shade of wires inside the strand
   @location(5) cb: vec4<f32>,
@@ -171,6 +175,47 @@ fn intersect(p: vec2<f32>, in: Varying) -> Hit {
 
 fn square(x: f32) -> f32 { return x * x; }
 
+// A point of a surface, ready to be lit.
+struct Point {
+  z: f32,              // towards the eye [m]
+  normal: vec3<f32>,
+  tangent: vec3<f32>,  // of the wire
+  base: vec3<f32>,     // linear colour
+  shade: f32,          // of wires inside the strand
+  occlusion: vec4<f32>,
+  flat_end: bool,
+  kept: f32,           // how much of its colour it keeps in the shade
+};
+
+fn lit(point: Point, pixel: vec2<f32>) -> vec4<f32> {
+  let n = point.normal;
+  let o = point.occlusion;
+  // Neighbours on both sides cancel in the sum of directions; what is left of the sum of weights lies to the sides.
+  let sides = max(o.w - length(o.xyz), 0.0);
+  let lateral = cross(point.tangent, o.xyz);
+  let towards_side = dot(n, lateral) * dot(n, lateral) / max(dot(lateral, lateral), 1e-9);
+  let hidden = 0.26 * o.w + 0.5 * dot(o.xyz, n) + 0.55 * sides * towards_side;
+  let open = clamp(1.0 - 0.8 * hidden, 0.12, 1.0);
+  // Deeper parts are a little darker, so that layers read in depth.
+  let deep = clamp(0.2 + 0.8 * point.z / view.fade.y, 0.0, 1.0);
+  let light = normalize(vec3<f32>(-0.35, 0.62, 0.70));
+  let diffuse = max(dot(n, light), 0.0);
+  let sky = 0.29 + 0.14 * n.y + 0.11 * n.z;
+  // Drawn metal: a narrow streak on a broad sheen, both along the wire. Powers by squaring: 8 and 64.
+  let half = max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0);
+  let sheen = square(square(square(half)));
+  let streak = square(square(square(sheen)));
+  let rim = 1.0 - clamp(n.z, 0.0, 1.0);
+  let slant = rim * rim * rim;
+  let base = point.base;
+  var colour = base * (sky * open + 0.58 * diffuse * mix(0.45, 1.0, open)) * mix(0.62, 1.0, deep) * point.shade;
+  colour += (base * 0.10 * sheen + (0.05 + 0.28 * base) * streak) * open * select(1.0, 0.25, point.flat_end);
+  let edged = select(slant, 0.0, point.flat_end);
+  colour = colour * (1.0 - view.rim.w * edged) + view.rim.rgb * (0.35 + 3.0 * base) * edged * open * open;
+  colour = mix(colour, max(colour, base * 0.5), point.kept);
+  return vec4<f32>(dithered(colour, pixel), 1.0);
+}
+
 struct Lit { colour: vec4<f32>, depth: f32, };
 
 // Colour of a flat end; that of a break is a little darker than its flanks, so that the two are told apart.
@@ -211,36 +256,20 @@ fn shade(p: vec2<f32>, in: Varying, pixel: vec2<f32>) -> Lit {
   base = mix(mix(base, vec3<f32>(0.85), light_collar), vec3<f32>(0.01), dark_collar);
   if (face) { base = face_colour(select(in.tb.w, in.ta.w, hit.face < 0.0)); }
 
-  let o = mix(in.oa, in.ob, s);
-  // Neighbours on both sides cancel in the sum of directions; what is left of the sum of weights lies to the sides.
-  let sides = max(o.w - length(o.xyz), 0.0);
-  let lateral = cross(tangent, o.xyz);
-  let towards_side = dot(n, lateral) * dot(n, lateral) / max(dot(lateral, lateral), 1e-9);
-  let hidden = 0.26 * o.w + 0.5 * dot(o.xyz, n) + 0.55 * sides * towards_side;
-  let open = clamp(1.0 - 0.8 * hidden, 0.12, 1.0);
-  // Deeper parts are a little darker, so that layers read in depth.
-  let deep = clamp(0.2 + 0.8 * (hit.z - view.fade.x) / view.fade.y, 0.0, 1.0);
-  let light = normalize(vec3<f32>(-0.35, 0.62, 0.70));
-  let diffuse = max(dot(n, light), 0.0);
-  let sky = 0.29 + 0.14 * n.y + 0.11 * n.z;
-  // Drawn metal: a narrow streak on a broad sheen, both along the wire. Powers by squaring: 8 and 64.
-  let half = max(dot(n, normalize(light + vec3<f32>(0.0, 0.0, 1.0))), 0.0);
-  let sheen = square(square(square(half)));
-  let streak = square(square(square(sheen)));
-  let rim = 1.0 - clamp(n.z, 0.0, 1.0);
-  let slant = rim * rim * rim;
-  var colour = base * (sky * open + 0.58 * diffuse * mix(0.45, 1.0, open)) * mix(0.62, 1.0, deep) * mix(in.ca.w, in.cb.w, s);
-  colour += (base * 0.10 * sheen + (0.05 + 0.28 * base) * streak) * open * select(1.0, 0.25, face);
-  let edged = select(slant, 0.0, face);
-  colour = colour * (1.0 - view.rim.w * edged) + view.rim.rgb * (0.35 + 3.0 * base) * edged * open * open;
+  var point: Point;
+  point.z = hit.z;
+  point.normal = n;
+  point.tangent = tangent;
+  point.base = base;
+  point.shade = mix(in.ca.w, in.cb.w, s);
+  point.occlusion = mix(in.oa, in.ob, s);
+  point.flat_end = face;
   // Broken ends and cut faces keep their colour also in the shade.
-  colour = mix(colour, max(colour, base * 0.5), select(max(broken, light_collar), 1.0, face));
-
-  var lit: Lit;
-  lit.colour = vec4<f32>(dithered(colour, pixel), 1.0);
-  lit.depth = clamp(0.5 - 0.5 * hit.z / view.scale.z, 0.0, 1.0);
-  return lit;
+  point.kept = select(max(broken, light_collar), 1.0, face);
+  return Lit(lit(point, pixel), depth(hit.z));
 }
+
+fn depth(z: f32) -> f32 { return clamp(0.5 - 0.5 * z / view.scale.z, 0.0, 1.0); }
 
 // Half a step of the 8-bit sRGB output, in a fixed pattern of pixels, hides the bands of slow gradients. The pattern
 // is interleaved gradient noise (Jimenez 2014); the slope of sRGB in linear light x is about 2 sqrt(x).
@@ -269,6 +298,97 @@ struct Whole {
 
 fn seen(p: vec2<f32>, in: Varying) -> Whole {
   if (!covers(p, in, outline_axis(in))) { discard; }
-  let lit = shade(p, in, in.clip.xy);
-  return Whole(lit.colour, lit.depth);
+  let found = shade(p, in, in.clip.xy);
+  return Whole(found.colour, found.depth);
+}
+
+struct Side {
+  @builtin(position) clip: vec4<f32>,
+  @location(0) @interpolate(linear) normal: vec3<f32>,   // of the corners
+  @location(1) @interpolate(linear) tangent: vec4<f32>,  // w: the axis's height towards the eye [m]
+  @location(2) @interpolate(linear) colour: vec4<f32>,   // w: shade
+  @location(3) @interpolate(linear) occlusion: vec4<f32>,
+  @location(4) @interpolate(linear) radius: f32,         // [m]
+};
+
+// A direction across a wire in the plane of the picture.
+fn sideways(tangent: vec3<f32>) -> vec3<f32> {
+  return normalize(vec3<f32>(-tangent.y, tangent.x + 1e-9, 0.0));
+}
+
+// A corner of a roof or tube: one end of the segment or the other, `out` radii from the axis.
+fn corner(in: Segment, far: bool, tangent: vec3<f32>, normal: vec3<f32>, out: f32) -> Side {
+  let end = select(in.a, in.b, far);
+  let occlusion = select(in.oa, in.ob, far);
+  let axis = view.rotation * (end.xyz - view.centre.xyz);
+  let p = axis + normal * (out * end.w);
+  var o: Side;
+  o.normal = normal;
+  o.radius = end.w;
+  o.tangent = vec4<f32>(tangent, axis.z);
+  o.colour = select(in.ca, in.cb, far);
+  o.occlusion = vec4<f32>(view.rotation * occlusion.xyz, occlusion.w);
+  o.clip = vec4<f32>(p.xy * view.scale.xy, depth(p.z), 1.0);
+  return o;
+}
+
+@vertex fn vs_roof(@builtin(vertex_index) vertex: u32, in: Segment) -> Side {
+  let far = (vertex & 1u) == 1u;
+  let tangent = view.rotation * select(in.ta.xyz, in.tb.xyz, far);
+  let across = sideways(tangent);
+  let u = 2.0 * f32(vertex >> 1u) / view.fade.z - 1.0;
+  return corner(in, far, tangent, across * u + cross(tangent, across) * (1.0 - abs(u)), 1.0);
+}
+
+@vertex fn vs_tube(@builtin(vertex_index) vertex: u32, in: Segment) -> Side {
+  let far = (vertex & 1u) == 1u;
+  let tangent = view.rotation * select(in.ta.xyz, in.tb.xyz, far);
+  let angle = 6.2831853 * f32(vertex >> 1u) / view.fade.x;
+  let across = normalize(vec3<f32>(0.0, -tangent.z, tangent.y));
+  let normal = across * sin(angle) + cross(tangent, across) * cos(angle);
+  // Where a roof goes on, the half that is seen has its shape.
+  let u = abs(dot(normal, sideways(tangent)));
+  let up = dot(normal, cross(tangent, sideways(tangent)));
+  let roofed = abs(tangent.z) < view.fade.w && up > 0.0;
+  return corner(in, far, tangent, normal, select(1.0, 1.0 / (u + up), roofed));
+}
+
+fn side(in: Side, normal: vec3<f32>, tangent: vec3<f32>) -> vec4<f32> {
+  var point: Point;
+  point.z = in.tangent.w + in.radius * normal.z;
+  point.normal = normal;
+  point.tangent = tangent;
+  point.base = in.colour.rgb;
+  point.shade = in.colour.w;
+  point.occlusion = in.occlusion;
+  point.flat_end = false;
+  point.kept = 0.0;
+  return lit(point, in.clip.xy);
+}
+
+// Light of a roof as far to the side of its axis as `u` radii.
+fn roof(in: Side, tangent: vec3<f32>, across: vec3<f32>, u: f32) -> vec4<f32> {
+  // A pixel that is covered in part is lit as what it covers, a quarter of a pixel inside the outline.
+  let edge = max(1.0 - 0.25 * view.scale.w / in.radius, 0.5);
+  let v = clamp(u, -edge, edge);
+  return side(in, across * v + cross(tangent, across) * sqrt(1.0 - v * v), tangent);
+}
+
+@fragment fn fs_roof(in: Side) -> @location(0) vec4<f32> {
+  let tangent = normalize(in.tangent.xyz);
+  let across = sideways(tangent);
+  return roof(in, tangent, across, dot(in.normal, across));
+}
+
+// A wire a few pixels wide: its light changes within a pixel.
+@fragment fn fs_thin_roof(in: Side) -> @location(0) vec4<f32> {
+  let tangent = normalize(in.tangent.xyz);
+  let across = sideways(tangent);
+  let u = dot(in.normal, across);
+  let step = 0.25 * view.scale.w / in.radius;
+  return 0.5 * (roof(in, tangent, across, u - step) + roof(in, tangent, across, u + step));
+}
+
+@fragment fn fs_tube(in: Side) -> @location(0) vec4<f32> {
+  return side(in, normalize(in.normal), normalize(in.tangent.xyz));
 }

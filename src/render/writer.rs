@@ -1,7 +1,7 @@
 //! The observer that writes a numbered PNG sequence while the simulation goes on.
 
 use super::animation::{self, Still};
-use super::frame::Renderer;
+use super::frame::{Renderer, Scene, Sheet, Wires};
 use super::history::{History, Row};
 use super::{adapter, png};
 use crate::base::error::{Error, Result};
@@ -16,7 +16,7 @@ use image::RgbImage;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -28,11 +28,11 @@ const WAITING: std::ops::RangeInclusive<usize> = 4..=1024;
 const PARTICLE_BYTES: usize = 48;
 /// Time between two looks at whether the run was stopped while its last frames are drawn.
 const LOOK: Duration = Duration::from_millis(2);
-/// Pictures that may wait to be encoded. Encoding is several times faster than drawing, so few ever do.
+/// Pictures that may wait for their charts and text, or to be encoded: both are faster than drawing, so few ever do.
 const DRAWN: usize = 2;
 
-/// Writes `frame_0000.png`, `frame_0001.png` … into a folder. Draws on one thread and encodes on another, so that a
-/// frame is drawn while the one before is encoded and the simulation goes on.
+/// Writes `frame_0000.png`, `frame_0001.png` … into a folder. One thread has the adapter draw wires and makes the next frame
+/// ready meanwhile, one draws charts and text over them, and one encodes, while the simulation goes on.
 pub struct FrameWriter {
     folder: PathBuf,
     look: OutputSpec,
@@ -56,6 +56,7 @@ struct Workers {
     /// Draw no more of those that wait.
     cut: Arc<AtomicBool>,
     draw: JoinHandle<Result<Timings>>,
+    finish: JoinHandle<Timings>,
     encode: JoinHandle<Result<Timings>>,
 }
 
@@ -137,9 +138,9 @@ impl FrameWriter {
         self.timings.lock().unwrap_or_else(PoisonError::into_inner).merge(timings);
     }
 
-    /// Ends both threads, at once where `stop` is set or else when all is drawn, and returns the first error that either met.
+    /// Ends all threads, at once where `stop` is set or else when all is drawn, and returns the first error that one met.
     fn join(&mut self, stop: &AtomicBool) -> Result<()> {
-        let Some(Workers { jobs, cut, draw, encode }) = self.workers.take() else {
+        let Some(Workers { jobs, cut, draw, finish, encode }) = self.workers.take() else {
             return Ok(());
         };
         let begin = Instant::now();
@@ -148,7 +149,7 @@ impl FrameWriter {
             std::thread::sleep(LOOK);
         }
         cut.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
-        let results = [draw.join(), encode.join()];
+        let results = [draw.join(), finish.join().map(Ok), encode.join()];
         self.add(&Timings { drained: begin.elapsed(), ..Timings::default() });
         // An encoder that failed (disk full) is why the drawing stopped, so its error comes first.
         for result in results.into_iter().rev() {
@@ -185,15 +186,18 @@ impl Observer for FrameWriter {
         let renderer = Renderer::new(info, &self.look)?;
         let waiting = self.memory / (PARTICLE_BYTES * info.particles.max(1));
         let (jobs, waiting) = sync_channel(waiting.clamp(*WAITING.start(), *WAITING.end()));
-        let (pictures, drawn) = sync_channel(DRAWN);
+        let (wires, drawn) = sync_channel(DRAWN);
+        let (pictures, finished) = sync_channel(DRAWN);
+        let sheet = renderer.sheet();
         let (folder, origin) = (self.folder.clone(), self.origin);
         let cut = Arc::new(AtomicBool::new(false));
         let history = self.known.take().map_or_else(History::default, History::knowing);
         self.workers = Some(Workers {
             jobs,
             cut: cut.clone(),
-            draw: std::thread::spawn(move || draw_all(renderer, history, &waiting, &pictures, &cut)),
-            encode: std::thread::spawn(move || encode_all(&folder, origin, &drawn)),
+            draw: std::thread::spawn(move || draw_all(renderer, history, &waiting, &wires, &cut)),
+            finish: std::thread::spawn(move || finish_all(&sheet, &drawn, &pictures)),
+            encode: std::thread::spawn(move || encode_all(&folder, origin, &finished)),
         });
         Ok(())
     }
@@ -255,22 +259,37 @@ impl Drop for FrameWriter {
     }
 }
 
-/// A picture, its number and the step whose state it shows.
-struct Drawn {
+/// A frame, its number and what it shows.
+struct Drawn<T> {
     number: usize,
-    step: u64,
-    picture: RgbImage,
+    snapshot: Arc<Snapshot>,
+    /// All up to it.
+    history: History,
+    frame: T,
 }
 
+/// Has the frames of all jobs drawn without charts and text. A frame is made ready while the adapter draws the one before.
 fn draw_all(
     mut renderer: Renderer,
     mut history: History,
     jobs: &Receiver<Job>,
-    pictures: &SyncSender<Drawn>,
+    drawn: &SyncSender<Drawn<Wires>>,
     cut: &AtomicBool,
 ) -> Result<Timings> {
     let mut not_drawn = 0;
-    for (number, job) in jobs.iter().enumerate() {
+    let mut begun: Option<Drawn<Scene>> = None;
+    for number in 0.. {
+        // Nothing waits for a job that is long in coming.
+        let job = match jobs.try_recv() {
+            Err(TryRecvError::Empty) => {
+                if !collect(&mut renderer, begun.take(), drawn)? {
+                    break;
+                }
+                jobs.recv().ok()
+            }
+            received => received.ok(),
+        };
+        let Some(job) = job else { break };
         history.rows.extend(job.rows);
         history.ruptures.extend(job.ruptures);
         renderer.follow(&mut history, &job.snapshot);
@@ -281,20 +300,45 @@ fn draw_all(
             not_drawn += 1;
             continue;
         }
-        let picture = renderer.draw(&job.snapshot, &history)?;
-        if pictures.send(Drawn { number, step: job.snapshot.sample.step, picture }).is_err() {
-            // The encoder has ended with an error of its own, which `join` reports.
+        let scene = renderer.prepare(&job.snapshot, &history);
+        if !collect(&mut renderer, begun.take(), drawn)? {
             break;
         }
+        renderer.begin(&scene);
+        begun = Some(Drawn { number, snapshot: job.snapshot, history: history.clone(), frame: scene });
     }
+    collect(&mut renderer, begun, drawn)?;
     Ok(Timings { not_drawn, ..renderer.timings() })
 }
 
-fn encode_all(folder: &Path, origin: Option<Origin>, pictures: &Receiver<Drawn>) -> Result<Timings> {
+/// Waits for a frame that was begun and hands it on; whether someone takes it. Who does not has ended with an error of his own,
+/// which `join` reports.
+fn collect(renderer: &mut Renderer, begun: Option<Drawn<Scene>>, drawn: &SyncSender<Drawn<Wires>>) -> Result<bool> {
+    let Some(begun) = begun else { return Ok(true) };
+    let Drawn { number, snapshot, history, frame } = begun;
+    let frame = renderer.collect(frame)?;
+    Ok(drawn.send(Drawn { number, snapshot, history, frame }).is_ok())
+}
+
+/// Draws charts and text over all frames.
+fn finish_all(sheet: &Sheet, drawn: &Receiver<Drawn<Wires>>, pictures: &SyncSender<Drawn<RgbImage>>) -> Timings {
     let mut timings = Timings::default();
-    for Drawn { number, step, picture: drawn } in pictures.iter() {
+    for Drawn { number, snapshot, history, frame } in drawn.iter() {
         let start = Instant::now();
-        let bytes = png::encode(&drawn, origin.map(|origin| (origin, step)))?;
+        let frame = sheet.finish(frame, &snapshot, &history);
+        timings.overlay += start.elapsed();
+        if pictures.send(Drawn { number, snapshot, history, frame }).is_err() {
+            break;
+        }
+    }
+    timings
+}
+
+fn encode_all(folder: &Path, origin: Option<Origin>, pictures: &Receiver<Drawn<RgbImage>>) -> Result<Timings> {
+    let mut timings = Timings::default();
+    for Drawn { number, snapshot, frame, .. } in pictures.iter() {
+        let start = Instant::now();
+        let bytes = png::encode(&frame, origin.map(|origin| (origin, snapshot.sample.step)))?;
         png::write(&picture(folder, number), &bytes)?;
         timings.encode += start.elapsed();
     }
