@@ -45,11 +45,11 @@ pub struct Artist {
     body: Body,
     ready: VecDeque<(Key, Arc<Ready>)>,
     /// The last one, of which view and step.
-    occlusion: Option<((View, u64), Occlusion)>,
+    occlusion: Option<((View, u64), Shares)>,
 }
 
-/// How much of its surroundings each particle hides.
-type Occlusion = Arc<Vec<[f32; 4]>>;
+/// How much of its surroundings is hidden from each particle, and where from.
+type Shares = Arc<Vec<[f32; 4]>>;
 
 /// What decides the shapes of a view: all but the camera.
 #[derive(Clone, PartialEq)]
@@ -180,7 +180,7 @@ impl Artist {
         Ready { snapshot, position, removed, segments, colours }
     }
 
-    fn occlusion(&mut self, record: &Record, view: View, step: u64) -> Occlusion {
+    fn occlusion(&mut self, record: &Record, view: View, step: u64) -> Shares {
         if let Some(((known, at), found)) = &self.occlusion
             && (known, *at) == (&view, step)
         {
