@@ -26,7 +26,7 @@ mod shipped;
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use strandsnap::run::{RunOptions, run};
+use strandsnap::run::{DeviceChoice, RunOptions, run};
 use strandsnap::scene::Scene;
 use strandsnap::study::check_run::{InvariantCheck, InvariantOutcome, check};
 
@@ -82,7 +82,7 @@ pub fn run_into(scene: &Scene, out: &Path) {
         overwrite: false,
         wait: false,
         threads: Some(1),
-        device: run::DeviceChoice::default(),
+        device: DeviceChoice::default(),
         frames: false,
         animation: None,
         recording: cfg!(feature = "record"),

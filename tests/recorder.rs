@@ -10,6 +10,7 @@ use std::collections::HashMap;
 use strandsnap::base::recorder::{Function, Unrecordable};
 use strandsnap::engine::Engine;
 use strandsnap::engine::contact::formula::ContactStep;
+use strandsnap::engine::elsewhere::StepFunctions;
 use strandsnap::engine::contact::pair::Laws;
 use strandsnap::law::contact::hertz::Hertz;
 use strandsnap::law::tangential::mindlin_deresiewicz::MindlinDeresiewicz;
@@ -70,7 +71,9 @@ struct Columns {
 
 impl Columns {
     fn of(engine: &Engine) -> Self {
-        let (functions, particles) = (engine.record_step().unwrap(), engine.state().len());
+        let StepFunctions { particles: mut functions, gather, .. } = engine.record_step().unwrap();
+        functions.push(gather);
+        let particles = engine.state().len();
         let of_step = engine.step_names();
         let taken = functions.iter().flat_map(|f| f.inputs()).filter(|name| !of_step.contains(name));
         let column = |name: &str| (name.to_owned(), engine.numbers(name).unwrap_or_else(|| vec![0.0; particles]));
@@ -125,7 +128,7 @@ fn recorded_steps_have_the_bits_of_the_engine() {
         // Until something yields.
         run_steps(&mut engine, 128);
         let mut columns = Columns::of(&engine);
-        let block = engine.plan_block(u64::MAX).unwrap();
+        let block = engine.plan_block(|_| false).unwrap();
         let changes = block.steps.iter().flatten().any(|(name, number)| name == "speed_change" && *number != 0.0);
         assert_eq!(changes, set.iter().any(|option| option.contains("adaptive")), "{name} {set:?}");
         for step in block.steps {

@@ -29,7 +29,7 @@ pub fn ran_away<R: Real>(square: R, limit: R) -> R::Mask {
 pub fn residual<R: Real>(x: Triple<R>, reference: Triple<R>, moved: R, [low, per_length]: [R; 2]) -> R {
     let share = ((reference.z - low) * per_length).simd_max(low.splat(0.0)).simd_min(low.splat(1.0));
     let mut off = x - reference;
-    off.z = off.z - moved * share;
+    off.z -= moved * share;
     off.plain_dot(off)
 }
 

@@ -85,7 +85,7 @@ fn side(input: &str) -> (&str, Side) {
 
 /// Names of the columns that a function takes and of those that it puts, of particles and of pairs; `of_step` are not among
 /// them.
-pub fn columns<'f>(function: &'f Function, of: Of, of_step: impl Fn(&str) -> bool) -> Vec<(Of, bool, &'f str)> {
+pub fn columns(function: &Function, of: Of, of_step: impl Fn(&str) -> bool) -> Vec<(Of, bool, &str)> {
     let taken = function.inputs().iter().filter(|name| !of_step(name)).map(|input| (input, side(input)));
     let taken = taken.filter_map(|(_, (name, side))| match side {
         Side::Contacts => None,
