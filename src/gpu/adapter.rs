@@ -1,9 +1,7 @@
 //! Adapters and what they can do.
 
-use super::together::Registry;
 use crate::base::error::{Error, Result};
 use serde::Serialize;
-use std::sync::Arc;
 
 /// An adapter of this machine: a graphics processor, or a program that does its work on the processor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -66,8 +64,6 @@ pub fn adapters() -> Vec<Adapter> {
 pub struct Device {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
-    /// What is stepped on it.
-    pub(super) together: Arc<Registry>,
     /// What it is.
     pub adapter: Adapter,
 }
@@ -120,7 +116,7 @@ impl Device {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|e| failure(&facts, format!("refused to open: {e}")))?;
-        Ok(Self { device, queue, together: Arc::default(), adapter: facts })
+        Ok(Self { device, queue, adapter: facts })
     }
 
     /// Gives the adapter up: whatever is asked of it from now on fails, as when a driver loses it.

@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 /// How long to wait for others at least.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-/// Everything that is stepped on one device, by what its steps are.
-pub type Registry = Mutex<Vec<(Vec<String>, Weak<Together>)>>;
+/// Everything that is stepped in this process, by device and by what its steps are.
+static ALL: Mutex<Vec<(wgpu::Device, Vec<String>, Weak<Together>)>> = Mutex::new(Vec::new());
 
 /// Scenes whose steps are the same functions.
 pub struct Together {
@@ -80,14 +80,15 @@ impl Together {
     pub fn of(device: &Device, functions: &StepFunctions, names: &[String]) -> Result<Arc<Self>> {
         let texts = functions.in_order().into_iter().map(|(_, function)| function.wgsl());
         let key: Vec<String> = texts.chain(names.iter().cloned()).collect();
-        let mut all = device.together.lock().unwrap_or_else(PoisonError::into_inner);
-        all.retain(|(_, own)| own.strong_count() > 0);
-        if let Some(found) = all.iter().find(|(own, _)| *own == key).and_then(|(_, own)| own.upgrade()) {
+        let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
+        all.retain(|(_, _, own)| own.strong_count() > 0);
+        let same = all.iter().find(|(on, own, _)| *on == device.device && *own == key);
+        if let Some(found) = same.and_then(|(_, _, own)| own.upgrade()) {
             return Ok(found);
         }
         let program = Program::new(device, functions, names)?;
         let own = Arc::new(Self { program, state: Mutex::default(), changed: Condvar::new() });
-        all.push((key, Arc::downgrade(&own)));
+        all.push((device.device.clone(), key, Arc::downgrade(&own)));
         Ok(own)
     }
 
