@@ -39,6 +39,7 @@ macro_rules! cases {
 }
 
 cases! {
+    acsr_stiffness "acsr-stiffness",
     axial_wave "axial-wave",
     bending_frequency "bending-frequency",
     bond_bent "bond-bent",
@@ -81,6 +82,8 @@ cases! {
     thornton "thornton",
     thornton_repeated "thornton-repeated",
     torsion_bar "torsion-bar",
+    unlike_spheres "unlike-spheres",
+    unlike_wires "unlike-wires",
     wave_energy "wave-energy",
     wire_modulus "wire-modulus",
     wire_pulled "wire-pulled",
