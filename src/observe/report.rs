@@ -21,14 +21,14 @@ pub fn report(summary: &RunSummary) -> String {
         line(kind.name(), format!("{stress_mpa:.2} MPa{remark}"));
         line(there, format!("{strain_percent:.2} %"));
     }
+    if let Some(drop) = summary.elongation_at_20_percent_drop_percent {
+        line("  at 20 % drop", format!("{drop:.2} %"));
+    }
     if let Some(force) = summary.breaking_force_n {
         line("breaking force", newton(force));
     }
     if let Some(shares) = &summary.shares_at_greatest_stress {
         line("  carried by", carried(shares));
-    }
-    if let Some(drop) = summary.elongation_at_20_percent_drop_percent {
-        line("  at 20 % drop", format!("{drop:.2} %"));
     }
     if let (Some(stress), Some(strain)) = (summary.residual_stress_mpa, summary.final_strain_percent) {
         line("at the end", format!("{stress:.2} MPa at {strain:.2} %"));
