@@ -80,4 +80,14 @@ fn a_study_runs_side_by_side_with_gnu_parallel_and_what_failed_is_tried_again() 
     }
     let said = study(&["--out", "there", "--emit", "slurm"]);
     assert!(said.contains("All 6 cases are there"), "{said}");
+    // Again with one that is missing, in a folder whose name means something to parallel.
+    std::fs::rename(folder.path().join("there"), folder.path().join("{} it's")).unwrap();
+    let cases: Vec<_> = std::fs::read_dir(folder.path().join("{} it's/cases")).unwrap().flatten().collect();
+    std::fs::remove_dir_all(cases[0].path()).unwrap();
+    let said = study(&["--out", "{} it's", "--emit", "gnu-parallel"]);
+    assert!(said.contains("1 case to run"), "{said}");
+    let ran = Command::new("bash").arg(folder.path().join("{} it's/cluster/cases.sh")).output().unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let said = study(&["--out", "{} it's", "--emit", "slurm"]);
+    assert!(said.contains("All 6 cases are there"), "{said}");
 }

@@ -86,6 +86,27 @@ fn side_by_side_unlike_wires_share_the_load_by_their_stiffness() {
     }
 }
 
+/// While one of two wires snaps, forces of wires are means over the same time as those of the grips: what they add up to at the
+/// greatest force is that force.
+#[test]
+fn at_the_greatest_force_the_parts_add_up() {
+    let rupture = |strain: f64| {
+        format!("rupture = {{ criterion = \"beam-stress\", tensile = \"{} MPa\", shear = \"9 GPa\" }}", strain * 200e3)
+    };
+    let scene = load(&beside(&rupture(2e-3), ""), &[]);
+    let mut engine = engine_of(&scene);
+    let mut greatest = engine.sample();
+    while engine.take_ruptures().is_empty() || engine.stress() > 0.5 * greatest.stress {
+        engine.step().unwrap();
+        let sample = engine.sample();
+        if sample.stress > greatest.stress {
+            greatest = sample;
+        }
+    }
+    assert!(greatest.wire_pull[0] > 0.9 * 200e9 * std::f64::consts::FRAC_PI_4 * 1e-6 * 2e-3, "{:?}", greatest.wire_pull);
+    close(greatest.wire_pull.iter().sum(), greatest.grip_force[1], 0.03, "sum of the parts");
+}
+
 /// An elastic and an elasto-plastic material, or two that harden differently: each bond breaks where its own law and its own
 /// limit say, the less ductile first, at a strain that has a closed form.
 #[test]

@@ -166,6 +166,7 @@ fn emit(definition: &Definition, out: &Path, device: &DeviceChoice, system: Batc
         folder: &absolute(out)?,
         seconds: takes.reduce(f64::max).map(|seconds| margin * seconds),
         bytes: sweep::memory(definition),
+        adapter: *device != DeviceChoice::Processor,
     };
     regular::make_folder(&folder)?;
     regular::make_folder(&out.join("log"))?;

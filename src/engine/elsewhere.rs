@@ -93,8 +93,8 @@ impl Engine {
     /// [`Error::Missing`] when a stage of this scene cannot be recorded.
     pub fn record_step(&self) -> Result<StepFunctions> {
         let refused = |what: &str| Error::Missing {
-            what: format!("steps of this scene cannot be recorded: {what}"),
-            help: Some("run it on the processor".into()),
+            what: format!("the steps of this scene cannot be done on a graphics adapter: {what}"),
+            help: Some("run it on the processor: --device cpu".into()),
         };
         if self.spec.has_several_materials() {
             return Err(refused("its bodies are of several materials"));
@@ -102,8 +102,16 @@ impl Engine {
         let unrecordable = |reason: Unrecordable| refused(&reason.to_string());
         let mut pairs = None;
         if let Some(contacts) = &self.contacts {
-            let stage = contacts.stage.elsewhere().ok_or_else(|| refused("contacts of smooth wires"))?;
-            pairs = Some(stage.record(self.plan.rotations).map_err(unrecordable)?);
+            let stage =
+                contacts.stage.elsewhere().ok_or_else(|| refused("contacts of smooth wires (contact.shape)"))?;
+            // What asks for single numbers works one contact after the other.
+            let one_by_one = |reason| match reason {
+                Unrecordable::Value => {
+                    refused("the law of friction (contact.tangential), which takes contacts one by one")
+                }
+                other => unrecordable(other),
+            };
+            pairs = Some(stage.record(self.plan.rotations).map_err(one_by_one)?);
         }
         let turn = self.plan.rotations;
         let limit = RUNAWAY * self.least_radius;

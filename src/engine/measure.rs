@@ -158,12 +158,13 @@ impl Measures {
         if self.area > 0.0 { self.mean(FORCE + 1) / self.area } else { 0.0 }
     }
 
-    /// Part along z of the force of a wire (N): that of [`Self::wire_force`], `slope` being the cosine between a bond and z (-).
-    pub fn wire_pull(&self, wire: usize, whole: &[bool], slope: impl Fn(usize) -> f64) -> f64 {
+    /// Part along z of the force of a wire (N): mean over the bonds in the middle of the gauge, `slope` being the cosine between
+    /// a bond and z (-). Forces of wires are compared with those of the grips, which are means over the same time: so a bond
+    /// that broke in that time counts with what it carried until then.
+    pub fn wire_pull(&self, wire: usize, slope: impl Fn(usize) -> f64) -> f64 {
         let range = self.of_wire[wire].clone();
         let count = range.len().max(1) as f64;
-        let holds = range.filter(|i| whole[self.middle[*i]]);
-        holds.map(|i| self.mean(BONDS + i) * slope(self.middle[i])).sum::<f64>() / count
+        range.map(|i| self.mean(BONDS + i) * slope(self.middle[i])).sum::<f64>() / count
     }
 
     /// Axial force of a wire (N): mean over the bonds in the middle of the gauge, in which a broken one counts with zero

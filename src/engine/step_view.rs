@@ -128,7 +128,7 @@ impl StepView<'_> {
             along.z / along.length()
         };
         let wires = 0..if self.spec.has_several_materials() { self.assembly.wires.len() } else { 0 };
-        wires.map(|wire| self.measures.wire_pull(wire, &self.state.whole, slope)).collect()
+        wires.map(|wire| self.measures.wire_pull(wire, slope)).collect()
     }
 
     /// The energy ledger now.

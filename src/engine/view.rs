@@ -148,7 +148,8 @@ pub struct Sample {
     /// Nominal axial stress of each wire at mid-gauge (Pa): the mean over its bonds in the middle twentieth of the gauge, of
     /// which broken ones carry nothing.
     pub wire_stress: Vec<f64>,
-    /// Part of the force of each wire along z at mid-gauge (N), where wires are of several materials; empty elsewhere.
+    /// Part of the force of each wire along z at mid-gauge (N), a mean over the same time as the forces of the grips, where wires
+    /// are of several materials; empty elsewhere.
     pub wire_pull: Vec<f64>,
     /// Wires broken so far.
     pub wires_broken: usize,

@@ -117,10 +117,10 @@ impl View {
                 format!("a number from 0 to {last}"),
             ),
             (
-                self.azimuth.is_finite() && self.elevation.is_finite(),
+                [self.azimuth, self.elevation].iter().all(|angle| angle.abs() <= 1e6),
                 "azimuth and elevation",
                 list([self.azimuth, self.elevation].map(shortest)),
-                "numbers".into(),
+                "numbers from -1e6 to 1e6".into(),
             ),
             (
                 lengths.clone().all(|v| v.abs() < 1e6),

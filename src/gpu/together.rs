@@ -18,7 +18,10 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Everything that is stepped in this process, by device and by what its steps are.
-static ALL: Mutex<Vec<(wgpu::Device, Vec<String>, Weak<Together>)>> = Mutex::new(Vec::new());
+static ALL: Mutex<Vec<Known>> = Mutex::new(Vec::new());
+
+/// The device, the functions and names of their numbers as text, and who is stepped by them.
+type Known = (wgpu::Device, Vec<String>, Weak<Together>);
 
 /// Scenes whose steps are the same functions.
 pub struct Together {

@@ -86,7 +86,7 @@ impl Steps {
         let device = match choice {
             DeviceChoice::Processor => return Ok(Self::default()),
             DeviceChoice::Auto if adapters().iter().all(|adapter| !adapter.f64 || adapter.kind == "software") => {
-                return Ok(Self::refused("no graphics adapter of this machine has 64-bit numbers".into()));
+                return Ok(Self::refused("this machine has no graphics processor with 64-bit numbers; an adapter that is a program is taken only by name".into()));
             }
             _ => opened(choice),
         };

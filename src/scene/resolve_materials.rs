@@ -212,6 +212,13 @@ impl<'a> Materials<'a> {
             let here = at.element(index);
             let names = raw.materials.as_ref().ok_or_else(|| here.missing("materials", "[\"steel\", \"copper\"]"))?;
             let names_at = here.key("materials");
+            if names.len() != 2 {
+                let what = format!("a pair is of two materials, and here are {}", names.len());
+                return Err(names_at.error(
+                    what,
+                    "name two, such as [\"steel\", \"copper\"]; the same one twice for two bodies of it",
+                ));
+            }
             let (a, b) = (self.place(&names_at.element(0), &names[0])?, self.place(&names_at.element(1), &names[1])?);
             let friction = here.required("friction", &raw.friction, Dimension::Ratio, Range::NotNegative)?;
             let places = [a.min(b), a.max(b)];

@@ -175,7 +175,7 @@ pub struct RawNamedMaterial {
 pub struct RawContactPair {
     /// Names of two materials, which may be the same.
     #[schemars(extend("x-required" = true))]
-    pub materials: Option<[String; 2]>,
+    pub materials: Option<Vec<String>>,
     /// Coulomb friction coefficient between bodies of the two.
     #[schemars(extend("x-unit" = "-", "x-required" = true))]
     pub friction: Option<Scalar>,

@@ -57,6 +57,8 @@ pub struct Array<'a> {
     pub seconds: Option<f64>,
     /// What the largest case needs (bytes).
     pub bytes: f64,
+    /// Whether cases need a graphics processor.
+    pub adapter: bool,
 }
 
 /// Scripts, and what to type.
@@ -84,7 +86,7 @@ impl Array<'_> {
     }
 
     fn slurm(&self) -> Scripts {
-        let Self { name, directory, .. } = self;
+        let (name, directory) = (self.job(), self.directory);
         let mut head = format!("#SBATCH --job-name={name}\n#SBATCH --array={}\n", ranges(self.cases));
         head += "#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=1\n";
         if let Some(time) = self.minutes() {
@@ -92,7 +94,11 @@ impl Array<'_> {
         }
         let _ = writeln!(head, "#SBATCH --mem={}M", self.megabytes());
         let _ = writeln!(head, "#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH --signal=B:TERM@{NOTICE}");
-        let _ = writeln!(head, "#SBATCH --output={}", quoted(&self.log("%a.log")));
+        if self.adapter {
+            head += "#SBATCH --gres=gpu:1\n";
+        }
+        // Beside the folder in which the scripts lie and are submitted: odd names of folders mean nothing to Slurm then.
+        head += "#SBATCH --output=../log/%a.log\n";
         let array = format!(
             "#!/bin/bash
 {head}
@@ -120,13 +126,12 @@ wait \"$case\"
 #SBATCH --time=0:30:00
 #SBATCH --mem={}M
 #SBATCH --open-mode=append
-#SBATCH --output={}
+#SBATCH --output=../log/collect.log
 
 cd {}
 {} --collect
 ",
             self.megabytes().max(1000),
-            quoted(&self.log("collect.log")),
             quoted(&directory.to_string_lossy()),
             self.command()
         );
@@ -146,15 +151,16 @@ cd {}
 # Cases as an array of HyperQueue, and what gathers them once all have ended.
 set -e
 cd {directory}
-job=$(hq submit --array {cases} --name {name} --cpus 1{time} --crash-limit 10 \\
+job=$(hq submit --array {cases} --name {name} --cpus 1{adapter}{time} --crash-limit 10 \\
     --stream {log} --output-mode id -- /bin/bash -c {each})
 hq job wait \"$job\" || true
 {command} --collect
 ",
             directory = quoted(&self.directory.to_string_lossy()),
             cases = ranges(self.cases),
-            name = quoted(self.name),
-            log = quoted(&self.log("hq")),
+            name = self.job(),
+            adapter = if self.adapter { " --resource gpus/nvidia=1" } else { "" },
+            log = quoted(&self.folder.join("log/hq").to_string_lossy()),
             each = quoted(&format!("{} --case \"$HQ_TASK_ID\"", self.command())),
             command = self.command()
         );
@@ -163,26 +169,32 @@ hq job wait \"$job\" || true
 
     fn gnu_parallel(&self) -> Scripts {
         let numbers: Vec<String> = self.cases.iter().map(usize::to_string).collect();
-        let script = format!(
+        let case = format!(
             "#!/bin/bash
-# Cases side by side, one per core, each started only where its memory is free; those that failed are tried again when this is
-# called again. --sshloginfile and --workdir take them to other machines that share this folder.
+# A case by its number.
+cd {}
+exec {} --case \"$1\"
+",
+            quoted(&self.directory.to_string_lossy()),
+            self.command()
+        );
+        // What parallel itself reads must not have braces from names of folders in it.
+        let all = format!(
+            "#!/bin/bash
+# Cases side by side, one per core, each started only where its memory is free; then what gathers them. Called again, it goes
+# on with those that are missing. --sshloginfile takes them to other machines that share this folder.
+cd \"$(dirname \"$0\")\"
+parallel --jobs 100% --memfree {megabytes}M --joblog ../log/cases.tsv --results ../log/{{}}.log bash ./case.sh {{}} \\
+    ::: {numbers}
 cd {directory}
-mkdir -p {folder}
-parallel --jobs 100% --memfree {megabytes}M --joblog {log} --resume-failed --results {results} \\
-    {each} ::: {numbers}
 {command} --collect
 ",
-            directory = quoted(&self.directory.to_string_lossy()),
-            folder = quoted(&self.log("")),
             megabytes = self.megabytes(),
-            log = quoted(&self.log("cases.tsv")),
-            results = quoted(&self.log("{}.log")),
-            each = quoted(&format!("{} --case {{}}", self.command())),
             numbers = numbers.join(" "),
+            directory = quoted(&self.directory.to_string_lossy()),
             command = self.command()
         );
-        Scripts { files: vec![("cases.sh", script)], commands: vec!["bash cases.sh".into()] }
+        Scripts { files: vec![("case.sh", case), ("cases.sh", all)], commands: vec!["bash cases.sh".into()] }
     }
 
     /// The command for a shell.
@@ -190,9 +202,10 @@ parallel --jobs 100% --memfree {megabytes}M --joblog {log} --resume-failed --res
         self.command.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
     }
 
-    /// A file among what the cases say.
-    fn log(&self, name: &str) -> String {
-        self.folder.join("log").join(name).to_string_lossy().into_owned()
+    /// The study's name as that of a job: names of files may have anything in them.
+    fn job(&self) -> String {
+        let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
+        self.name.chars().map(plain).collect()
     }
 
     /// Time of a case with room to end (min).
@@ -233,13 +246,14 @@ mod tests {
         let (directory, folder) = (Path::new("/home/it's me"), Path::new("/data/out/study/many"));
         let cases = [1, 2, 3, 7, 9, 10];
         let array = Array {
-            name: "many",
+            name: "it's many",
             cases: &cases,
             command: &command,
             directory,
             folder,
             seconds: Some(500.0),
             bytes: 3e8,
+            adapter: true,
         };
         array.scripts(system.parse().unwrap())
     }
@@ -259,7 +273,9 @@ mod tests {
             "#SBATCH --array=1-3,7,9-10\n",
             "#SBATCH --time=0:15:00\n",
             "#SBATCH --mem=450M\n",
-            "#SBATCH --output=/data/out/study/many/log/%a.log\n",
+            "#SBATCH --job-name=it-s-many\n",
+            "#SBATCH --gres=gpu:1\n",
+            "#SBATCH --output=../log/%a.log\n",
             "cd '/home/it'\\''s me'\n",
             "/opt/strandsnap study 'a b.toml' --seeds 1..3 --case \"$SLURM_ARRAY_TASK_ID\" &\n",
         ] {
