@@ -3,6 +3,7 @@
 use std::path::Path;
 use strandsnap::base::vectors::Vectors;
 use strandsnap::engine::Engine;
+use strandsnap::observe::materials::GreatestForce;
 use strandsnap::reference::hertz::Pair;
 use strandsnap::reference::plasticity::tension_point;
 use strandsnap::reference::strand;
@@ -86,8 +87,7 @@ fn side_by_side_unlike_wires_share_the_load_by_their_stiffness() {
     }
 }
 
-/// While one of two wires snaps, forces of wires are means over the same time as those of the grips: what they add up to at the
-/// greatest force is that force.
+/// A wire that snaps is missed in the middle before the grip knows of it: what carries the greatest force is told of before that.
 #[test]
 fn at_the_greatest_force_the_parts_add_up() {
     let rupture = |strain: f64| {
@@ -95,16 +95,23 @@ fn at_the_greatest_force_the_parts_add_up() {
     };
     let scene = load(&beside(&rupture(2e-3), ""), &[]);
     let mut engine = engine_of(&scene);
-    let mut greatest = engine.sample();
-    while engine.take_ruptures().is_empty() || engine.stress() > 0.5 * greatest.stress {
+    let (info, mut rule, mut told) = (engine.info(), GreatestForce::default(), None);
+    let mut end = f64::INFINITY;
+    while engine.time() < end {
         engine.step().unwrap();
+        if !engine.take_ruptures().is_empty() {
+            // Aluminium alone has not come to as much by then.
+            end = engine.time() + 6.0 * info.wave_passage;
+        }
         let sample = engine.sample();
-        if sample.stress > greatest.stress {
-            greatest = sample;
+        if rule.see(&info, &sample) {
+            told = Some(sample);
         }
     }
-    assert!(greatest.wire_pull[0] > 0.9 * 200e9 * std::f64::consts::FRAC_PI_4 * 1e-6 * 2e-3, "{:?}", greatest.wire_pull);
-    close(greatest.wire_pull.iter().sum(), greatest.grip_force[1], 0.03, "sum of the parts");
+    let told = told.unwrap();
+    let steel = 400e6 * std::f64::consts::FRAC_PI_4 * 1e-6;
+    close(told.wire_pull[0], steel, 0.02, "steel, which breaks at 400 MPa");
+    close(told.wire_pull.iter().sum(), told.grip_force[1], 0.02, "sum of the parts");
 }
 
 /// An elastic and an elasto-plastic material, or two that harden differently: each bond breaks where its own law and its own

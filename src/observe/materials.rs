@@ -58,6 +58,33 @@ fn of_number(info: &RunInfo, number: usize) -> Option<&str> {
     info.materials.get(number).filter(|_| info.has_several_materials()).map(String::as_str)
 }
 
+/// Finds the row of the greatest force at which parts add up to it: not within two passages of a wave after a rupture, while
+/// the grips do not know yet what the middle of the body has lost.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct GreatestForce {
+    force: Option<f64>,
+    broken: usize,
+    /// Until when rows do not count (s).
+    waits_until: Option<f64>,
+}
+
+impl GreatestForce {
+    /// Whether a row has the greatest force so far; rows come in order.
+    pub fn see(&mut self, info: &RunInfo, sample: &Sample) -> bool {
+        if sample.bonds_broken > self.broken {
+            self.broken = sample.bonds_broken;
+            self.waits_until = Some(sample.time + 2.0 * info.wave_passage);
+        }
+        let force = sample.grip_force[1];
+        let settled = self.waits_until.is_none_or(|until| sample.time >= until);
+        let greatest = settled && self.force.is_none_or(|most| force > most);
+        if greatest {
+            self.force = Some(force);
+        }
+        greatest
+    }
+}
+
 /// Who carried how much at one moment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shares {

@@ -3,7 +3,7 @@
 use super::Observer;
 use super::guard::QuasiStatic;
 use super::limits::Limits;
-use super::materials::{Shares, of_wire};
+use super::materials::{GreatestForce, Shares, of_wire};
 use super::peaks::{Monitor, Peaks};
 use super::stiffness::{Rows, Stiffness};
 use super::tables::{cause, layer_name};
@@ -66,7 +66,8 @@ pub struct RunSummary {
     /// Initial stiffness beside strand theory; `None` where that has nothing to say.
     #[serde(default)]
     pub stiffness: Option<Stiffness>,
-    /// Who carried how much in the row of the greatest stress; `None` where wires are of one material.
+    /// Who carried how much in the row of the greatest force, those within two passages of a wave after a rupture left out; `None`
+    /// where wires are of one material.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shares_at_greatest_stress: Option<Shares>,
     /// Energy ledger at the end (J).
@@ -274,8 +275,9 @@ pub struct Summariser {
     rows: Monitor,
     /// What was seen at every step.
     peaks: Option<Peaks>,
-    /// Who carried how much in the row of the greatest force so far.
+    /// Who carried how much in the row of the greatest force so far, and which that is.
     shares: Option<Shares>,
+    greatest_force: GreatestForce,
     /// Rows that tell the initial stiffness.
     elastic: Rows,
     last: Sample,
@@ -445,7 +447,8 @@ impl Observer for Summariser {
         self.rows.see(sample.strain, sample.stress, sample.wire_stress.iter().copied());
         self.elastic.add(sample);
         let info = self.info.as_ref().filter(|info| info.has_several_materials());
-        if let Some(info) = info.filter(|_| self.shares.as_ref().is_none_or(|s| sample.grip_force[1] > s.force_n)) {
+        let greatest = &mut self.greatest_force;
+        if let Some(info) = info.filter(|info| greatest.see(info, sample)) {
             self.shares = Shares::of(info, sample);
         }
         self.last = sample.clone();

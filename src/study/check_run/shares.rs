@@ -3,6 +3,7 @@
 use super::finding::{InvariantOutcome, Search};
 use super::folder::Folder;
 use super::invariant::Invariant;
+use crate::observe::materials::GreatestForce;
 
 pub const SHARES: Invariant = Invariant {
     name: "shares",
@@ -72,12 +73,14 @@ fn rows(run: &Folder, search: &mut Search) {
     }
 }
 
-/// The shares of the summary against the row of the greatest force.
+/// The shares of the summary against the row that they are of.
 fn summary(run: &Folder, search: &mut Search) {
     let Some(shares) = &run.summary.shares_at_greatest_stress else { return };
-    let rows = || 0..run.curve.rows.len();
     let force = |row: usize| run.curve.number(row, "grip_force_upper_n");
-    let Some(row) = rows().max_by(|a, b| force(*a).total_cmp(&force(*b))) else { return };
+    let mut greatest = GreatestForce::default();
+    let rows = run.trajectory.samples.iter().take(run.curve.rows.len()).enumerate();
+    let seen = rows.filter(|(_, sample)| greatest.see(&run.trajectory.info, sample));
+    let Some((row, _)) = seen.last() else { return };
     search.compare(shares.force_n, force(row), force(row).abs(), || "force_n of shares_at_greatest_stress".into());
     for share in &shares.materials {
         let told = run.curve.number(row, &format!("material_{}_n", share.name));
