@@ -248,5 +248,5 @@ fn velocity<S: Simd, T: TangentialLaw>(
     if !T::ACTIVE {
         return slide;
     }
-    surface_velocity(slide, [i, j].map(|p| vector(simd, &seen.w, p)), arms, normal)
+    surface_velocity(slide, [vector(simd, &seen.w, i), vector(simd, &seen.w, j)], arms, normal)
 }

@@ -42,7 +42,8 @@ impl<R: Real> Between<R> {
 #[inline(always)]
 pub fn arms<R: Real>(radii: [R; 2], overlap: R, offset: R) -> [R; 2] {
     let sunk = (overlap + offset) * 0.5;
-    radii.map(|radius| radius - sunk)
+    // A closure in `map` might be compiled without the wide registers of its caller.
+    [radii[0] - sunk, radii[1] - sunk]
 }
 
 /// Velocity of the second surface relative to the first where they meet (m/s), from that of the centres (m/s) and the spins
