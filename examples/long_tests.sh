@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Tests that take too long for ./test.sh: 200 killed runs, 100,000 inputs made at random, a study of 500 cases that is
-# killed 20 times and started twice at once, and a run of ten million steps whose memory and open files are watched.
+# Tests that take too long for ./test.sh: 200 killed runs, 100,000 inputs made at random, strands made at random from 100
+# seeds, a study of 500 cases that is killed 20 times and started twice at once, and a run of ten million steps whose memory
+# and open files are watched.
 #
 #   examples/long_tests.sh                    all, about an hour on two cores
-#   examples/long_tests.sh kills fuzz study soak     some of them
+#   examples/long_tests.sh kills fuzz random study soak     some of them
 #
 # Ends with 1 when one fails. The last results stand in assets/results/stability.md.
 set -euo pipefail
@@ -18,6 +19,12 @@ kills() {
 
 fuzz() {
     cargo test --release --locked --test fuzz -- --ignored --nocapture
+}
+
+random() {
+    for ((seed = 1; seed <= ${SEEDS:-100}; seed++)); do
+        PROPTEST_RNG_SEED=$seed cargo test --release --locked --quiet --test property -- any_strand random
+    done
 }
 
 study() {
@@ -78,7 +85,7 @@ soak() {
 }
 
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(kills fuzz study soak)
+[ ${#parts[@]} -gt 0 ] || parts=(kills fuzz random study soak)
 for part in "${parts[@]}"; do
     printf '\n== %s\n' "$part"
     time "$part"

@@ -45,8 +45,8 @@ pub fn torque_of_bonds<R: Real>(near: R, far: R) -> R {
     near + far
 }
 
-/// Radius of a particle (m) as the mean over its bonds that hold, from their factors on the undeformed radius, which are
-/// 0 for others; a particle without any keeps its own.
+/// Radius of a particle (m) as the mean over its bonds, from their factors on the undeformed radius, which are 0 where none has
+/// been. Those that have broken count with the factor that they had: plastic strain stays. A particle without any keeps its own.
 #[inline(always)]
 pub fn thinned_radius<R: Real>(undeformed: R, kept: R, here: R, before: R) -> R {
     let (zero, half, one) = (kept.splat(0.0), kept.splat(0.5), kept.splat(1.0));

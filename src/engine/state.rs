@@ -38,9 +38,9 @@ impl<const N: usize> ExactSizeIterator for RowChunks<'_, N> {}
 /// What bonds do to their two particles, in blocks of [`CHUNK`] slots, field after field.
 #[derive(Serialize, Deserialize)]
 pub struct BondActions {
-    /// Per block: the factor of the bond on the radius e^(−ε_p/2) (-); its pull on the first particle (N), of which the
-    /// second feels the opposite; and where particles turn its moments on the first and on the second (N m). All of them
-    /// 0 where no bond is.
+    /// Per block: the factor of the bond on the radius e^(−ε_p/2) (-), which it keeps when it breaks; its pull on the first
+    /// particle (N), of which the second feels the opposite; and where particles turn its moments on the first and on the
+    /// second (N m). All of them 0 where no bond has been.
     pub data: Vec<f64>,
     turn: bool,
 }
@@ -126,9 +126,9 @@ impl BondActions {
         true
     }
 
-    /// The bond is not there any more.
-    pub fn clear(&mut self, slot: usize) {
-        for field in 0..self.fields() {
+    /// The bond has broken and pulls no more. What it has thinned stays thin.
+    pub fn release(&mut self, slot: usize) {
+        for field in Self::PULL..self.fields() {
             let place = self.place(slot, field);
             self.data[place] = 0.0;
         }

@@ -23,7 +23,7 @@ pub struct BondStep<L> {
 
 impl<L: BondLaw> Formula for BondStep<L> {
     /// Takes positions (m), velocities (m/s) and spins (rad/s) of the two particles, the shape, what the bond remembers
-    /// (frame, forces, force of the dashpot, history of the law), viscous coefficients, step (s) and its inverse. Puts what it
+    /// (frame, forces, force of the dashpot, history of the law, its factor on the radius), viscous coefficients, step (s) and its inverse. Puts what it
     /// then remembers, its pull (N) and moments (N m) on the particles, plastic work and work of the dashpots (J), the factor
     /// on the radius and the equivalent plastic strain (-).
     fn compute<R: Real>(&self, take: &mut dyn FnMut(&str) -> R, put: &mut dyn FnMut(&str, R)) {
@@ -48,6 +48,7 @@ impl<L: BondLaw> Formula for BondStep<L> {
             (true, false) => Some([take(VISCOSITY[0]), zero, zero, zero]),
             (true, true) => Some(VISCOSITY.map(&mut *take)),
         };
+        let old_thinning = take("thinning");
         let dt = if *turn || *damped { take("dt") } else { zero };
         let per = if *turn && *damped { take("inverse_dt") } else { zero };
         let live = take("live").simd_gt(zero);
@@ -82,7 +83,7 @@ impl<L: BondLaw> Formula for BondStep<L> {
         }
         put("plastic_work", done(step.plastic));
         put("damping_work", done(step.damping));
-        put("thinning", done(law.thinning(&shape, &state)));
+        put("thinning", R::select(live, law.thinning(&shape, &state), old_thinning));
         put("plastic_strain", law.plastic_strain(&shape, &state));
     }
 }

@@ -130,7 +130,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         }
     }
 
-    /// Writes what the bonds do, and zeros for those that are not there.
+    /// Writes what the bonds do: nothing where none holds. The factor on the radius of one that broke stays.
     #[inline(always)]
     fn act<S: Simd>(
         &mut self,
@@ -143,22 +143,24 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
     ) {
         let at = block * BLOCK + lane;
         let Acts { pull, near, far } = acts;
-        let all = [thinning, pull.x, pull.y, pull.z, near.x, near.y, near.z, far.x, far.y, far.z];
-        let fields = if TURN { BondActions::FAR + 3 } else { BondActions::PULL + 3 };
+        keep(simd, self.actions, live, BondActions::THINNING * CHUNK + at, thinning);
+        let all = [pull.x, pull.y, pull.z, near.x, near.y, near.z, far.x, far.y, far.z];
+        let fields = if TURN { BondActions::FAR + 3 } else { BondActions::PULL + 3 } - BondActions::PULL;
         let zero = thinning.splat(0.0);
         match self.own {
             None => {
                 for (field, number) in all.into_iter().enumerate().take(fields) {
-                    Lanes::select(live, number, zero).store(self.actions, field * CHUNK + at);
+                    let at = (BondActions::PULL + field) * CHUNK + at;
+                    Lanes::select(live, number, zero).store(self.actions, at);
                 }
             }
             // Bonds of other laws in the same block have put theirs.
             Some((slots, _)) => {
-                let own = Lanes::load_up_to_end(simd, slots, at).simd_gt(zero);
+                let own = Lanes::load_up_to_end(simd, slots, block * BLOCK + lane).simd_gt(zero);
                 for (field, number) in all.into_iter().enumerate().take(fields) {
-                    let others = Lanes::load(simd, self.actions, field * CHUNK + at);
-                    let number = Lanes::select(own, Lanes::select(live, number, zero), others);
-                    number.store(self.actions, field * CHUNK + at);
+                    let at = (BondActions::PULL + field) * CHUNK + at;
+                    let others = Lanes::load(simd, self.actions, at);
+                    Lanes::select(own, Lanes::select(live, number, zero), others).store(self.actions, at);
                 }
             }
         }

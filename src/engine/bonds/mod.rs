@@ -272,7 +272,7 @@ impl<L: BondLaw, const TURN: bool> Bonds for BondStage<L, TURN> {
             let thinning = state.bond.get(slot, BondActions::THINNING);
             state.length_at_break[slot] = self.shape(slot).rest_length / (thinning * thinning);
             state.whole[slot] = false;
-            state.bond.clear(slot);
+            state.bond.release(slot);
         }
         released
     }
