@@ -71,13 +71,16 @@ fn a_study_runs_side_by_side_with_gnu_parallel_and_what_failed_is_tried_again() 
     let cluster = folder.path().join("there/cluster");
     let ran = Command::new("bash").arg("cases.sh").current_dir(&cluster).output().unwrap();
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let mut tables = 0;
     for entry in std::fs::read_dir(folder.path().join("here")).unwrap().flatten() {
         let name = entry.file_name().into_string().unwrap();
         if name.ends_with(".csv") {
             let read = |out: &str| without_times(&folder.path().join(out).join(&name));
             assert_eq!(read("here"), read("there"), "{name}");
+            tables += 1;
         }
     }
+    assert_eq!(tables, 3);
     let said = study(&["--out", "there", "--emit", "slurm"]);
     assert!(said.contains("All 6 cases are there"), "{said}");
     // Again with one that is missing, in a folder whose name means something to parallel.

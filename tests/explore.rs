@@ -15,6 +15,8 @@ mod page;
 mod program;
 #[path = "explore/shown.rs"]
 mod shown;
+#[path = "common/strand.rs"]
+mod strand;
 #[path = "explore/strangers.rs"]
 mod strangers;
 mod synthetic;

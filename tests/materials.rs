@@ -1,16 +1,13 @@
 //! Several materials in one scene, against closed forms, and one material by a name against the same without.
 
 use std::path::Path;
-use strandsnap::base::vectors::Vectors;
 use strandsnap::engine::Engine;
 use strandsnap::observe::materials::GreatestForce;
 use strandsnap::reference::hertz::Pair;
 use strandsnap::reference::plasticity::tension_point;
-use strandsnap::reference::strand;
 use strandsnap::scene::spec::{BondLawSpec, RuptureCriterion, Spec};
 use strandsnap::scene::{self, Scene};
 use strandsnap::strand as body;
-use strandsnap::strand::theory::Theory;
 
 const STEEL: &str = r#"density = "7800 kg/m^3"
 young = "200 GPa"
@@ -399,111 +396,6 @@ fn smooth_wires_of_two_materials_that_are_alike_move_alike() {
     // From the first neighbour search in which rounding decides on a bond that is nearest, they part.
     assert!(seen.iter().all(|far| *far < 1e-15), "{seen:?}");
     assert!(one.contact_counts().2 > 50 && one.contact_counts() == two.contact_counts());
-}
-
-/// Stiffness of an ACSR conductor: what stretch, radius and turn of its wires explain, each with its own modulus, and at most what
-/// the sum rule Σ n A E cos³β says, which lets no wire give where it touches.
-#[test]
-fn an_acsr_conductor_is_as_stiff_as_its_wires_by_their_shape_and_no_stiffer_than_the_sum_rule() {
-    let set = [
-        "materials.steel.law=elastic",
-        "materials.steel.hardening=",
-        "materials.steel.rupture=",
-        "materials.aluminium.law=elastic",
-        "materials.aluminium.hardening=",
-        "materials.aluminium.rupture=",
-        "contact.normal=hertz",
-        "materials.steel.limiting_pressure=",
-        "materials.aluminium.limiting_pressure=",
-        "contact.tangential=none",
-        "contact.friction=",
-        "contact.pair=",
-        "strand.length=300 mm",
-        "grip.speed=1 m/s",
-        "stop.stress_fraction=",
-        "stop.strain=0.3 %",
-    ]
-    .map(str::to_owned);
-    let scene = scene::load("acsr", &set).unwrap_or_else(|error| panic!("{error:?}"));
-    let theory = Theory::of_pull(&scene.spec).expect("strand theory knows it");
-    let young: Vec<f64> = scene
-        .spec
-        .strand
-        .as_ref()
-        .unwrap()
-        .layers
-        .iter()
-        .map(|layer| scene.spec.material_at(layer.material).material.young)
-        .collect();
-    let hruska = strand::stiffness_sum(&theory.layers, &young);
-    let mut engine = engine_of(&scene);
-    let mut points: Vec<[f64; 5]> = Vec::new();
-    while engine.strain() < 2.5e-3 {
-        engine.step().unwrap();
-        if engine.strain() > 1e-3 && engine.steps().is_multiple_of(10) {
-            let sample = engine.sample();
-            let of = |number: usize| {
-                let wires = engine.assembly().wires.iter().zip(&sample.wire_pull);
-                wires.filter(|(wire, _)| wire.material == number).map(|(_, force)| force).sum::<f64>()
-            };
-            points.push([sample.strain, sample.grip_force[1], of(0), of(1), from_its_shape(&engine, &theory.layers)]);
-        }
-    }
-    let (n, mean) = (points.len() as f64, |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64);
-    let slope = |k: usize| {
-        let both: f64 = points.iter().map(|p| (p[0] - mean(0)) * (p[k] - mean(k))).sum();
-        both / points.iter().map(|p| (p[0] - mean(0)).powi(2)).sum::<f64>()
-    };
-    let (measured, shape) = (slope(1), slope(4));
-    println!(
-        "{n} points; {measured:.4e} N, by shape {shape:.4e}, by the sum rule {hruska:.4e}: {:.4}",
-        measured / hruska
-    );
-    println!("by material {:.4e} and {:.4e} N", slope(2), slope(3));
-    close(measured, shape, 3e-3, "force per strain, against the shape of the wires");
-    close(slope(2) + slope(3), measured, 2e-3, "both materials together");
-    // Crossing wires give where they touch, which lets the layers in: the sum rule is the bound of wires that do not.
-    assert!(measured < hruska && measured > 0.94 * hruska, "{measured} of {hruska}");
-    // Who carries how much: each material by the sum rule over its own layers.
-    for (number, k) in [(0, 2), (1, 3)] {
-        let own: Vec<f64> = scene
-            .spec
-            .strand
-            .as_ref()
-            .unwrap()
-            .layers
-            .iter()
-            .zip(&young)
-            .map(|(layer, young)| if layer.material == number { *young } else { 0.0 })
-            .collect();
-        let right = strand::stiffness_sum(&theory.layers, &own);
-        assert!(slope(k) < right && slope(k) > 0.92 * right, "material {number}: {} of {right}", slope(k));
-    }
-}
-
-/// Force along the strand (N) that stretch, radius and turn of every wire's middle third explain by the strain of a helix, each
-/// wire with the modulus of its own material.
-fn from_its_shape(engine: &Engine, layers: &[strand::Layer]) -> f64 {
-    let (a, s) = (engine.assembly(), engine.state());
-    let wire = |w: &body::assembly::Wire| {
-        let (low, high) = (w.first + w.len / 3, w.first + 2 * w.len / 3);
-        let strain = (s.x.z[high] - s.x.z[low]) / (a.position.z[high] - a.position.z[low]) - 1.0;
-        let radius = |x: &Vectors| (low..=high).map(|p| x.x[p].hypot(x.y[p])).sum::<f64>();
-        let turn = |x: &Vectors| {
-            let between = |p: usize| {
-                let (from, to) = (x.get(p).truncate(), x.get(p + 1).truncate());
-                from.perp_dot(to).atan2(from.dot(to))
-            };
-            (low..high).map(between).sum::<f64>()
-        };
-        let layer = &layers[w.layer];
-        let around =
-            if layer.radius > 0.0 { radius(&s.x) / radius(&a.position) * turn(&s.x) / turn(&a.position) } else { 1.0 };
-        let x = strand::wire_strain(strain, layer.lay_angle(), around);
-        let young = engine.spec().material_at(w.material).material.young;
-        young * w.area() * x.ln_1p() * (1.0 + strain) * layer.lay_angle().cos() / (1.0 + x)
-    };
-    a.wires.iter().map(wire).sum()
 }
 
 /// What cannot be done with several materials says so.

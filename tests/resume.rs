@@ -1,5 +1,8 @@
 //! A run that is killed goes on from its last checkpoint, and writes what an uninterrupted one writes.
 
+#[path = "common/strand.rs"]
+mod strand;
+
 use std::collections::BTreeMap;
 use std::fs;
 #[cfg(all(feature = "render", feature = "record"))]
@@ -7,49 +10,10 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
+use strand::STRAND;
 use strandsnap::base::random::uniform;
 use strandsnap::engine::Engine;
 use strandsnap::run;
-
-/// Two layers that break, rub and yield within seconds, pulled adaptively.
-const STRAND: &str = r#"
-about = "A strand of six wires that is killed and goes on."
-seed = 3
-[material]
-density = "8960 kg/m^3"
-young = "115 GPa"
-poisson = 0.34
-[bond]
-law = "elasto-plastic"
-damping = 0.02
-hardening = { form = "voce", yield_stress = "100 MPa", saturation = "100 MPa", rate = 12, linear = "500 MPa" }
-rupture = { criterion = "plastic-strain", strain = "4 %", weibull_modulus = 8 }
-[contact]
-normal = "thornton"
-tangential = "mindlin"
-friction = 0.2
-hardness_strain = "8 %"
-[strand]
-length = "8 mm"
-[[strand.layer]]
-wires = 1
-wire_diameter = "0.39 mm"
-pitch = "inf"
-[[strand.layer]]
-wires = 5
-wire_diameter = "0.39 mm"
-pitch = "12 mm"
-[grip]
-length = "0.8 mm"
-speed = "2 m/s"
-adaptive = { fastest = "6 m/s", kinetic = "10 %", passages = 4 }
-[stop]
-strain = 0.07
-[output]
-samples = 60
-snapshots = 6
-checkpoint = 150
-"#;
 
 fn scene(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("small.toml");

@@ -294,7 +294,7 @@ mod tests {
             ("before_thinning", ("thinning", Side::Before)),
             ("first_x_y", ("x_y", Side::First)),
             ("contacts_force_x", ("force_x", Side::Contacts)),
-            ("contact_3", ("contact_3", Side::Own)),
+            ("history_3", ("history_3", Side::Own)),
             ("mass", ("mass", Side::Own)),
         ] {
             assert_eq!(side(input), expected);

@@ -2,12 +2,11 @@
 
 use super::checkpoint::{Checkpoint, Keeper, LoopPosition};
 use super::schedule::Schedule;
-use super::steps::{Look, Steps};
+use super::steps::Steps;
 use super::stop::StopRule;
 use crate::base::error::{Error, Result};
 use crate::base::finding::{Finding, Notice, StopReason};
 use crate::engine::Engine;
-use crate::engine::elsewhere::Foretold;
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::view::{RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
@@ -277,17 +276,8 @@ impl Driver<'_, '_> {
     /// The next step, or a few up to one after which something is due.
     fn advance(&mut self) -> Result<()> {
         let Self { engine, steps, end, state, .. } = self;
-        if steps.adapter().is_none() {
-            return engine.step();
-        }
         let LoopState { schedule, rule, monitor, .. } = state;
-        let (mut schedule, so_far) = (schedule.clone(), rule.clone());
-        let mut stop = |next: Foretold| {
-            let due = schedule.due(end.fraction(next.strain, next.time, next.steps));
-            due.row || due.snapshot || so_far.reached(next.strain, next.time, next.steps).is_some()
-        };
-        let mut between = |engine: &Engine| monitor_step(engine, rule, monitor);
-        steps.advance(engine, Look { stop: &mut stop, between: &mut between })
+        steps.step_until_due(engine, schedule, end, rule, |engine, rule| monitor_step(engine, rule, monitor))
     }
 
     /// Wall time in the engine since the loop began.

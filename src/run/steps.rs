@@ -1,10 +1,13 @@
 //! Who does the steps of a run: the processor, or a graphics adapter.
 
+use super::schedule::Schedule;
+use super::stop::StopRule;
 use crate::base::error::{Error, Result};
 use crate::engine::Engine;
 use crate::engine::elsewhere::Foretold;
 #[cfg(feature = "gpu")]
 use crate::gpu::{Device, Stepper, adapters};
+use crate::observe::planned::PlannedEnd;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -68,14 +71,6 @@ struct OnAdapter {
     required: bool,
 }
 
-/// What comes of the next steps, one or a few.
-pub struct Look<'a> {
-    /// Whether they have to end after a step.
-    pub stop: &'a mut dyn FnMut(Foretold) -> bool,
-    /// Sees what is measured after each of them but the last.
-    pub between: &'a mut dyn FnMut(&Engine),
-}
-
 #[cfg(feature = "gpu")]
 impl Steps {
     /// Those of `engine`, on what is asked for.
@@ -86,7 +81,7 @@ impl Steps {
         let device = match choice {
             DeviceChoice::Processor => return Ok(Self::default()),
             DeviceChoice::Auto if adapters().iter().all(|adapter| !adapter.f64 || adapter.kind == "software") => {
-                return Ok(Self::refused("this machine has no graphics processor with 64-bit numbers; an adapter that is a program is taken only by name".into()));
+                return Ok(Self::refused(NO_PROCESSOR.into()));
             }
             _ => opened(choice),
         };
@@ -108,13 +103,14 @@ impl Steps {
     /// # Errors
     /// [`Error::Missing`] when there is no such adapter.
     pub fn where_possible(choice: &DeviceChoice, engine: &Engine) -> Result<Self> {
-        if *choice != DeviceChoice::Processor && *choice != DeviceChoice::Auto {
-            opened(choice)?;
-            if let Err(error) = engine.record_step() {
-                return Ok(Self::refused(error.to_string()));
-            }
+        if *choice == DeviceChoice::Processor || *choice == DeviceChoice::Auto {
+            return Self::new(choice, engine);
         }
-        Self::new(choice, engine)
+        opened(choice)?;
+        Self::new(choice, engine).or_else(|error| match engine.record_step() {
+            Ok(_) => Err(error),
+            Err(reason) => Ok(Self::refused(reason.to_string())),
+        })
     }
 
     fn refused(reason: String) -> Self {
@@ -126,13 +122,16 @@ impl Steps {
         self.adapter.as_ref().map(|adapter| adapter.name.as_str())
     }
 
-    /// Advances `engine` by a step or by a few.
-    ///
-    /// # Errors
-    /// As for [`Engine::step`]; [`Error::Missing`] when an adapter fails on which the run must go on.
-    pub fn advance(&mut self, engine: &mut Engine, look: Look) -> Result<()> {
+    /// Advances `engine` by a step, on an adapter by a few, up to one after which `stop` says yes. `between` sees what is measured
+    /// after each but the last.
+    fn advance(
+        &mut self,
+        engine: &mut Engine,
+        stop: impl FnMut(Foretold) -> bool,
+        between: impl FnMut(&Engine),
+    ) -> Result<()> {
         let Some(adapter) = &mut self.adapter else { return engine.step() };
-        match adapter.stepper.block(engine, look.stop, look.between) {
+        match adapter.stepper.block(engine, stop, between) {
             // The engine is as it was: it goes on by itself.
             Err(error @ Error::Missing { .. }) if !adapter.required => {
                 forget();
@@ -148,6 +147,10 @@ impl Steps {
         }
     }
 }
+
+#[cfg(feature = "gpu")]
+const NO_PROCESSOR: &str =
+    "this machine has no graphics processor with 64-bit numbers; an adapter that is a program is taken only by name";
 
 /// Adapters that were opened in this process, by what was asked for: all runs on one of them go together.
 #[cfg(feature = "gpu")]
@@ -203,11 +206,7 @@ impl Steps {
         None
     }
 
-    /// Advances `engine` by a step.
-    ///
-    /// # Errors
-    /// As for [`Engine::step`].
-    pub fn advance(&mut self, engine: &mut Engine, _: Look) -> Result<()> {
+    fn advance(&mut self, engine: &mut Engine, _: impl FnMut(Foretold) -> bool, _: impl FnMut(&Engine)) -> Result<()> {
         engine.step()
     }
 }
@@ -219,9 +218,33 @@ impl Steps {
     /// Advances `engine` by one step.
     ///
     /// # Errors
-    /// As for [`Self::advance`].
+    /// As for [`Engine::step`]; [`Error::Missing`] when an adapter fails on which the run must go on.
     pub fn step(&mut self, engine: &mut Engine) -> Result<()> {
-        self.advance(engine, Look { stop: &mut |_| true, between: &mut |_| () })
+        self.advance(engine, |_| true, |_| ())
+    }
+
+    /// Advances `engine` by a step, on an adapter by a few, up to one after which `schedule` has something due or the run has come
+    /// to an end that can be foreseen. `between` shows `rule` what is measured after each but the last.
+    ///
+    /// # Errors
+    /// As for [`Self::step`].
+    pub fn step_until_due(
+        &mut self,
+        engine: &mut Engine,
+        schedule: &Schedule,
+        end: &PlannedEnd,
+        rule: &mut StopRule,
+        mut between: impl FnMut(&Engine, &mut StopRule),
+    ) -> Result<()> {
+        if self.adapter().is_none() {
+            return engine.step();
+        }
+        let (mut schedule, so_far) = (schedule.clone(), rule.clone());
+        let stop = |next: Foretold| {
+            let due = schedule.due(end.fraction(next.strain, next.time, next.steps));
+            due.row || due.snapshot || so_far.reached(next.strain, next.time, next.steps).is_some()
+        };
+        self.advance(engine, stop, |engine| between(engine, rule))
     }
 
     /// Why it is the processor that does them, or has done the last ones, though an adapter would have been taken.

@@ -3,6 +3,7 @@
 use crate::browser::{self, Browser};
 use crate::program::{printed, strandsnap, text};
 use crate::shown::{At, PATIENCE, SIZE, close_up, folder, json_of, next_picture, next_words, say, skipped};
+use crate::strand::STRAND;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -12,45 +13,13 @@ use strandsnap::explore::View;
 use tempfile::TempDir;
 use tungstenite::WebSocket;
 
-/// A strand of six wires that breaks within seconds.
-const SCENE: &str = r#"
-about = "A strand of six wires that is watched."
-seed = 3
-[material]
-density = "8960 kg/m^3"
-young = "115 GPa"
-poisson = 0.34
-[bond]
-law = "elasto-plastic"
-damping = 0.02
-hardening = { form = "voce", yield_stress = "100 MPa", saturation = "100 MPa", rate = 12, linear = "500 MPa" }
-rupture = { criterion = "plastic-strain", strain = "4 %", weibull_modulus = 8 }
-[contact]
-normal = "thornton"
-tangential = "mindlin"
-friction = 0.2
-hardness_strain = "8 %"
-[strand]
-length = "8 mm"
-[[strand.layer]]
-wires = 1
-wire_diameter = "0.39 mm"
-pitch = "inf"
-[[strand.layer]]
-wires = 5
-wire_diameter = "0.39 mm"
-pitch = "12 mm"
-[grip]
-length = "0.8 mm"
-speed = "2 m/s"
-adaptive = { fastest = "6 m/s", kinetic = "10 %", passages = 4 }
-[stop]
-strain = 0.07
-[output]
-samples = 60
-snapshots = 24
-checkpoint = 150
-"#;
+/// A strand that breaks within seconds, with states to look at.
+fn scene() -> String {
+    let (few, more) = ("snapshots = 6", "snapshots = 24");
+    assert!(STRAND.contains(few));
+    STRAND.replace(few, more)
+}
+
 /// What a run writes and nothing else changes; its summary also says what it cost.
 const FILES: [&str; 5] = ["trajectory.bin", "curve.csv", "wires.csv", "ruptures.csv", "scene.toml"];
 
@@ -69,11 +38,11 @@ fn going(test: &str, more: &[&str]) -> Option<Going> {
         return None;
     }
     let folder = tempfile::tempdir().unwrap();
-    let (scene, out) = (folder.path().join("strand.toml"), folder.path().join("out"));
-    std::fs::write(&scene, SCENE).unwrap();
+    let (file, out) = (folder.path().join("strand.toml"), folder.path().join("out"));
+    std::fs::write(&file, scene()).unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_strandsnap"))
         .arg("run")
-        .arg(&scene)
+        .arg(&file)
         .args(["--explore", "--no-open", "--no-frames", "--no-recording", "--threads", "1", "--out"])
         .arg(&out)
         .args(more)
@@ -130,7 +99,7 @@ fn states(at: &At) -> usize {
 /// What an undisturbed run of the same scene writes.
 fn alone(folder: &Path) -> PathBuf {
     let out = folder.join("alone");
-    std::fs::write(folder.join("strand.toml"), SCENE).unwrap();
+    std::fs::write(folder.join("strand.toml"), scene()).unwrap();
     let arguments = ["run", "strand.toml", "--no-frames", "--no-recording", "--threads", "1", "--out", "alone"];
     printed(&strandsnap(folder, &arguments));
     out

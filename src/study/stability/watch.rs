@@ -4,10 +4,9 @@ use super::measure::CompletedRun;
 use crate::base::error::Result;
 use crate::base::worst::renew;
 use crate::engine::Engine;
-use crate::engine::elsewhere::Foretold;
 use crate::observe::guard::Guard;
 use crate::observe::planned::PlannedEnd;
-use crate::run::steps::{Look, Steps};
+use crate::run::steps::Steps;
 use crate::run::{DeviceChoice, Schedule, StopRule, assemble};
 use crate::scene::Scene;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -82,17 +81,8 @@ impl Watched {
     /// One step, or a few up to one after which something is due; returns how many bonds broke.
     fn step(&mut self, schedule: &Schedule, end: &PlannedEnd) -> Result<usize> {
         let Self { engine, steps, rule, .. } = self;
-        if steps.adapter().is_some() {
-            let (mut schedule, so_far) = (schedule.clone(), rule.clone());
-            let mut stop = |next: Foretold| {
-                let due = schedule.due(end.fraction(next.strain, next.time, next.steps));
-                due.row || due.snapshot || so_far.reached(next.strain, next.time, next.steps).is_some()
-            };
-            let mut between = |engine: &Engine| rule.step(engine.time(), engine.strain(), engine.stress());
-            steps.advance(engine, Look { stop: &mut stop, between: &mut between })?;
-        } else {
-            engine.step()?;
-        }
+        let between = |engine: &Engine, rule: &mut StopRule| rule.step(engine.time(), engine.strain(), engine.stress());
+        steps.step_until_due(engine, schedule, end, rule, between)?;
         let ruptures = self.engine.take_ruptures();
         for rupture in &ruptures {
             self.rule.rupture();

@@ -37,7 +37,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
 
 /// The number of a name that ends with one.
 fn numbered(name: &str) -> Option<usize> {
-    name.strip_prefix("contact_")?.parse().ok()
+    name.strip_prefix("history_")?.parse().ok()
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Elsewhere for SphereContacts<N, T> {
@@ -62,7 +62,7 @@ impl<N: NormalLaw, T: TangentialLaw> Elsewhere for SphereContacts<N, T> {
 
     fn take(&mut self, numbers: &[(String, Vec<f64>)]) -> ChunkSums {
         let named = |name: &str| numbers.iter().find(|(own, _)| own == name).map_or(&[][..], |(_, all)| &all[..]);
-        let remembered: Vec<&[f64]> = (0..Self::FIELDS).map(|k| named(&format!("contact_{k}"))).collect();
+        let remembered: Vec<&[f64]> = (0..Self::FIELDS).map(|k| named(&format!("history_{k}"))).collect();
         let (fields, rows) = (Self::FIELDS, kernel::rows::<T>());
         let mut at = 0;
         for store in &mut self.stores {

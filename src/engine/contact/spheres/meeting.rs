@@ -4,9 +4,11 @@
 use crate::base::lanes::Real;
 use crate::base::recorder::{Formula, put_vector, take_vector};
 use crate::base::triple::Triple;
-use crate::engine::contact::pair::{ContactKinematics, Dissipated, History, Laws, contact_response};
+use crate::engine::contact::formula::ContactStep;
+use crate::engine::contact::pair::{History, Laws};
 use crate::law::contact::NormalLaw;
 use crate::law::tangential::TangentialLaw;
+use std::collections::BTreeMap;
 
 /// Two spheres from centre to centre.
 #[derive(Clone, Copy)]
@@ -81,43 +83,58 @@ impl<N: NormalLaw, T: TangentialLaw> Formula for SpherePair<N, T> {
         let turns = T::ACTIVE && self.turn;
         let zero = radii[0].splat(0.0);
         let spins = if turns { vectors("w") } else { [Triple::zero(zero); 2] };
-        let numbers: Vec<R> = (0..History::<N, T>::NUMBERS).map(|k| take(&format!("contact_{k}"))).collect();
-        let mut history = History::<N, T, R>::of(take("reduced_radius"), |k| numbers[k]);
+        // Needed before the contact takes it.
+        let offset = take(OFFSET);
 
-        let between = Between::of(x[1] - x[0], radii[0] + radii[1], history.offset);
+        let between = Between::of(x[1] - x[0], radii[0] + radii[1], offset);
         let touches = between.overlap.simd_gt(zero);
         let overlap = R::select(touches, between.overlap, zero);
         let normal = between.normal();
-        let arms = arms(radii, overlap, history.offset);
+        let arms = arms(radii, overlap, offset);
         let slide = v[1] - v[0];
         let velocity = if T::ACTIVE { surface_velocity(slide, spins, arms, normal) } else { slide };
-        let thinner = thinned[0] + thinned[1];
-        let viscosity = take("viscosity");
-        let meeting = ContactKinematics { normal, overlap, thinner, velocity, viscosity, dt: take("dt") };
-        let (pair, given) = contact_response(&self.laws, &mut history, &meeting);
+        let (mut given, mut done) = (BTreeMap::new(), BTreeMap::new());
+        let mut give = |name: &str, number| {
+            given.insert(name.to_owned(), number);
+        };
+        put_vector(&mut give, "normal", normal);
+        put_vector(&mut give, "velocity", velocity);
+        give("overlap", overlap);
+        give("thinner", thinned[0] + thinned[1]);
+        give(OFFSET, offset);
+        ContactStep(self.laws).compute(
+            &mut |name| given.get(name).copied().unwrap_or_else(|| take(name)),
+            &mut |name, number| {
+                done.insert(name.to_owned(), number);
+            },
+        );
 
-        history.each_number(|k, number| put(&format!("contact_{k}"), number));
+        let mut result = |name: &str| done[name];
+        let [push, friction] = ["force", "friction"].map(|name| take_vector(&mut result, name));
         let nothing = Triple::zero(zero);
-        put_vector(put, "push", Triple::select(touches, pair.force, nothing));
+        put_vector(put, "push", Triple::select(touches, push, nothing));
         if turns {
-            let twist = Triple::select(touches, normal.cross(pair.friction), nothing);
+            let twist = Triple::select(touches, normal.cross(friction), nothing);
             put_vector(put, "twist_first", twist * arms[0]);
             put_vector(put, "twist_second", twist * arms[1]);
         }
-        let Dissipated { plastic, thinning, friction, damping } = given;
-        for (name, work) in ENERGIES.into_iter().zip([plastic, thinning, friction, damping]) {
-            put(name, take(name) + work);
+        ENERGIES.into_iter().for_each(|name| put(name, take(name) + done[name]));
+        for k in 0..History::<N, T>::NUMBERS {
+            let name = format!("history_{k}");
+            put(&name, done[&name]);
         }
         let least = radii[0].simd_min(radii[1]);
         let before = take("deepest");
         let deeper = touches & overlap.simd_gt(least * before);
         put("deepest", R::select(deeper, overlap / least, before));
-        for (name, number) in [("deepest_overlap", overlap), ("deepest_force", history.normal_force)] {
+        let force = done[&format!("history_{}", History::<N, T>::FORCE)];
+        for (name, number) in [("deepest_overlap", overlap), ("deepest_force", force)] {
             put(name, R::select(deeper, number, take(name)));
         }
     }
 }
 
 /// Names of the energies that a pair gives off: plastic work, work on thinning wires, friction, damping.
-pub const ENERGIES: [&str; 4] =
-    ["contact_plastic_work", "contact_thinning_work", "friction_work", "contact_damping_work"];
+pub const ENERGIES: [&str; 4] = ["plastic_work", "thinning_work", "friction_work", "damping_work"];
+/// Name of the overlap that does not count, [`History::OFFSET`].
+const OFFSET: &str = "history_0";
