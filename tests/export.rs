@@ -1,6 +1,8 @@
 //! A run in files for other programs: read back here, and in the programs themselves (`tests/export/*.py`).
 //! `READERS_PYTHON` names a Python that has them; without it those tests say that they were skipped.
 
+#[path = "export/also.rs"]
+mod also;
 #[path = "export/decode.rs"]
 mod decode;
 #[path = "common/drive.rs"]

@@ -1,11 +1,16 @@
-//! What is said of a run that has ended.
+//! What is said of a run that has ended, and the files for other programs that it then gets.
 
 use super::say::say;
+use crate::base::error::{Error, Result};
 use crate::base::finding::StopReason;
 use crate::base::wording::counted;
+use crate::export::{ExportOptions, export};
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{FRAMES, RECORDING};
+use crate::run::replay::Selection;
 use crate::run::{self, RunOptions, RunSummary, outputs};
+use crate::scene::spec::OutputSpec;
+use std::sync::atomic::AtomicBool;
 
 /// Says how a run ended, and where its results are.
 pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
@@ -45,4 +50,47 @@ pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
             say!("Open the recording ({RECORDING}) with: strandsnap view {}", options.out.display());
         }
     }
+}
+
+/// Makes the files that `output.also` asks for where a run and its pictures have come to their end, in place of earlier ones.
+///
+/// # Errors
+/// As for [`export`]; [`Error::Interrupted`] when `stop` was set meanwhile, with what is left to be made told.
+pub fn export_also(
+    summary: &RunSummary,
+    output: &OutputSpec,
+    options: &RunOptions,
+    quiet: bool,
+    stop: &AtomicBool,
+) -> Result<()> {
+    let run = &options.out;
+    let undrawn = summary.cost.frames.is_some_and(|frames| frames.unfinished());
+    let ended = summary.stopped != StopReason::Interrupted && !undrawn;
+    for (k, format) in output.also.iter().enumerate().filter(|_| ended) {
+        let wanted = ExportOptions {
+            format: *format,
+            selection: Selection::default(),
+            out: None,
+            overwrite: true,
+            anyway: false,
+        };
+        match export(run, &wanted, stop) {
+            Ok(made) if !quiet => {
+                say!(
+                    "  {}: {} ({})",
+                    made.folder.display(),
+                    counted(made.files, "file"),
+                    outputs::megabytes(made.bytes)
+                );
+            }
+            Err(Error::Interrupted) => {
+                for left in &output.also[k..] {
+                    say!("Still to be made: strandsnap export {} --format {}", run.display(), left.word());
+                }
+                return Err(Error::Interrupted);
+            }
+            made => drop(made?),
+        }
+    }
+    Ok(())
 }

@@ -3,13 +3,14 @@
 use super::animation::AnimationArgs;
 use super::ended::Ended;
 use super::explore::{AddressArgs, Watched};
-use super::finished::print;
+use super::finished::{export_also, print};
 use super::interrupt;
 use super::look::LookArgs;
 use super::progress::Progress;
 use super::resume::{draw, go_on};
 use super::values::{SceneArgs, Threads, duration, threads};
 use crate::base::error::{Error, Result};
+use crate::export;
 use crate::observe::Observer;
 use crate::run::drawing::Undrawn;
 use crate::run::folder::{ANIMATION, SUMMARY};
@@ -99,6 +100,7 @@ pub fn run(args: Args) -> Result<Ended> {
             "there is nothing to go on with; --overwrite runs it again, in place of its results",
         ));
     }
+    export::check(&scene.spec.output.also)?;
     let options = RunOptions {
         animation: args.animation.resolve(&out.join(ANIMATION)),
         // What was ended before its first checkpoint begins anew.
@@ -123,6 +125,7 @@ pub fn run(args: Args) -> Result<Ended> {
         run::run_watched(&scene, &options, watchers, stop)
     })??;
     print(&summary, &options, args.quiet);
+    export_also(&summary, &scene.spec.output, &options, args.quiet, stop)?;
     watched.end(&summary, stop);
     interrupt::ended_run(&summary)
 }

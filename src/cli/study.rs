@@ -8,6 +8,7 @@ use super::values::{Seeds, name_or_path, quality};
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::base::wording::counted;
+use crate::export::{self, Format};
 use crate::observe::files::write_whole;
 use crate::run::{DeviceChoice, folder};
 use crate::scene::quality::Quality;
@@ -56,6 +57,9 @@ pub struct Args {
     /// Write scripts that run the cases which are missing as the array of a batch system, and gather them; run nothing
     #[arg(long, value_name = "slurm|hq|gnu-parallel", conflicts_with_all = ["case", "collect", "dry_run", "fresh", "jobs"])]
     emit: Option<BatchSystem>,
+    /// Write the tables as Apache Parquet too
+    #[arg(long, conflicts_with_all = ["case", "dry_run", "emit"])]
+    parquet: bool,
     /// List the studies that come with the program
     #[arg(long)]
     list: bool,
@@ -70,6 +74,9 @@ pub fn study(args: &Args) -> Result<Ended> {
         set: args.set.clone(),
         seeds: args.seeds.clone().map_or(Vec::new(), |seeds| seeds.0),
     };
+    if args.parquet {
+        export::check(&[Format::Parquet])?;
+    }
     let definition = Definition::load(name, &changes)?;
     for one in &definition.merged {
         eprintln!("note: {} {} is {}, and is not run twice", one.axis, one.same, one.kept);
@@ -84,7 +91,7 @@ pub fn study(args: &Args) -> Result<Ended> {
     }
     if args.collect {
         let store = CaseStore::of(&out).on(&args.device);
-        let shown = show(&definition, &store, &out);
+        let shown = show(&definition, &store, &out, args.parquet);
         cases::tell_damaged(&store, "its case counts as not run, until the study is run again");
         return shown.map(|()| Ended::Well);
     }
@@ -105,7 +112,7 @@ pub fn study(args: &Args) -> Result<Ended> {
     let outputs = all_outputs(sweep::run(&definition, &costs, &store, &runner)?);
     drop(line);
     // What is there is shown also after an interruption, which explains what is not.
-    let shown = show(&definition, &store, &out);
+    let shown = show(&definition, &store, &out, args.parquet);
     outputs.and(shown).map(|()| Ended::Well)
 }
 
@@ -212,7 +219,7 @@ fn one(definition: &Definition, number: usize, store: &CaseStore, runner: &CaseR
 }
 
 /// Gathers what is there, writes and prints it.
-fn show(definition: &Definition, store: &CaseStore, out: &Path) -> Result<()> {
+fn show(definition: &Definition, store: &CaseStore, out: &Path, parquet: bool) -> Result<()> {
     let gathered = Gathered::read(definition, store);
     if gathered.ran() == 0 {
         let cause = gathered.cases.iter().find_map(CaseResult::cause);
@@ -221,7 +228,7 @@ fn show(definition: &Definition, store: &CaseStore, out: &Path) -> Result<()> {
         return Err(Error::input(format!("no case of {} has a result; {cause}", definition.name), help));
     }
     let findings = Findings::new(definition, &gathered)?;
-    let files = report::write(definition, &gathered, &findings, &cases::command(), out)?;
+    let files = report::write(definition, &gathered, &findings, &cases::command(), out, parquet)?;
     say::print(format_args!("{}", report::to_text(definition, &gathered, &findings)));
     say!("Written:");
     files.iter().for_each(|file| say!("  {}", file.display()));

@@ -1,4 +1,4 @@
-//! The formats, and the names of their files.
+//! The names of the files of each format.
 
 /// LAMMPS: particles and bonds before loading.
 pub(super) const DATA: &str = "particles.data";
@@ -9,43 +9,9 @@ pub(super) const BONDS: &str = "bonds.dump";
 /// Extended XYZ.
 pub(super) const XYZ: &str = "particles.xyz";
 
-/// What kind of files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Apache Parquet.
-    Parquet,
-    /// VTK's XML polygonal data, with collections over time.
-    Vtk,
-    /// Data file and dumps as LAMMPS writes them.
-    Lammps,
-    /// Extended XYZ.
-    Xyz,
-}
+pub use crate::scene::look::Format;
 
 impl Format {
-    /// Every value.
-    pub const ALL: [Self; 4] = [Self::Parquet, Self::Vtk, Self::Lammps, Self::Xyz];
-
-    /// The word that people write.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Parquet => "parquet",
-            Self::Vtk => "vtk",
-            Self::Lammps => "lammps",
-            Self::Xyz => "xyz",
-        }
-    }
-
-    /// What it means.
-    pub fn about(self) -> &'static str {
-        match self {
-            Self::Parquet => "Tables and series per wire and per bond, for pandas, polars, DuckDB",
-            Self::Vtk => "Wires and bonds over time (.vtp, .pvd), for ParaView and PyVista",
-            Self::Lammps => "Data file, dump of atoms and dump of bonds over time, for OVITO",
-            Self::Xyz => "Particles over time as extended XYZ, for OVITO and ASE",
-        }
-    }
-
     /// The file to open first, which gets its name last.
     pub fn first_file(self) -> &'static str {
         match self {

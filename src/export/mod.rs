@@ -9,6 +9,8 @@ mod format;
 mod lammps;
 #[cfg(feature = "export")]
 mod parquet;
+#[cfg(feature = "export")]
+pub mod parquet_table;
 mod staged;
 mod target;
 #[cfg(feature = "export")]
@@ -19,7 +21,6 @@ use crate::base::error::{Error, Result};
 use crate::observe::Observer;
 use crate::run::folder::OutFolder;
 use crate::run::identity;
-#[cfg(not(feature = "export"))]
 use crate::run::outputs::built_without;
 use crate::run::replay::{Replay, Selection};
 pub use format::Format;
@@ -83,6 +84,21 @@ pub fn export(run: &Path, options: &ExportOptions, stop: &AtomicBool) -> Result<
     Ok(Exported { folder: out, files, bytes, snapshots, cut_off: replay.cut_off().map(ToString::to_string) })
 }
 
+/// Checks that this program can write these formats, for what would find out only after a long run.
+///
+/// # Errors
+/// [`Error::Missing`] for a format that was not built.
+pub fn check(formats: &[Format]) -> Result<()> {
+    formats.iter().try_for_each(|format| match format {
+        Format::Parquet | Format::Vtk if !cfg!(feature = "export") => Err(not_built()),
+        Format::Parquet | Format::Vtk | Format::Lammps | Format::Xyz => Ok(()),
+    })
+}
+
+fn not_built() -> Error {
+    built_without("this format", "export", "export to lammps or xyz, which need nothing more")
+}
+
 #[cfg(feature = "export")]
 fn writer(format: Format, target: Target) -> Result<Box<dyn Observer>> {
     Ok(match format {
@@ -96,9 +112,7 @@ fn writer(format: Format, target: Target) -> Result<Box<dyn Observer>> {
 #[cfg(not(feature = "export"))]
 fn writer(format: Format, target: Target) -> Result<Box<dyn Observer>> {
     match format {
-        Format::Parquet | Format::Vtk => {
-            Err(built_without("this format", "export", "export to lammps or xyz, which need nothing more"))
-        }
+        Format::Parquet | Format::Vtk => Err(not_built()),
         Format::Lammps => Ok(Box::new(lammps::Writer::new(target))),
         Format::Xyz => Ok(Box::new(xyz::Writer::new(target))),
     }

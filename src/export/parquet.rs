@@ -5,25 +5,15 @@
 //! (`strandsnap.units`), for programs that show no metadata of columns.
 
 use super::body::Body;
+use super::parquet_table::ParquetTable;
 use super::target::Target;
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
 use crate::observe::Observer;
-use crate::observe::column::{Column, Kind, Value};
+use crate::observe::column::Column;
 use crate::observe::peaks::Peaks;
 use crate::observe::tables::{self, Wires, layer_name};
-use arrow_array::{ArrayRef, BooleanArray, Float32Array, Float64Array, Int64Array, RecordBatch, StringArray};
-use arrow_schema::{DataType, Field, Schema, SchemaRef};
-use parquet::arrow::ArrowWriter;
-use parquet::basic::Compression;
-use parquet::errors::ParquetError;
-use parquet::file::metadata::KeyValue;
-use parquet::file::properties::WriterProperties;
-use std::collections::{BTreeMap, HashMap};
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A row of the series of wires.
@@ -131,7 +121,7 @@ struct Open {
     samples: Vec<Sample>,
     ruptures: Vec<Rupture>,
     wires: Wires,
-    bonds: Table,
+    bonds: ParquetTable,
 }
 
 impl Writer {
@@ -139,8 +129,9 @@ impl Writer {
         Self { target, open: None }
     }
 
-    fn create<R>(&self, info: &RunInfo, name: &str, columns: &[Column<R>]) -> Result<Table> {
-        Table::create(&self.target.folder.join(name), &info.name, &self.target.run.to_string(), columns)
+    fn create<R>(&self, info: &RunInfo, name: &str, columns: &[Column<R>]) -> Result<ParquetTable> {
+        let about = [("run", info.name.clone()), ("run_id", self.target.run.to_string())];
+        ParquetTable::create(&self.target.folder.join(name), &about, columns)
     }
 
     fn write_small_tables(&self, open: &Open) -> Result<()> {
@@ -211,99 +202,5 @@ impl Observer for Writer {
         let Some(open) = self.open.take() else { return Ok(()) };
         self.write_small_tables(&open)?;
         open.bonds.finish()
-    }
-}
-
-/// A Parquet file that grows by batches of rows.
-struct Table {
-    path: PathBuf,
-    schema: SchemaRef,
-    writer: ArrowWriter<BufWriter<File>>,
-}
-
-impl Table {
-    fn create<R>(path: &Path, run: &str, id: &str, columns: &[Column<R>]) -> Result<Self> {
-        let file = File::create(path).map_err(|e| Error::io("cannot write", path, e))?;
-        let units: BTreeMap<&str, &str> =
-            columns.iter().filter(|c| !c.unit.is_empty()).map(|c| (&*c.name, &*c.unit)).collect();
-        let units = serde_json::to_string(&units).expect("text is JSON");
-        let version = env!("CARGO_PKG_VERSION");
-        let about: BTreeMap<String, String> = [("run", run), ("run_id", id), ("version", version), ("units", &units)]
-            .map(|(key, value)| (format!("strandsnap.{key}"), value.to_owned()))
-            .into();
-        // Arrow's readers see what the schema carries, all others what the file does.
-        let pairs = about.iter().map(|(key, value)| KeyValue::new(key.clone(), value.clone())).collect();
-        let fields: Vec<Field> = columns.iter().map(field).collect();
-        let schema = Arc::new(Schema::new(fields).with_metadata(about.into_iter().collect()));
-        let properties = WriterProperties::builder()
-            .set_compression(Compression::LZ4_RAW)
-            .set_key_value_metadata(Some(pairs))
-            .build();
-        let writer = ArrowWriter::try_new(BufWriter::new(file), schema.clone(), Some(properties));
-        let writer = writer.map_err(|e| refused(path, e))?;
-        Ok(Self { path: path.to_owned(), schema, writer })
-    }
-
-    fn write<R>(&mut self, columns: &[Column<R>], rows: &[R]) -> Result<()> {
-        let arrays = columns.iter().map(|column| array(column, rows)).collect();
-        let batch = RecordBatch::try_new(self.schema.clone(), arrays).expect("arrays are made by the schema's columns");
-        self.writer.write(&batch).map_err(|e| refused(&self.path, e))
-    }
-
-    fn filled<R>(mut self, columns: &[Column<R>], rows: &[R]) -> Result<()> {
-        self.write(columns, rows)?;
-        self.finish()
-    }
-
-    fn finish(self) -> Result<()> {
-        self.writer.close().map(|_| ()).map_err(|e| refused(&self.path, e))
-    }
-}
-
-fn refused(path: &Path, error: ParquetError) -> Error {
-    let cause = match error {
-        // What the system answered is wrapped twice.
-        ParquetError::External(cause) => {
-            cause.downcast::<std::io::Error>().map_or_else(std::io::Error::other, |cause| *cause)
-        }
-        other => std::io::Error::other(other),
-    };
-    Error::io("cannot write", path, cause)
-}
-
-/// The kind of a column that is written; text where only its values tell.
-fn kind<R>(column: &Column<R>) -> Kind {
-    column.kind.unwrap_or(Kind::Text)
-}
-
-fn field<R>(column: &Column<R>) -> Field {
-    let data = match kind(column) {
-        Kind::Number => DataType::Float64,
-        Kind::Single => DataType::Float32,
-        Kind::Count => DataType::Int64,
-        Kind::Text => DataType::Utf8,
-        Kind::Flag => DataType::Boolean,
-    };
-    let about = [("unit", &column.unit), ("about", &column.about)].into_iter().filter(|(_, text)| !text.is_empty());
-    let about: HashMap<String, String> = about.map(|(key, text)| (key.into(), text.to_string())).collect();
-    Field::new(&*column.name, data, true).with_metadata(about)
-}
-
-fn array<R>(column: &Column<R>, rows: &[R]) -> ArrayRef {
-    let values = rows.iter().map(|row| column.value(row));
-    let number = |value| if let Value::Number(value) = value { Some(value) } else { None };
-    match kind(column) {
-        Kind::Number => Arc::new(values.map(number).collect::<Float64Array>()),
-        Kind::Single => Arc::new(values.map(|value| number(value).map(|value| value as f32)).collect::<Float32Array>()),
-        Kind::Count => Arc::new(
-            values.map(|v| if let Value::Count(n) = v { Some(n as i64) } else { None }).collect::<Int64Array>(),
-        ),
-        Kind::Flag => Arc::new(
-            values.map(|v| if let Value::Flag(holds) = v { Some(holds) } else { None }).collect::<BooleanArray>(),
-        ),
-        Kind::Text => {
-            let text = |value: Value| (value != Value::Missing).then(|| value.in_csv());
-            Arc::new(values.map(text).collect::<StringArray>())
-        }
     }
 }

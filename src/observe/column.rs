@@ -166,6 +166,11 @@ impl<'a, R: ?Sized> Column<'a, R> {
         Self { text: Some(text), ..self }
     }
 
+    /// The same, whose values are of a kind that the type of its cells does not tell.
+    pub fn of_kind(self, kind: Option<Kind>) -> Self {
+        Self { kind, ..self }
+    }
+
     /// The value of a result.
     pub fn value(&self, result: &R) -> Value {
         (self.of)(result)

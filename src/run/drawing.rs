@@ -60,6 +60,11 @@ impl Undrawn {
         self.replay.origin() == Origin::of(&scene.spec)
     }
 
+    /// Its scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
     /// Makes ready to draw what is missing.
     ///
     /// # Errors

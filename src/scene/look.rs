@@ -1,4 +1,4 @@
-//! What people choose by one word for pictures: views, theme, colouring. One row here is all that a new word needs in
+//! What people choose by one word for outputs: views, theme, colouring, formats. One row here is all that a new word needs in
 //! the scene and on the command line.
 
 use schemars::JsonSchema;
@@ -67,6 +67,16 @@ words! {
 impl Default for Theme {
     fn default() -> Self {
         Self::Dark
+    }
+}
+
+words! {
+    /// Files for other programs.
+    Format {
+        Parquet = "parquet", "Tables and series per wire and per bond, for pandas, polars, DuckDB";
+        Vtk = "vtk", "Wires and bonds over time (.vtp, .pvd), for ParaView and PyVista";
+        Lammps = "lammps", "Data file, dump of atoms and dump of bonds over time, for OVITO";
+        Xyz = "xyz", "Particles over time as extended XYZ, for OVITO and ASE";
     }
 }
 

@@ -193,7 +193,18 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
         views: raw.views.clone().unwrap_or(usual.views),
         theme: raw.theme.unwrap_or(usual.theme),
         camera: camera(&at.key("camera"), &raw.camera)?,
+        also: also(&at.key("also"), raw.also.as_deref().unwrap_or_default())?,
     })
+}
+
+fn also(at: &At, raw: &[Format]) -> Result<Vec<Format>> {
+    match (1..raw.len()).find(|index| raw[..*index].contains(&raw[*index])) {
+        None => Ok(raw.into()),
+        Some(twice) => {
+            let what = format!("`also` names \"{}\" twice", raw[twice].word());
+            Err(at.element(twice).error(what, "once is enough"))
+        }
+    }
 }
 
 fn checkpoint(at: &At, raw: &Option<Scalar>) -> Result<CheckpointSpec> {

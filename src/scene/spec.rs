@@ -1,7 +1,7 @@
 //! `Spec`: a scene after resolution, all SI, nothing left to guess. It is what every later floor reads.
 
 /// Pictures are described by the words that people write.
-pub use super::look::{ColourBy, Theme, View};
+pub use super::look::{ColourBy, Format, Theme, View};
 /// The hardening law is stated as it is computed.
 pub use crate::law::bond::hardening::Hardening as HardeningSpec;
 use glam::DVec3;
@@ -465,6 +465,8 @@ pub struct OutputSpec {
     pub theme: Theme,
     /// Viewpoint of the frames.
     pub camera: CameraSpec,
+    /// Files for other programs that are made of a run when it has come to its end.
+    pub also: Vec<Format>,
 }
 
 impl Default for OutputSpec {
@@ -479,6 +481,7 @@ impl Default for OutputSpec {
             views: Vec::new(),
             theme: Theme::default(),
             camera: CameraSpec::default(),
+            also: Vec::new(),
         }
     }
 }

@@ -394,6 +394,10 @@ fn output(out: &mut Lines, output: &OutputSpec) {
         out.entry("views", format!("[{}]", words.join(", ")));
     }
     out.entry("theme", text(output.theme.word()));
+    if !output.also.is_empty() {
+        let words: Vec<String> = output.also.iter().map(|format| text(format.word())).collect();
+        out.entry("also", format!("[{}]", words.join(", ")));
+    }
     out.table("[output.camera]");
     out.quantity("azimuth", output.camera.azimuth, Dimension::Angle);
     out.quantity("elevation", output.camera.elevation, Dimension::Angle);

@@ -1,7 +1,7 @@
 //! Outputs as they are written.
 
 use super::scalar::Scalar;
-use crate::scene::look::{ColourBy, Theme, View};
+use crate::scene::look::{ColourBy, Format, Theme, View};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -39,6 +39,10 @@ pub struct RawOutput {
     /// Viewpoint of the frames.
     #[serde(default)]
     pub camera: RawCamera,
+    /// Files for other programs that are made when the run has come to its end, as `strandsnap export` makes them, such as
+    /// ["parquet"].
+    #[schemars(extend("x-otherwise" = "none"))]
+    pub also: Option<Vec<Format>>,
 }
 
 /// `[output.camera]`: the viewpoint of the three-dimensional panels. The strand's axis z points right, y points up, the

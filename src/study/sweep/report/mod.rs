@@ -1,8 +1,8 @@
 //! What a study found, for people and for programs.
 
 mod comparison;
-mod csv;
 mod effects;
+mod files;
 mod findings;
 mod fits;
 mod html;
@@ -18,6 +18,7 @@ use crate::base::error::{Error, Result};
 use crate::observe::files::write_whole;
 use crate::run::folder::{STUDY, STUDY_PAGE};
 use crate::study::table::Table;
+use files::Files;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,8 @@ pub fn to_text(definition: &Definition, gathered: &Gathered, findings: &Findings
     text
 }
 
-/// Writes everything into the study's folder; `command` is what the user typed. Gives the files.
+/// Writes everything into the study's folder, tables with `parquet` as Parquet too; `command` is what the user typed. Gives the
+/// files.
 ///
 /// # Errors
 /// When the folder cannot be written.
@@ -50,11 +52,12 @@ pub fn write(
     findings: &Findings,
     command: &str,
     folder: &Path,
+    parquet: bool,
 ) -> Result<Vec<PathBuf>> {
-    let [cases, points, breaks] = ["cases.csv", "points.csv", "breaks.csv"].map(|name| folder.join(name));
-    csv::cases(definition, gathered, &cases)?;
-    csv::points(definition, gathered, &points)?;
-    csv::breaks(definition, gathered, &breaks)?;
+    let files = Files { folder, study: &definition.name, parquet };
+    let mut written = files::cases(definition, gathered, &files)?;
+    written.extend(files::points(definition, gathered, &files)?);
+    written.extend(files::breaks(definition, gathered, &files)?);
     let tables = all_tables(definition, gathered, findings);
     let json = folder.join(STUDY);
     write_json(definition, gathered, findings, command, &json)?;
@@ -62,7 +65,7 @@ pub fn write(
     let page = folder.join(STUDY_PAGE);
     let text = html::page(definition, gathered, &tables, &plots, command)?;
     write_whole(&page, &text)?;
-    Ok([cases, points, breaks, json].into_iter().chain(plots).chain([page]).collect())
+    Ok(written.into_iter().chain([json]).chain(plots).chain([page]).collect())
 }
 
 /// `study.json`: the findings for programs; the numbers of cases stand in the tables beside it.

@@ -1,21 +1,56 @@
-//! `cases.csv`: a line per case; `points.csv`: means over seeds; `breaks.csv`: what each layer did. Cells of what is not
-//! known are empty.
+//! The tables of a study in files: `cases`, a line per case; `points`, means over seeds; `breaks`, what each layer did. As CSV,
+//! where cells of what is not known are empty, and on demand as Parquet.
 
 use super::super::breaks::{self, LayerBreaks};
 use super::super::definition::Definition;
 use super::super::gather::{CaseResult, Gathered, construction};
 use super::super::quantity::{self, Quantity};
 use crate::base::error::Result;
+use crate::observe::column::{Cell, Kind};
 use crate::study::column::{Column, Value, write_csv};
 use crate::study::statistics::Statistics;
 use crate::study::tensile::TensileResult;
-use std::path::Path;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+/// Where tables go.
+pub struct Files<'a> {
+    /// The study's folder.
+    pub folder: &'a Path,
+    /// Name of the study.
+    pub study: &'a str,
+    /// Whether they are written as Parquet too.
+    pub parquet: bool,
+}
+
+impl Files<'_> {
+    /// Writes a table, and gives its files.
+    fn write<R>(&self, name: &str, columns: &[Column<R>], rows: &[R]) -> Result<Vec<PathBuf>> {
+        let file = |extension: &str| self.folder.join(name).with_extension(extension);
+        write_csv(columns, rows, &file("csv"))?;
+        if !self.parquet {
+            return Ok(vec![file("csv")]);
+        }
+        parquet(&file("parquet"), self.study, columns, rows)?;
+        Ok(vec![file("csv"), file("parquet")])
+    }
+}
+
+#[cfg(feature = "export")]
+fn parquet<R>(path: &Path, study: &str, columns: &[Column<R>], rows: &[R]) -> Result<()> {
+    crate::export::parquet_table::write_whole(path, &[("study", study.to_owned())], columns, rows)
+}
+
+#[cfg(not(feature = "export"))]
+fn parquet<R>(_: &Path, _: &str, _: &[Column<R>], _: &[R]) -> Result<()> {
+    crate::export::check(&[crate::export::Format::Parquet])
+}
 
 /// A line per case.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn cases(definition: &Definition, gathered: &Gathered, path: &Path) -> Result<()> {
+pub fn cases(definition: &Definition, gathered: &Gathered, files: &Files) -> Result<Vec<PathBuf>> {
     let mut columns: Vec<Column<CaseResult>> = vec![
         Column::in_files("case", |case: &CaseResult| case.number),
         Column::in_files("folder", |case: &CaseResult| case.folder.clone()),
@@ -25,38 +60,41 @@ pub fn cases(definition: &Definition, gathered: &Gathered, path: &Path) -> Resul
     columns.extend(levels(definition, |case: &CaseResult| case.point));
     columns.push(Column::in_files("seed", |case: &CaseResult| case.seed));
     columns.push(Column::in_files("construction", |case: &CaseResult| gathered.spec(case.point).map(construction)));
-    let quantity = |quantity: &'static Quantity| of_run(quantity.label(), move |run| quantity.value(run));
+    let quantity = |quantity: &'static Quantity| {
+        of_run(quantity.label(), &quantity.unit, move |run| quantity.value(run)).of_kind(quantity.kind)
+    };
     columns.extend(quantity::ALL.iter().map(quantity));
     columns.extend([
-        of_run("first layer", |run| run.breaks.first().map(|first| first.layer.clone()).into()),
-        of_run("first wire", |run| run.breaks.first().map(|first| first.wire).into()),
-        of_run("first break z [mm]", |run| run.breaks.first().map(|first| first.rest_z_mm).into()),
-        of_run("order of layers", |run| breaks::order(run).join(" ").into()),
-        of_run("wires broken", |run| run.breaks.len().into()),
-        of_run("wires", |run| run.wires.into()),
-        of_run("particles", |run| run.particles.into()),
-        of_run("steps", |run| run.steps.into()),
-        of_run("run time [s]", |run| run.wall_s.into()),
-        of_run("CPU [s]", |run| run.cpu_s.into()),
-        of_run("energy residual [%]", |run| run.energy_residual_percent.into()),
-        of_run("kinetic/internal [-]", |run| run.kinetic_over_internal.into()),
+        of_run("first layer", "", |run| run.breaks.first().map(|first| first.layer.clone())),
+        of_run("first wire", "", |run| run.breaks.first().map(|first| first.wire)),
+        of_run("first break z [mm]", "mm", |run| run.breaks.first().map(|first| first.rest_z_mm)),
+        of_run("order of layers", "", |run| breaks::order(run).join(" ")),
+        of_run("wires broken", "", |run| run.breaks.len()),
+        of_run("wires", "", |run| run.wires),
+        of_run("particles", "", |run| run.particles),
+        of_run("steps", "", |run| run.steps),
+        of_run("run time [s]", "s", |run| run.wall_s),
+        of_run("CPU [s]", "s", |run| run.cpu_s),
+        of_run("energy residual [%]", "%", |run| run.energy_residual_percent),
+        of_run("kinetic/internal [-]", "-", |run| run.kinetic_over_internal),
     ]);
-    write_csv(&columns, &gathered.cases, path)
+    files.write("cases", &columns, &gathered.cases)
 }
 
-/// A column of what a case gave, empty where it gave nothing.
-fn of_run<'a>(
-    name: impl Into<std::borrow::Cow<'a, str>>,
-    of: impl Fn(&TensileResult) -> Value + Send + Sync + 'a,
+/// A column of what a case gave, in a unit, empty where it gave nothing.
+fn of_run<'a, V: Cell>(
+    name: impl Into<Cow<'a, str>>,
+    unit: &'a str,
+    of: impl Fn(&TensileResult) -> V + Send + Sync + 'a,
 ) -> Column<'a, CaseResult> {
-    Column::in_files(name, move |case: &CaseResult| case.result().map_or(Value::Missing, &of))
+    Column::described(name, unit, "", move |case: &CaseResult| case.result().map(&of))
 }
 
 /// A line per point and quantity: mean, standard deviation and interval over seeds.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn points(definition: &Definition, gathered: &Gathered, path: &Path) -> Result<()> {
+pub fn points(definition: &Definition, gathered: &Gathered, files: &Files) -> Result<Vec<PathBuf>> {
     type Mean = (usize, &'static Quantity, Statistics);
     let mut columns: Vec<Column<Mean>> = levels(definition, |(point, ..): &Mean| *point);
     columns.extend([
@@ -71,14 +109,14 @@ pub fn points(definition: &Definition, gathered: &Gathered, path: &Path) -> Resu
     let means = |point: usize| {
         definition.quantities.iter().filter_map(move |one| Some((point, *one, gathered.stat(point, one)?)))
     };
-    write_csv(&columns, &(0..definition.points.len()).flat_map(means).collect::<Vec<Mean>>(), path)
+    files.write("points", &columns, &(0..definition.points.len()).flat_map(means).collect::<Vec<Mean>>())
 }
 
 /// A line per point and layer: when and where it broke, as frequencies over seeds.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn breaks(definition: &Definition, gathered: &Gathered, path: &Path) -> Result<()> {
+pub fn breaks(definition: &Definition, gathered: &Gathered, files: &Files) -> Result<Vec<PathBuf>> {
     type Layer = (usize, LayerBreaks);
     let of_point = |point: usize| breaks::layers(gathered, point).into_iter().map(move |layer| (point, layer));
     let layers: Vec<Layer> = (0..definition.points.len()).flat_map(of_point).collect();
@@ -95,13 +133,13 @@ pub fn breaks(definition: &Definition, gathered: &Gathered, path: &Path) -> Resu
     }));
     columns.extend([
         Column::in_files("runs unbroken", |(_, layer): &Layer| layer.never),
-        Column::in_files("wires broken [%]", |(_, layer): &Layer| layer.broken_percent.map(|stat| stat.mean)),
+        Column::described("wires broken [%]", "%", "", |(_, layer): &Layer| layer.broken_percent.map(|stat| stat.mean)),
         Column::in_files("runs with its first break in the middle third", |(_, layer): &Layer| layer.middle_third),
-        Column::in_files("first break from mid-length [mm]", |(_, layer): &Layer| {
+        Column::described("first break from mid-length [mm]", "mm", "", |(_, layer): &Layer| {
             layer.off_middle_mm.map(|stat| stat.mean)
         }),
     ]);
-    write_csv(&columns, &layers, path)
+    files.write("breaks", &columns, &layers)
 }
 
 /// A column per axis: numbers where its levels are, names otherwise.
@@ -110,10 +148,11 @@ fn levels<'a, R: 'a>(
     point: impl Fn(&R) -> usize + Copy + Send + Sync + 'a,
 ) -> Vec<Column<'a, R>> {
     let column = |(k, axis): (usize, &'a super::super::axis::Axis)| {
-        Column::in_files(axis.label(), move |result: &R| {
+        let column = Column::described(axis.label(), &*axis.unit, "", move |result: &R| {
             let level = &axis.levels[definition.points[point(result)][k]];
             level.number.map_or_else(|| Value::from(&*level.name), Value::from)
-        })
+        });
+        column.of_kind(axis.is_numeric().then_some(Kind::Number))
     };
     definition.axes.iter().enumerate().map(column).collect()
 }
