@@ -13,6 +13,8 @@ mod live;
 mod page;
 #[path = "common/program.rs"]
 mod program;
+#[path = "explore/see_into.rs"]
+mod see_into;
 #[path = "explore/shown.rs"]
 mod shown;
 #[path = "common/strand.rs"]

@@ -25,7 +25,7 @@ const stage = $("stage"), overlay = $("overlay"), canvas = $("picture");
 // ---- What is looked at. -------------------------------------------------------------------------------------------
 const view = {
   state: 0, azimuth: 0, elevation: 0, centre: [...run.body.axis, 0], height: 4 * run.body.radius, colour: "stress",
-  hidden_layers: [], hidden_wires: [], explode: 0, theme: "dark",
+  hidden_layers: [], hidden_wires: [], ghost_layers: [], explode: 0, theme: "dark",
 };
 let shown = null;        // the view of the picture on the screen
 let now = null;          // what the server told of its state
@@ -707,8 +707,27 @@ run.layers.forEach((name, k) => {
     changed();
   };
   label.append(box, ` ${name} (${run.wires.filter(w => w.layer === k).length})`);
-  $("layers").append(label);
+  const ghost = document.createElement("button");
+  Object.assign(ghost, { type: "button", className: "ghost", textContent: "ghost", title: "Draw see-through" });
+  ghost.setAttribute("aria-label", `${name} layer see-through`);
+  ghost.dataset.layer = k;
+  ghost.onclick = () => {
+    const solid = view.ghost_layers.includes(k);
+    view.ghost_layers = view.ghost_layers.filter(other => other !== k).concat(solid ? [] : [k]);
+    tellGhosts();
+    changed();
+  };
+  const row = document.createElement("div");
+  row.className = "layer";
+  row.append(label, ghost);
+  $("layers").append(row);
 });
+function tellGhosts() {
+  for (const button of document.querySelectorAll("#layers .ghost")) {
+    button.setAttribute("aria-pressed", view.ghost_layers.includes(+button.dataset.layer));
+  }
+}
+tellGhosts();
 $("explode").oninput = ({ target }) => { view.explode = +target.value; changed(); };
 $("cut").oninput = ({ target }) => {
   if (+target.value >= +target.max) { delete view.cut; } else { view.cut = +target.value; }
@@ -732,10 +751,34 @@ function drawLegend() {
   };
   $("range").hidden = !colour.range;
   if (colour.range) {
-    add(legend, "div").className = "bar";
-    legend.lastChild.style.background = `linear-gradient(to right, ${colour.stops.join(",")})`;
+    const scale = add(legend, "div"), bar = add(scale, "div");
+    scale.className = "scale";
+    bar.className = "bar";
+    const [least, most] = colour.range, whole = Math.max(most - least, 1e-30);
+    const tell = () => {
+      const ends = view.range ?? colour.range, [low, high] = ends.map(v => 100 * clamp((v - least) / whole, 0, 1));
+      const at = k => low + (high - low) * k / (colour.stops.length - 1);
+      bar.style.background = `linear-gradient(to right, ${colour.stops.map((stop, k) => `${stop} ${at(k)}%`).join(",")})`;
+      [$("low").value, $("high").value] = ends.map(v => +v.toPrecision(4));
+    };
+    // A handle at either end of the colours.
+    ["low", "high"].forEach((end, k) => {
+      const handle = add(scale, "input");
+      Object.assign(handle, { type: "range", min: least, max: most, step: "any" });
+      handle.value = (view.range ?? colour.range)[k];
+      handle.dataset.end = end;
+      handle.setAttribute("aria-label", `${end} end of the colours, ${colour.title}`);
+      handle.oninput = () => {
+        const ends = [...(view.range ?? colour.range)], room = whole / 1000;
+        ends[k] = k ? Math.max(+handle.value, ends[0] + room) : Math.min(+handle.value, ends[1] - room);
+        handle.value = ends[k];
+        view.range = ends;
+        tell();
+        changed();
+      };
+    });
     add(legend, "div", colour.title).className = "muted";
-    [$("low").value, $("high").value] = (view.range ?? colour.range).map(v => +v.toPrecision(4));
+    tell();
     return;
   }
   const chips = add(legend, "div");
@@ -751,7 +794,8 @@ function drawLegend() {
 $("colour").onchange = ({ target }) => { view.colour = target.value; delete view.range; drawLegend(); changed(); };
 $("low").onchange = $("high").onchange = () => {
   const [low, high] = [+$("low").value, +$("high").value];
-  if (low < high) { view.range = [low, high]; changed(); } else { drawLegend(); }
+  if (low < high) { view.range = [low, high]; changed(); }
+  drawLegend();
 };
 $("reset-range").onclick = () => { delete view.range; drawLegend(); changed(); };
 
@@ -780,6 +824,7 @@ function show(wanted) {
   tellCut();
   for (const box of document.querySelectorAll("#layers input")) box.checked = !view.hidden_layers.includes(+box.dataset.layer);
   for (const row of $("wires").tBodies[0].rows) row.querySelector("input").checked = !view.hidden_wires.includes(+row.dataset.wire);
+  tellGhosts();
   drawLegend();
   toState(view.state);
   select(view.selected ?? null);

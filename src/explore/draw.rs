@@ -88,7 +88,6 @@ pub struct Ready {
     snapshot: Arc<Snapshot>,
     /// Centres as they are drawn (m).
     position: Vec<[f32; 3]>,
-    removed: Vec<bool>,
     segments: Vec<wires::Segment>,
     /// Colour of each particle.
     pub colours: Vec<Rgb>,
@@ -169,15 +168,18 @@ impl Artist {
         let scale = view.range.map_or(scale, |range| ColourScale::new(info, view.colour).with_shown_range(range));
         let colours = scale.particles(info, &snapshot);
         let depth = self.body.shade();
-        let bright = view.explode > 0.0 || !view.hidden_layers.is_empty() || !view.hidden_wires.is_empty();
+        let open = [&view.hidden_layers, &view.hidden_wires, &view.ghost_layers].iter().any(|some| !some.is_empty());
+        let bright = view.explode > 0.0 || open;
         let shade = (0..info.wires.len()).map(|wire| {
             let dimmed = view.selected.is_some_and(|selected| selected != wire);
             (if bright { 1.0 } else { depth[wire] }) * if dimmed { DIMMED } else { 1.0 }
         });
-        let looks = Looks::new(info, &snapshot, position.clone(), &colours, shade.collect(), removed.clone());
+        let looks = Looks::new(info, &snapshot, position.clone(), &colours, shade.collect(), removed);
         let looks = looks.with_occlusion(Occlusion::known(occlusion.to_vec()));
+        let ghosts = info.wires.iter().map(|wire| view.ghost_layers.contains(&wire.layer));
+        let looks = looks.with_ghosts(ghosts.collect()).with_section(view.cut.map(|z| (z / mm(1.0)) as f32));
         let segments = wires::segments(info, &snapshot, &looks, *stride, None, |_, _| true);
-        Ready { snapshot, position, removed, segments, colours }
+        Ready { snapshot, position, segments, colours }
     }
 
     fn occlusion(&mut self, record: &Record, view: View, step: u64) -> Shares {
@@ -187,7 +189,9 @@ impl Artist {
             return found.clone();
         }
         let (info, snapshot) = (record.info(), record.snapshot(view.state));
-        let (position, removed) = (self.exploded(&snapshot, &view), removed(info, &snapshot, &view));
+        let position = self.exploded(&snapshot, &view);
+        // What is seen through casts no shadow.
+        let removed = solid(info, &snapshot, &view).map(|solid| !solid).collect::<Vec<_>>();
         let made = Arc::new(Occlusion::new(info, &position, &snapshot.radius, &removed).all());
         self.occlusion = Some(((view, step), made.clone()));
         made
@@ -227,7 +231,9 @@ impl Artist {
         let pixel = Vec2::new(right as f32 * camera.panel.w, down as f32 * camera.panel.h);
         let at = (pixel - 0.5 * Vec2::new(camera.panel.w, camera.panel.h)) / camera.scale * Vec2::new(1.0, -1.0);
         let place = |i: usize| (camera.to_view(Vec3::from(ready.position[i])), ready.snapshot.radius[i]);
-        let shown = |i: usize| !ready.removed[i];
+        // Clicks go through what is seen through.
+        let solid: Vec<bool> = solid(info, &ready.snapshot, view).collect();
+        let shown = |i: usize| solid[i];
         let mut cones = Vec::new();
         for (number, wire) in info.wires.iter().enumerate() {
             for i in wire.particles() {
@@ -268,6 +274,15 @@ fn removed(info: &RunInfo, snapshot: &Snapshot, view: &View) -> Vec<bool> {
         removed.iter_mut().zip(&snapshot.position).for_each(|(gone, p)| *gone |= beyond(p));
     }
     removed
+}
+
+/// Which particles are drawn, and not see-through.
+fn solid<'a>(info: &'a RunInfo, snapshot: &'a Snapshot, view: &'a View) -> impl Iterator<Item = bool> + 'a {
+    let mut see_through = vec![false; info.particles];
+    for wire in info.wires.iter().filter(|wire| view.ghost_layers.contains(&wire.layer)) {
+        see_through[wire.particles()].fill(true);
+    }
+    removed(info, snapshot, view).into_iter().zip(see_through).map(|(removed, ghost)| !removed && !ghost)
 }
 
 /// Most bonds of a segment.

@@ -35,6 +35,8 @@ pub struct View {
     pub hidden_layers: Vec<usize>,
     /// Wires that are left out, from 0.
     pub hidden_wires: Vec<usize>,
+    /// Layers that are drawn see-through, from 0.
+    pub ghost_layers: Vec<usize>,
     /// Wire that stands out, from 0: the others are dimmed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub selected: Option<usize>,
@@ -60,6 +62,7 @@ impl Default for View {
             range: None,
             hidden_layers: Vec::new(),
             hidden_wires: Vec::new(),
+            ghost_layers: Vec::new(),
             selected: None,
             explode: 0.0,
             cut: None,
@@ -150,6 +153,12 @@ impl View {
                 self.hidden_layers.len() <= layers && self.hidden_layers.iter().all(|l| *l < layers),
                 "hidden_layers",
                 list(self.hidden_layers.iter().map(usize::to_string)),
+                format!("numbers below {layers}, each once"),
+            ),
+            (
+                self.ghost_layers.len() <= layers && self.ghost_layers.iter().all(|l| *l < layers),
+                "ghost_layers",
+                list(self.ghost_layers.iter().map(usize::to_string)),
                 format!("numbers below {layers}, each once"),
             ),
             (

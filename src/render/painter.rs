@@ -283,7 +283,12 @@ fn compile(gpu: &Gpu) -> (wgpu::BindGroupLayout, [wgpu::RenderPipeline; SHAPES +
                     stencil: Default::default(),
                     bias: Default::default(),
                 }),
-                multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
+                multisample: wgpu::MultisampleState {
+                    count: SAMPLES,
+                    // What is see-through covers some of a pixel's samples, so that no order matters.
+                    alpha_to_coverage_enabled: true,
+                    ..Default::default()
+                },
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
                     entry_point: Some(fragment),

@@ -3,7 +3,7 @@
 use super::colour::{desaturated, linear4, signal4};
 use super::occlusion::Occlusion;
 use super::style::Rgb;
-use crate::engine::view::{RunInfo, Snapshot, WireInfo};
+use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use glam::Vec3;
 
 /// A piece of wire between two bonded particles, or a sphere (both ends the same).
@@ -39,6 +39,12 @@ pub const CUT: f32 = 2.0;
 pub const NECK: f32 = 3.0;
 /// The face of a broken end: flat, in the signal colour.
 pub const BROKEN: f32 = 4.0;
+/// Where a section meets a wire that is broken somewhere: a face with a ring of the signal colour.
+pub const HOLLOW: f32 = 5.0;
+/// Where a section meets a wire that is whole: a face in its own colour, with a ring around it.
+pub const DISC: f32 = 6.0;
+/// The wire goes on behind, and nothing of it may bulge beyond the other end: flat, without a face.
+pub const OPEN: f32 = 7.0;
 
 /// Length of the tip that a broken end is drawn with, and the radius of its face, both over the wire's radius (-):
 /// ductile copper necks before it parts. The particle itself is a sphere, so the tip stays inside what collides.
@@ -65,6 +71,10 @@ pub struct Looks {
     shade: Vec<f32>,
     /// Particles that are left out, so that what lies behind them is seen; empty when none is.
     removed: Vec<bool>,
+    /// Wires that are see-through; empty when none is.
+    ghosts: Vec<bool>,
+    /// z of a plane beyond which all is left out (m): wires end in it.
+    section: Option<f32>,
 }
 
 impl Looks {
@@ -79,7 +89,8 @@ impl Looks {
     ) -> Self {
         let occlusion = Occlusion::new(info, &position, &snapshot.radius, &removed);
         let tangent = tangents(info, snapshot, &position);
-        Self { position, tangent, colour: colours.to_vec(), occlusion, shade, removed }
+        let (ghosts, section) = (Vec::new(), None);
+        Self { position, tangent, colour: colours.to_vec(), occlusion, shade, removed, ghosts, section }
     }
 
     /// The same in other colours.
@@ -91,6 +102,18 @@ impl Looks {
     #[cfg(feature = "explore")]
     pub fn with_occlusion(self, occlusion: Occlusion) -> Self {
         Self { occlusion, ..self }
+    }
+
+    /// The same with wires that are see-through.
+    #[cfg(feature = "explore")]
+    pub fn with_ghosts(self, ghosts: Vec<bool>) -> Self {
+        Self { ghosts, ..self }
+    }
+
+    /// The same, where what was left out lies beyond the plane at this z (m).
+    #[cfg(feature = "explore")]
+    pub fn with_section(self, section: Option<f32>) -> Self {
+        Self { section, ..self }
     }
 
     /// Whether particle `i` is shown.
@@ -127,9 +150,15 @@ pub fn segments(
 ) -> Vec<Segment> {
     let mut all = Vec::new();
     let shown = |wire: &WireInfo| layer.is_none_or(|layer| layer == wire.layer);
-    for (wire, shade) in info.wires.iter().zip(&looks.shade).filter(|(wire, _)| shown(wire)) {
-        let chain = Chain { info, snapshot, looks, wire, shade: *shade };
+    for (number, wire) in info.wires.iter().enumerate().filter(|(_, wire)| shown(wire)) {
+        // The shader draws see-through what has a shade below zero.
+        let ghost = looks.ghosts.get(number).copied().unwrap_or(false);
+        let shade = looks.shade[number] * if ghost { -1.0 } else { 1.0 };
+        let chain = Chain { info, snapshot, looks, wire, shade };
         chain.segments(stride, &sees, &mut all);
+        if let Some(z) = looks.section {
+            chain.up_to_section(z, &sees, &mut all);
+        }
     }
     let spheres = (info.wire_particles..snapshot.position.len()).filter(|i| layer.is_none() && looks.shows(*i));
     let point = |i: usize| Vec3::from(looks.position[i]).extend(snapshot.radius[i]).to_array();
@@ -170,6 +199,40 @@ impl Chain<'_> {
             if alone && sees(self.point(i), self.point(i)) {
                 all.push(self.lone(i));
             }
+        }
+    }
+
+    /// What lies between the plane at `z` (m) and the last particle before it, which a bond crosses.
+    fn up_to_section(&self, z: f32, sees: &impl Fn([f32; 4], [f32; 4]) -> bool, all: &mut Vec<Segment>) {
+        let bonds = self.wire.bonds();
+        let broken = bonds.clone().any(|bond| self.snapshot.bond_state[bond] == BondState::Broken);
+        for i in bonds.filter(|i| self.holds(*i) && self.looks.shows(*i) != self.looks.shows(*i + 1)) {
+            let (from, to) = if self.looks.shows(i) { (i, i + 1) } else { (i + 1, i) };
+            let height = |p: usize| self.looks.position[p][2];
+            let share = ((z - height(from)) / (height(to) - height(from))).clamp(0.0, 1.0);
+            let between = |a: [f32; 4], b: [f32; 4]| std::array::from_fn(|k| a[k] + share * (b[k] - a[k]));
+            let (near, far) = (self.point(from), between(self.point(from), self.point(to)));
+            if !sees(near, far) {
+                continue;
+            }
+            let first = self.wire.first;
+            let last = first + self.wire.len - 1;
+            let outside = if from == i { (i > first).then(|| i - 1) } else { (i + 1 < last).then_some(i + 1) };
+            let end = self.kind(outside);
+            let along = (Vec3::from_slice(&far) - Vec3::from_slice(&near)).normalize_or_zero();
+            let occlusion = self.looks.occlusion.at(from);
+            let segment = Segment {
+                a: near,
+                b: far,
+                tangent_a: along.extend(if end == JOINT { OPEN } else { end }).to_array(),
+                tangent_b: along.extend(if broken { HOLLOW } else { DISC }).to_array(),
+                colour_a: self.colour(from),
+                colour_b: between(self.colour(from), self.colour(to)),
+                occlusion_a: occlusion,
+                occlusion_b: occlusion,
+            };
+            all.push(segment);
+            all.extend(tips(&segment));
         }
     }
 
@@ -216,7 +279,14 @@ impl Chain<'_> {
         match outside {
             None => END,
             Some(bond) if self.drawn(bond) => JOINT,
-            Some(bond) if self.holds(bond) => CUT,
+            // What lies up to a section goes on to it.
+            Some(bond) if self.holds(bond) => {
+                if self.looks.section.is_some() {
+                    JOINT
+                } else {
+                    CUT
+                }
+            }
             Some(_) => NECK,
         }
     }

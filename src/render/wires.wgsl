@@ -18,9 +18,9 @@ struct View {
 struct Segment {
   @location(0) a: vec4<f32>,   // first centre, radius [m]
   @location(1) b: vec4<f32>,   // second centre, radius [m]
-  @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 round end, 2 flat, 3 neck, 4 broken face, 5 tube
+  @location(2) ta: vec4<f32>,  // tangent of the wire at a; w: 0 joint, 1 round end, 2 flat, 3 neck, 4 broken face, 5 hollow, 6 disc, 7 open
   @location(3) tb: vec4<f32>,
-  @location(4) ca: vec4<f32>,  // linear colour at a; w: shade of wires inside the strand
+  @location(4) ca: vec4<f32>,  // linear colour at a; w: shade of wires inside the strand, below 0 for what is see-through
   @location(5) cb: vec4<f32>,
   @location(6) oa: vec4<f32>,  // occlusion at a: sum of w d, sum of w
   @location(7) ob: vec4<f32>,
@@ -79,8 +79,8 @@ fn reach(kind: f32, r: f32, tangent: vec3<f32>, along: vec3<f32>) -> f32 {
 // Whether an end is a plane across the axis; else it is a sphere.
 fn is_flat(kind: f32) -> bool { return kind > 1.5; }
 
-// Whether a flat end is closed by a disc; a neck goes on as its tip.
-fn has_face(kind: f32) -> bool { return kind == 2.0 || kind == 4.0; }
+// Whether a flat end is closed by a disc; a neck goes on as its tip, and what is open lies in the wire behind it.
+fn has_face(kind: f32) -> bool { return kind == 2.0 || (kind > 3.5 && kind < 6.5); }
 
 // Whether p lies inside the outline of a segment with spheres at both ends. `along` is the axis over its squared
 // length.
@@ -145,7 +145,7 @@ fn intersect(p: vec2<f32>, in: Varying) -> Hit {
       let s = (m + t * d.z) / l;
       // Where a neck joins its tip both reach over the seam, so that no sample falls between them.
       let over = 0.5 * view.scale.w / l;
-      let low = select(0.0, -over, in.ta.w == 3.0);
+      let low = select(select(0.0, -over, in.ta.w == 3.0), -over - 0.25 * a.w / l, in.ta.w == 7.0);
       let high = select(1.0, 1.0 + over, in.tb.w == 3.0);
       if (s >= low && s <= high && a.z + t > hit.z) { hit.z = a.z + t; hit.s = s; hit.found = true; }
     }
@@ -181,7 +181,7 @@ struct Point {
   normal: vec3<f32>,
   tangent: vec3<f32>,  // of the wire
   base: vec3<f32>,     // linear colour
-  shade: f32,          // of wires inside the strand
+  shade: f32,          // of wires inside the strand, below 0 for what is see-through
   occlusion: vec4<f32>,
   flat_end: bool,
   kept: f32,           // how much of its colour it keeps in the shade
@@ -208,18 +208,25 @@ fn lit(point: Point, pixel: vec2<f32>) -> vec4<f32> {
   let rim = 1.0 - clamp(n.z, 0.0, 1.0);
   let slant = rim * rim * rim;
   let base = point.base;
-  var colour = base * (sky * open + 0.58 * diffuse * mix(0.45, 1.0, open)) * mix(0.62, 1.0, deep) * point.shade;
+  var colour = base * (sky * open + 0.58 * diffuse * mix(0.45, 1.0, open)) * mix(0.62, 1.0, deep) * abs(point.shade);
   colour += (base * 0.10 * sheen + (0.05 + 0.28 * base) * streak) * open * select(1.0, 0.25, point.flat_end);
   let edged = select(slant, 0.0, point.flat_end);
   colour = colour * (1.0 - view.rim.w * edged) + view.rim.rgb * (0.35 + 3.0 * base) * edged * open * open;
   colour = mix(colour, max(colour, base * 0.5), point.kept);
-  return vec4<f32>(dithered(colour, pixel), 1.0);
+  // One of a pixel's four samples is covered by what is see-through.
+  return vec4<f32>(dithered(colour, pixel), select(1.0, 0.25, point.shade < 0.0));
 }
 
 struct Lit { colour: vec4<f32>, depth: f32, };
 
-// Colour of a flat end; that of a break is a little darker than its flanks, so that the two are told apart.
-fn face_colour(kind: f32) -> vec3<f32> { return select(view.cut.rgb, 0.6 * view.signal.rgb, kind > 3.5); }
+// Colour of a flat end, `out` radii from its middle; that of a break is a little darker than its flanks, so that the two are
+// told apart.
+fn face_colour(kind: f32, own: vec3<f32>, out: f32) -> vec3<f32> {
+  let ring = out > 0.7;
+  if (kind > 5.5) { return select(own, view.cut.rgb, ring); }
+  if (kind > 4.5) { return select(vec3<f32>(0.012), view.signal.rgb, ring); }
+  return select(view.cut.rgb, 0.6 * view.signal.rgb, kind > 3.5);
+}
 
 fn shade(p: vec2<f32>, in: Varying, pixel: vec2<f32>) -> Lit {
   let hit = intersect(p, in);
@@ -254,7 +261,11 @@ fn shade(p: vec2<f32>, in: Varying, pixel: vec2<f32>) -> Lit {
   let dark_collar = (1.0 - broken - light_collar) * (1.0 - smoothstep(2.2 * band - soft, 2.2 * band + soft, from_end));
   var base = mix(mix(in.ca.rgb, in.cb.rgb, s), view.signal.rgb, broken);
   base = mix(mix(base, vec3<f32>(0.85), light_collar), vec3<f32>(0.01), dark_collar);
-  if (face) { base = face_colour(select(in.tb.w, in.ta.w, hit.face < 0.0)); }
+  if (face) {
+    let of_a = hit.face < 0.0;
+    let out = length(hit.from_axis) / max(select(in.b.w, in.a.w, of_a), 1e-12);
+    base = face_colour(select(in.tb.w, in.ta.w, of_a), base, out);
+  }
 
   var point: Point;
   point.z = hit.z;

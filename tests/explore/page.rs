@@ -6,8 +6,9 @@ use crate::shown::{PATIENCE, Shown, folder, skipped};
 use crate::synthetic::Run;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use strandsnap::explore::{View, picture};
+use strandsnap::explore::{Options, Server, View, picture};
 use tempfile::TempDir;
 
 fn keep(browser: &mut Browser, name: &str) {
@@ -80,11 +81,31 @@ fn a_person_finds_what_broke_first() {
     page.value("(s => { s.value = 75; s.dispatchEvent(new Event('input')); })(document.querySelector('#cut'))");
     settled(&mut page);
     assert!(page.value("document.querySelector('#cut-text').textContent").as_str().unwrap().contains("75"));
+    // A layer is seen through.
+    let before = page.value(pixels);
+    page.value("document.querySelector('#layers .ghost[data-layer=\"1\"]').click()");
+    settled(&mut page);
+    assert_eq!(page.value("explore.view.ghost_layers"), json!([1]));
+    assert_eq!(page.value("document.querySelector('.ghost[data-layer=\"1\"]').ariaPressed"), "true");
+    assert_ne!(page.value(pixels), before);
+    // A handle on the colour bar moves the end of the colours, and the number beside it.
+    page.value(
+        "(s => { s.value = +s.max / 2; s.dispatchEvent(new Event('input')); })(document.querySelector('[data-end=low]'))",
+    );
+    settled(&mut page);
+    let ends = page.value("explore.view.range");
+    let most = page.value("+document.querySelector('[data-end=low]').max").as_f64().unwrap();
+    assert!((ends[0].as_f64().unwrap() / most - 0.5).abs() < 1e-6, "{ends} of {most}");
+    assert!((page.value("+document.querySelector('#low').value").as_f64().unwrap() / most - 0.5).abs() < 1e-3);
+    page.value("document.querySelector('#reset-range').click()");
+    settled(&mut page);
+    keep(&mut page, "explore-ghost.png");
     // The command that makes the view.
     page.value("document.querySelector('#command').click()");
     page.wait_for("String(document.querySelector('#command-text').hidden)", "false");
     let command = page.value("document.querySelector('#command-text').textContent");
     assert!(command.as_str().unwrap().contains("hidden_layers = [2]"), "{command}");
+    assert!(command.as_str().unwrap().contains("ghost_layers = [1]"), "{command}");
     assert_eq!(page.complaints(), Vec::<Value>::new(), "the console has complaints");
 
     page.visit(&shown.0, "light");
@@ -208,4 +229,32 @@ fn the_page_keeps_the_rules_of_accessibility() {
     settled(&mut page);
     assert_eq!(page.violations().unwrap(), Vec::<String>::new(), "on a phone");
     keep(&mut page, "explore-phone.png");
+}
+
+/// The page of a run that is there, as a picture: the first one of README is made so, of `strandsnap run ka4`.
+#[test]
+#[ignore = "makes a picture of RUN in FILE"]
+fn a_picture_of_the_page() {
+    let [run, file] = ["RUN", "FILE"].map(|name| PathBuf::from(std::env::var_os(name).expect("RUN and FILE are set")));
+    let server = Server::open(&run, Options::default()).unwrap();
+    let (address, stop) = (server.address(), AtomicBool::new(false));
+    std::thread::scope(|scope| {
+        scope.spawn(|| server.serve(&stop).unwrap());
+        let mut page = Browser::start(&browser::find().expect("Chromium is needed"));
+        page.size(1440, 960);
+        page.visit(&address, "dark");
+        settled(&mut page);
+        // Some breaks later, where most of them are, with all layers.
+        page.value(
+            "(run => { const places = run.ruptures.map(r => r.rest_z).sort((a, b) => a - b); \
+             explore.toState(run.ruptures.at(-4).state); \
+             Object.assign(explore.view, { hidden_layers: [], follow: places[places.length >> 1], elevation: 12, \
+             azimuth: -16, height: 5.5 }); \
+             document.querySelectorAll('#layers input').forEach(box => { box.checked = true; }); \
+             explore.changed(); })(explore.run())",
+        );
+        settled(&mut page);
+        page.screenshot(&file);
+        stop.store(true, Ordering::Relaxed);
+    });
 }

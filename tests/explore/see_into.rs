@@ -1,0 +1,124 @@
+//! Views into the strand: a section whose wires are discs, layers that are seen through.
+
+use crate::shown::{folder, skipped};
+use crate::synthetic::Run;
+use image::RgbImage;
+use std::path::Path;
+use strandsnap::engine::view::{BondState, Snapshot};
+use strandsnap::explore::{View, picture};
+use strandsnap::scene::spec::ColourBy;
+
+/// Side of the pictures (px), and what it spans (mm).
+const SIDE: u32 = 480;
+const SPAN: f64 = 3.4;
+
+fn drawn(run: &Path, view: &View) -> RgbImage {
+    image::load_from_memory(&picture(run, None, view, [SIDE; 2]).unwrap()).unwrap().into_rgb8()
+}
+
+/// The last snapshot along the axis, from above, cut at `z` (mm).
+fn section(run: &Run, z: f64) -> View {
+    let state = (run.snapshots().len() - 1) as f64;
+    View {
+        state,
+        azimuth: -90.0,
+        centre: [0.0, 0.0, z],
+        height: SPAN,
+        cut: Some(z),
+        colour: ColourBy::Layer,
+        ..View::default()
+    }
+}
+
+/// Where a wire passes a section, x and y (mm), by its two particles there; `None` where it has a gap.
+fn crossing(snapshot: &Snapshot, mut bonds: std::ops::Range<usize>, z: f64) -> Option<[f64; 2]> {
+    let at = |p: usize| snapshot.position[p].map(|x| f64::from(x) * 1e3);
+    let i = bonds.find(|i| snapshot.bond_state[*i].holds() && at(*i)[2] <= z && at(i + 1)[2] > z)?;
+    let [from, to] = [at(i), at(i + 1)];
+    let share = (z - from[2]) / (to[2] - from[2]);
+    Some([0, 1].map(|k| from[k] + share * (to[k] - from[k])))
+}
+
+/// How much redder than green and blue.
+fn redness([r, g, b]: [u8; 3]) -> i32 {
+    i32::from(r) - i32::from(g.max(b))
+}
+
+#[test]
+fn a_section_shows_whole_wires_as_discs_and_broken_ones_hollow() {
+    let test = "a_section_shows_whole_wires_as_discs_and_broken_ones_hollow";
+    if strandsnap::render::check().is_err() {
+        return skipped(test, "no graphics adapter");
+    }
+    let (folder, run) = (folder(12), Run::new(12));
+    let snapshot = run.snapshots().pop().unwrap().clone();
+    // Far from all breaks, anywhere between particles.
+    for z in [31.03, 31.11, 31.27] {
+        let view = section(&run, z);
+        let image = drawn(folder.path(), &view);
+        if let Some(folder) = std::env::var_os("KEEP_PICTURES") {
+            image.save(Path::new(&folder).join(format!("section-{z}.png"))).unwrap();
+        }
+        let scale = f64::from(SIDE) / SPAN;
+        let pixel = |x: f64, y: f64| -> [u8; 3] {
+            // The eye looks along -z with y up: x then points to the left or right, which the first wire tells.
+            let place = |v: f64| (f64::from(SIDE) / 2.0 + v * scale).round() as u32;
+            image.get_pixel(place(x), place(-y)).0
+        };
+        let (mut whole, mut hollow) = (0, 0);
+        for wire in &run.info.wires {
+            let [x, y] = crossing(&snapshot, wire.bonds(), z).expect("it passes here");
+            let radius = f64::from(snapshot.radius[wire.first]) * 1e3;
+            let centre = pixel(x, y);
+            let rim: Vec<[u8; 3]> = (0..8)
+                .map(|k| {
+                    let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;
+                    pixel(x + 0.85 * radius * angle.cos(), y + 0.85 * radius * angle.sin())
+                })
+                .collect();
+            let red = rim.iter().filter(|pixel| redness(**pixel) > 60).count();
+            if wire.bonds().any(|bond| snapshot.bond_state[bond] == BondState::Broken) {
+                assert!(centre.iter().all(|c| *c < 60), "the middle of a broken wire is dark: {centre:?} at {x} {y}");
+                assert!(red >= 7, "its ring has the signal colour: {rim:?}");
+                hollow += 1;
+            } else {
+                assert!(centre.iter().any(|c| *c > 60), "the middle of a whole wire has its colour: {centre:?}");
+                assert!(red <= 1, "its ring has not the signal colour: {rim:?}");
+                whole += 1;
+            }
+        }
+        assert_eq!((whole, hollow), (28, 6));
+    }
+}
+
+#[test]
+fn layers_in_front_are_seen_through_and_hide_nothing() {
+    let test = "layers_in_front_are_seen_through_and_hide_nothing";
+    if strandsnap::render::check().is_err() {
+        return skipped(test, "no graphics adapter");
+    }
+    let (folder, run) = (folder(12), Run::new(12));
+    let plain = View { colour: ColourBy::Layer, centre: [0.0, 0.0, 20.0], height: SPAN, ..section(&run, 0.0) };
+    let plain = View { azimuth: 0.0, cut: None, ..plain };
+    let solid = drawn(folder.path(), &plain);
+    let ghost = drawn(folder.path(), &View { ghost_layers: vec![1, 2], ..plain.clone() });
+    let inner = drawn(folder.path(), &View { hidden_layers: vec![1, 2], ..plain.clone() });
+    if let Some(folder) = std::env::var_os("KEEP_PICTURES") {
+        ghost.save(Path::new(&folder).join("ghost.png")).unwrap();
+    }
+    // A quarter of the samples of a pixel are a ghost's: its light is between that of what lies behind and of what hides it.
+    let mut between = [0usize; 2];
+    for (ghost, (solid, inner)) in ghost.pixels().zip(solid.pixels().zip(inner.pixels())) {
+        for k in 0..3 {
+            let [ghost, solid, inner] = [ghost[k], solid[k], inner[k]].map(|c| (f64::from(c) / 255.0).powf(2.2));
+            if (solid - inner).abs() > 0.1 {
+                let share = (ghost - inner) / (solid - inner);
+                between[usize::from((0.05..0.6).contains(&share))] += 1;
+            }
+        }
+    }
+    let [outside, inside] = between;
+    assert!(inside > 10_000 && inside > 9 * outside, "{inside} pixels lie between both pictures, {outside} do not");
+    // Nothing see-through changes what a view without such layers shows.
+    assert_eq!(drawn(folder.path(), &plain), solid);
+}
