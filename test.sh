@@ -11,6 +11,7 @@ get_axe || printf '\nThe rules of accessibility (axe-core, from npm) cannot be i
 get_rerun || printf '\nRerun'"'"'s tool cannot be installed here; tests that need it will be SKIPPED.\n'
 get_batch_systems || printf '\nSlurm or GNU Parallel cannot be installed here; tests that need them will be SKIPPED.\n'
 get_readers || printf '\nPrograms that read exports cannot be installed here; tests that need them will be SKIPPED.\n'
+get_python_package || printf '\nThe Python package cannot be built here; tests of it will be SKIPPED.\n'
 
 say "Shell syntax"
 for script in demo.sh test.sh .ci/run .ci/features .ci/deb .ci/prepare.sh examples/peers/compare.sh examples/long_tests.sh examples/mutants.sh examples/gpu_checks.sh \
@@ -19,7 +20,7 @@ for script in demo.sh test.sh .ci/run .ci/features .ci/deb .ci/prepare.sh exampl
 done
 
 say "Format"
-cargo fmt --check
+cargo fmt --all --check
 
 # .ci/features checks every feature by itself, which takes long.
 say "Without recording and frames"
@@ -27,6 +28,9 @@ cargo clippy --release --locked --no-default-features --features cli --all-targe
 
 say "Lints"
 cargo clippy --release --locked --all-targets -- -D warnings
+if [ -n "${STRANDSNAP_PYTHON:-}" ]; then
+    PYO3_PYTHON="$STRANDSNAP_PYTHON" cargo clippy --release --locked -p strandsnap-python --features full -- -D warnings
+fi
 
 say "Documentation"
 RUSTDOCFLAGS=-Dwarnings cargo doc --release --locked --no-deps

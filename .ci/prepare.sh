@@ -107,3 +107,12 @@ get_axe() {
     fi
     export AXE_FOR_TESTS="$PWD/$file/axe.min.js"
 }
+
+# The Python package in .venv; sets STRANDSNAP_PYTHON when it is there. It is built with all features, so that what it compiles
+# is what the tests use.
+get_python_package() {
+    say "Building the Python package into .venv"
+    [ -x .venv/bin/pip ] || python3 -m venv .venv || return 1
+    .venv/bin/pip install -q --config-settings build-args="--features full --locked" "./src/python[dask]" || return 1
+    export STRANDSNAP_PYTHON="$PWD/.venv/bin/python"
+}

@@ -9,6 +9,7 @@
 //! - [`manual::physics`]: every equation with its source, every parameter with its scene key, unit and default, limits
 //! - [`manual::architecture`]: how the modules are layered, where to find what, how to add a law, a key, a picture, a case
 //! - [`manual::glossary`]: what the words mean
+//! - [`manual::python`]: the package for Python programs and notebooks
 //! - [`scene::raw`], [`scene::keys`]: all keys of a scene
 //!
 //! # Modules

@@ -1,5 +1,5 @@
 //! The manual: pages without code. [`physics`] states every equation and parameter of the model with its source,
-//! [`architecture`] how the crate is built and where a new thing goes, [`glossary`] what the words mean.
+//! [`architecture`] how the crate is built and where a new thing goes, [`glossary`] what the words mean, [`python`] the package for Python.
 
 #[doc = include_str!("manual/physics.md")]
 pub mod physics {}
@@ -9,3 +9,6 @@ pub mod architecture {}
 
 #[doc = include_str!("manual/glossary.md")]
 pub mod glossary {}
+
+#[doc = include_str!("manual/python.md")]
+pub mod python {}

@@ -7,13 +7,12 @@ use super::say::say;
 use super::values::{SceneArgs, Seeds, within};
 use crate::base::error::Result;
 use crate::base::wording::counted;
-use crate::observe::files::write_whole;
 use crate::reference::published::{self, CALIBRATED_ON};
 use crate::run::{DeviceChoice, folder};
-use crate::study::calibrate::{Calibration, Iteration, Target, calibrate, default_seeds};
+use crate::study::calibrate::{Calibration, Found, Iteration, Target, calibrate, default_seeds};
 use crate::study::runner::{CaseRunner, CaseStore, cores};
 use crate::study::statistics::Statistics;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -89,7 +88,8 @@ pub fn run(args: &Args) -> Result<Ended> {
     })?;
     drop(line);
     cases::tell_damaged(&store, cases::RUN_AGAIN);
-    let file = write(&scene.spec.name, &seeds, target, &iterations, &best, &out)?;
+    let found = Found { scene: &scene.spec.name, seeds: &seeds, target: &target, iterations: &iterations, best: &best };
+    let file = found.write(&cases::command(), &out)?;
     say!("\n{}", claim(&best, &seeds, &target));
     let [kept, other] =
         [|t: &Iteration| t.kept, |t: &Iteration| t.other_build].map(|of| iterations.iter().map(of).sum::<usize>());
@@ -100,31 +100,6 @@ pub fn run(args: &Args) -> Result<Ended> {
     best.setting.overrides().iter().for_each(|option| say!("  --set \"{option}\""));
     say!("Written: {}", file.display());
     Ok(Ended::Well)
-}
-
-fn write(
-    scene: &str,
-    seeds: &[u64],
-    target: Target,
-    iterations: &[Iteration],
-    best: &Iteration,
-    out: &Path,
-) -> Result<PathBuf> {
-    let document = serde_json::json!({
-        "scene": scene,
-        "command": cases::command(),
-        "version": env!("CARGO_PKG_VERSION"),
-        "seeds": seeds,
-        "target": target,
-        // Setting by setting; the last one met the target.
-        "trials": iterations,
-        // The options that reproduce the test.
-        "set": best.setting.overrides(),
-    });
-    let text = serde_json::to_string_pretty(&document).expect("a calibration holds nothing that JSON lacks");
-    let file = out.join(folder::CALIBRATION);
-    write_whole(&file, &(text + "\n"))?;
-    Ok(file)
 }
 
 /// The columns of the printed table: least width, heading and cell.

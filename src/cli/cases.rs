@@ -1,5 +1,6 @@
 //! What commands that make many runs share: arguments of those that run a table of cases, progress, and what was typed.
 
+use super::called;
 use super::interrupt;
 use super::say::say;
 use crate::base::error::{Error, Result};
@@ -177,7 +178,7 @@ pub fn time(seconds: f64) -> String {
 /// What the user typed after the name of the program, but for an option and its value.
 pub fn words_without(option: &str) -> Vec<String> {
     let mut words = Vec::new();
-    let mut typed = std::env::args().skip(1);
+    let mut typed = called::words();
     while let Some(word) = typed.next() {
         if word == option {
             typed.next();
@@ -190,6 +191,6 @@ pub fn words_without(option: &str) -> Vec<String> {
 
 /// What the user typed.
 pub fn command() -> String {
-    let words = std::env::args().skip(1).map(|word| quoted(&word));
+    let words = called::words().map(|word| quoted(&word));
     std::iter::once("strandsnap".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }

@@ -8,6 +8,7 @@ macro_rules! eprintln {
 mod accuracy;
 mod animation;
 mod calibrate;
+mod called;
 mod cases;
 mod centrelines;
 mod check_run;
@@ -40,6 +41,7 @@ mod view;
 use crate::base::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 use ended::Ended;
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -114,16 +116,29 @@ Exit codes:
 
 /// Runs the program on its arguments and answers with one of the exit codes that `--help` lists.
 pub fn main() -> ExitCode {
-    match dispatch(Cli::parse().command) {
-        Ok(Ended::Well) => ExitCode::SUCCESS,
-        Ok(Ended::Missed) => ExitCode::from(4),
+    ExitCode::from(answer())
+}
+
+/// [`main`] from within another program, with `arguments` (those after its name); `starts` are the words that start it
+/// again, to be followed by arguments: the scripts of `study --emit` begin with them. It may end the process, as it does
+/// after `--help`.
+pub fn main_within(starts: Vec<String>, arguments: Vec<OsString>) -> u8 {
+    called::tell(starts, arguments);
+    answer()
+}
+
+fn answer() -> u8 {
+    let typed = std::iter::once(OsString::from("strandsnap")).chain(called::arguments().iter().cloned());
+    match dispatch(Cli::parse_from(typed).command) {
+        Ok(Ended::Well) => 0,
+        Ok(Ended::Missed) => 4,
         // Whoever pressed Ctrl-C was told what is kept.
-        Err(error @ Error::Interrupted) => ExitCode::from(error.exit_code()),
+        Err(error @ Error::Interrupted) => error.exit_code(),
         Err(error) => {
             let code = error.exit_code();
             // Where this is lost too, the code is what remains.
             let _ = writeln!(std::io::stderr(), "{:?}", miette::Report::new(error));
-            ExitCode::from(code)
+            code
         }
     }
 }

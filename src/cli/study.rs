@@ -1,5 +1,6 @@
 //! `strandsnap study`.
 
+use super::called;
 use super::cases::{self, ProgressLine};
 use super::ended::Ended;
 use super::interrupt;
@@ -60,6 +61,10 @@ pub struct Args {
     /// Write the tables as Apache Parquet too
     #[arg(long, conflicts_with_all = ["case", "dry_run", "emit"])]
     parquet: bool,
+    /// Spread the cases that are missing over the workers of a Dask cluster, or over processes of this machine, and gather
+    /// them. It needs the Python package of strandsnap, in python3 or in the interpreter that STRANDSNAP_PYTHON names
+    #[arg(long, value_name = "dask://HOST:PORT|local", conflicts_with_all = ["case", "collect", "dry_run", "emit", "fresh"])]
+    on: Option<String>,
     /// List the studies that come with the program
     #[arg(long)]
     list: bool,
@@ -85,6 +90,9 @@ pub fn study(args: &Args) -> Result<Ended> {
     let jobs = args.jobs.map_or_else(cores, usize::from);
     if args.dry_run {
         return dry_run(&definition, &out, &args.device, jobs);
+    }
+    if let Some(workers) = &args.on {
+        return spread(workers);
     }
     if let Some(system) = args.emit {
         return emit(&definition, &out, &args.device, system);
@@ -159,7 +167,6 @@ fn emit(definition: &Definition, out: &Path, device: &DeviceChoice, system: Batc
         return Ok(Ended::Well);
     }
     let absolute = |path: &Path| std::path::absolute(path).map_err(|e| Error::io("cannot find", path, e));
-    let program = std::env::current_exe().map_err(|e| Error::io("cannot find", "this program", e))?;
     let folder = absolute(&out.join("cluster"))?;
     // What first steps say is a quarter of what a case takes at most, what finished cases say about half.
     let margin = if costs.ratio.is_some() { 2.0 } else { 4.0 };
@@ -168,7 +175,7 @@ fn emit(definition: &Definition, out: &Path, device: &DeviceChoice, system: Batc
     let array = Array {
         name: &definition.name,
         cases: &missing,
-        command: &[vec![program.to_string_lossy().into_owned()], cases::words_without("--emit")].concat(),
+        command: &[called::starts()?, cases::words_without("--emit")].concat(),
         directory: &absolute(Path::new("."))?,
         folder: &absolute(out)?,
         seconds: takes.reduce(f64::max).map(|seconds| margin * seconds),
@@ -191,6 +198,30 @@ fn emit(definition: &Definition, out: &Path, device: &DeviceChoice, system: Batc
     say!("  cd {}", quoted(&folder.to_string_lossy()));
     scripts.commands.iter().for_each(|command| say!("  {command}"));
     Ok(Ended::Well)
+}
+
+/// Has the Python package spread the study that was typed over workers.
+fn spread(workers: &str) -> Result<Ended> {
+    let named = std::env::var_os("STRANDSNAP_PYTHON").filter(|name| !name.is_empty());
+    // An interpreter that runs this has the package.
+    let python = named.unwrap_or_else(|| called::within().unwrap_or("python3").into());
+    // The first word is this command.
+    let words = cases::words_without("--on").into_iter().skip(1);
+    let status = std::process::Command::new(&python).args(["-m", "strandsnap.on", workers]).args(words).status();
+    let missing = |what: String| {
+        let help = Some("install the package with `pip install ./src/python[dask]`".into());
+        Error::Missing { what, help }
+    };
+    let name = python.to_string_lossy();
+    let status = status.map_err(|cause| missing(format!("cannot start {name}: {cause}")))?;
+    match status.code() {
+        Some(0) => Ok(Ended::Well),
+        Some(130) => Err(Error::Interrupted),
+        // It has said why.
+        _ => {
+            Err(missing(format!("the study was not finished by `{name} -m strandsnap.on`, which ended with {status}")))
+        }
+    }
 }
 
 /// Runs a case alone, and says what became of it.

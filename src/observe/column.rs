@@ -202,6 +202,15 @@ impl<'a, R: ?Sized> Column<'a, R> {
     }
 }
 
+/// Takes tables, whatever their rows are: writes them, or turns them into what another program reads.
+pub trait TableSink {
+    /// Takes the table `name`.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    fn take<R>(&mut self, name: &str, columns: &[Column<R>], results: &[R]) -> Result<()>;
+}
+
 /// Writes all columns as CSV; cells of what is not known are empty.
 ///
 /// # Errors

@@ -58,6 +58,11 @@ impl Wires {
         Self { info: info.clone(), first_rupture: vec![None; info.wires.len()], peaks: Vec::new() }
     }
 
+    /// The run.
+    pub fn info(&self) -> &RunInfo {
+        &self.info
+    }
+
     /// A bond broke.
     pub fn rupture(&mut self, rupture: &Rupture) {
         if let Some(first) = self.first_rupture.get_mut(rupture.wire) {

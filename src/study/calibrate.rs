@@ -12,6 +12,8 @@
 //! ([`CaseStore`]), so that the same calibration goes on where it was interrupted.
 
 use crate::base::error::{Error, Result};
+use crate::observe::files::write_whole;
+use crate::run::folder::CALIBRATION;
 use crate::scene::Scene;
 use crate::scene::spec::{BondLawSpec, HardeningSpec, NormalSpec, RuptureCriterion, Spec};
 use crate::study::runner::{CaseRunner, CaseStore, all_outputs};
@@ -19,6 +21,7 @@ use crate::study::statistics::Statistics;
 use crate::study::tensile::{TensileCase, TensileOutcome, TensileResult, count_kept};
 use glam::{DMat2, DVec2};
 use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 /// Seeds of a scene with scatter where the user says nothing: its mean is then known to 0.84 of its standard deviation
 /// (95 %), and a calibration takes about 24 runs.
@@ -189,6 +192,43 @@ impl Start {
     }
 }
 
+/// What a calibration has found.
+pub struct Found<'a> {
+    /// Name of the scene.
+    pub scene: &'a str,
+    /// Seeds that means were taken over.
+    pub seeds: &'a [u64],
+    /// What the test found.
+    pub target: &'a Target,
+    /// Setting by setting; the last one met the target.
+    pub iterations: &'a [Iteration],
+    /// The one that met it.
+    pub best: &'a Iteration,
+}
+
+impl Found<'_> {
+    /// Writes `calibration.json` into a folder; `command` is what the user typed. Gives the file.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, command: &str, folder: &Path) -> Result<PathBuf> {
+        let document = serde_json::json!({
+            "scene": self.scene,
+            "command": command,
+            "version": env!("CARGO_PKG_VERSION"),
+            "seeds": self.seeds,
+            "target": self.target,
+            "trials": self.iterations,
+            // The options that reproduce the test.
+            "set": self.best.setting.overrides(),
+        });
+        let text = serde_json::to_string_pretty(&document).expect("a calibration holds nothing that JSON lacks");
+        let file = folder.join(CALIBRATION);
+        write_whole(&file, &(text + "\n"))?;
+        Ok(file)
+    }
+}
+
 /// Fits the means of the scene to the target; `tried` hears of every setting. Returns the iteration over all seeds that met
 /// it.
 ///
@@ -301,7 +341,6 @@ mod tests {
     use crate::scene;
     use crate::study::accuracy::closed_form;
     use crate::study::tensile::with_seed;
-    use std::path::Path;
     use std::sync::atomic::AtomicBool;
 
     #[test]

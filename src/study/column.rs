@@ -2,7 +2,7 @@
 
 use super::table::Table;
 
-pub use crate::observe::column::{Column, Value, json, write_csv};
+pub use crate::observe::column::{Column, TableSink, Value, json, write_csv};
 
 /// A table for people of the columns that have a heading; the first `left` of them hold text.
 pub fn table<R>(title: String, columns: &[Column<R>], results: &[R], left: usize) -> Table {

@@ -7,7 +7,7 @@ use super::super::gather::{CaseResult, Gathered, construction};
 use super::super::quantity::{self, Quantity};
 use crate::base::error::Result;
 use crate::observe::column::{Cell, Kind};
-use crate::study::column::{Column, Value, write_csv};
+use crate::study::column::{Column, TableSink, Value, write_csv};
 use crate::study::statistics::Statistics;
 use crate::study::tensile::TensileResult;
 use std::borrow::Cow;
@@ -21,18 +21,21 @@ pub struct Files<'a> {
     pub study: &'a str,
     /// Whether they are written as Parquet too.
     pub parquet: bool,
+    /// The files written.
+    pub written: Vec<PathBuf>,
 }
 
-impl Files<'_> {
-    /// Writes a table, and gives its files.
-    fn write<R>(&self, name: &str, columns: &[Column<R>], rows: &[R]) -> Result<Vec<PathBuf>> {
-        let file = |extension: &str| self.folder.join(name).with_extension(extension);
-        write_csv(columns, rows, &file("csv"))?;
-        if !self.parquet {
-            return Ok(vec![file("csv")]);
+impl TableSink for Files<'_> {
+    fn take<R>(&mut self, name: &str, columns: &[Column<R>], rows: &[R]) -> Result<()> {
+        let csv = self.folder.join(name).with_extension("csv");
+        write_csv(columns, rows, &csv)?;
+        self.written.push(csv);
+        if self.parquet {
+            let file = self.folder.join(name).with_extension("parquet");
+            parquet(&file, self.study, columns, rows)?;
+            self.written.push(file);
         }
-        parquet(&file("parquet"), self.study, columns, rows)?;
-        Ok(vec![file("csv"), file("parquet")])
+        Ok(())
     }
 }
 
@@ -46,11 +49,18 @@ fn parquet<R>(_: &Path, _: &str, _: &[Column<R>], _: &[R]) -> Result<()> {
     crate::export::check(&[crate::export::Format::Parquet])
 }
 
-/// A line per case.
+/// Hands all three tables to `sink`, under their names without `.csv`.
 ///
 /// # Errors
-/// When the file cannot be written.
-pub fn cases(definition: &Definition, gathered: &Gathered, files: &Files) -> Result<Vec<PathBuf>> {
+/// What the sink says.
+pub fn tables(definition: &Definition, gathered: &Gathered, sink: &mut impl TableSink) -> Result<()> {
+    cases(definition, gathered, sink)?;
+    points(definition, gathered, sink)?;
+    breaks(definition, gathered, sink)
+}
+
+/// A line per case.
+fn cases(definition: &Definition, gathered: &Gathered, sink: &mut impl TableSink) -> Result<()> {
     let mut columns: Vec<Column<CaseResult>> = vec![
         Column::in_files("case", |case: &CaseResult| case.number),
         Column::in_files("folder", |case: &CaseResult| case.folder.clone()),
@@ -78,7 +88,7 @@ pub fn cases(definition: &Definition, gathered: &Gathered, files: &Files) -> Res
         of_run("energy residual [%]", "%", |run| run.energy_residual_percent),
         of_run("kinetic/internal [-]", "-", |run| run.kinetic_over_internal),
     ]);
-    files.write("cases", &columns, &gathered.cases)
+    sink.take("cases", &columns, &gathered.cases)
 }
 
 /// A column of what a case gave, in a unit, empty where it gave nothing.
@@ -91,10 +101,7 @@ fn of_run<'a, V: Cell>(
 }
 
 /// A line per point and quantity: mean, standard deviation and interval over seeds.
-///
-/// # Errors
-/// When the file cannot be written.
-pub fn points(definition: &Definition, gathered: &Gathered, files: &Files) -> Result<Vec<PathBuf>> {
+fn points(definition: &Definition, gathered: &Gathered, sink: &mut impl TableSink) -> Result<()> {
     type Mean = (usize, &'static Quantity, Statistics);
     let mut columns: Vec<Column<Mean>> = levels(definition, |(point, ..): &Mean| *point);
     columns.extend([
@@ -109,14 +116,11 @@ pub fn points(definition: &Definition, gathered: &Gathered, files: &Files) -> Re
     let means = |point: usize| {
         definition.quantities.iter().filter_map(move |one| Some((point, *one, gathered.stat(point, one)?)))
     };
-    files.write("points", &columns, &(0..definition.points.len()).flat_map(means).collect::<Vec<Mean>>())
+    sink.take("points", &columns, &(0..definition.points.len()).flat_map(means).collect::<Vec<Mean>>())
 }
 
 /// A line per point and layer: when and where it broke, as frequencies over seeds.
-///
-/// # Errors
-/// When the file cannot be written.
-pub fn breaks(definition: &Definition, gathered: &Gathered, files: &Files) -> Result<Vec<PathBuf>> {
+fn breaks(definition: &Definition, gathered: &Gathered, sink: &mut impl TableSink) -> Result<()> {
     type Layer = (usize, LayerBreaks);
     let of_point = |point: usize| breaks::layers(gathered, point).into_iter().map(move |layer| (point, layer));
     let layers: Vec<Layer> = (0..definition.points.len()).flat_map(of_point).collect();
@@ -139,7 +143,7 @@ pub fn breaks(definition: &Definition, gathered: &Gathered, files: &Files) -> Re
             layer.off_middle_mm.map(|stat| stat.mean)
         }),
     ]);
-    files.write("breaks", &columns, &layers)
+    sink.take("breaks", &columns, &layers)
 }
 
 /// A column per axis: numbers where its levels are, names otherwise.

@@ -9,6 +9,7 @@ mod html;
 mod plots;
 mod tables;
 
+pub use files::tables as data;
 pub use findings::Findings;
 pub use tables::{built, case_list};
 
@@ -54,10 +55,8 @@ pub fn write(
     folder: &Path,
     parquet: bool,
 ) -> Result<Vec<PathBuf>> {
-    let files = Files { folder, study: &definition.name, parquet };
-    let mut written = files::cases(definition, gathered, &files)?;
-    written.extend(files::points(definition, gathered, &files)?);
-    written.extend(files::breaks(definition, gathered, &files)?);
+    let mut files = Files { folder, study: &definition.name, parquet, written: Vec::new() };
+    files::tables(definition, gathered, &mut files)?;
     let tables = all_tables(definition, gathered, findings);
     let json = folder.join(STUDY);
     write_json(definition, gathered, findings, command, &json)?;
@@ -65,7 +64,7 @@ pub fn write(
     let page = folder.join(STUDY_PAGE);
     let text = html::page(definition, gathered, &tables, &plots, command)?;
     write_whole(&page, &text)?;
-    Ok(written.into_iter().chain([json]).chain(plots).chain([page]).collect())
+    Ok(files.written.into_iter().chain([json]).chain(plots).chain([page]).collect())
 }
 
 /// `study.json`: the findings for programs; the numbers of cases stand in the tables beside it.
