@@ -7,6 +7,7 @@
 //! # Pages
 //!
 //! - [`manual::physics`]: every equation with its source, every parameter with its scene key, unit and default, limits
+//! - [`manual::import`]: wires of CAD models (STEP, DXF, text): what is read, what is made of it
 //! - [`manual::architecture`]: how the modules are layered, where to find what, how to add a law, a key, a picture, a case
 //! - [`manual::glossary`]: what the words mean
 //! - [`manual::python`]: the package for Python programs and notebooks
@@ -28,6 +29,7 @@
 //! - [`page`]: the HTML page of a run (feature `report`)
 //! - [`study`]: many runs (feature `study`)
 //! - [`export`]: a run in files that other programs open (feature `export`: Parquet and VTK)
+//! - [`import`]: wires of CAD models as centre lines (STEP, DXF, text)
 //! - `explore`: an interactive picture of a run (feature `explore`)
 //! - [`cli`]: the command line (feature `cli`)
 //!
@@ -73,6 +75,8 @@ pub mod export;
 #[cfg(feature = "gpu")]
 #[warn(missing_docs)]
 pub mod gpu;
+#[warn(missing_docs)]
+pub mod import;
 #[warn(missing_docs)]
 pub mod law;
 pub mod manual;

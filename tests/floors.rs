@@ -19,7 +19,7 @@ const FLOORS: [&[&str]; 13] = [
     &["observe"],
     &["render", "gpu"],
     &["run"],
-    &["page", "export"],
+    &["page", "export", "import"],
     &["study"],
     &["explore"],
     &["cli"],

@@ -18,6 +18,7 @@ mod ended;
 mod explore;
 mod export;
 mod finished;
+mod import;
 mod interrupt;
 mod keys;
 mod look;
@@ -64,6 +65,8 @@ enum Command {
     /// List, show, check or start scenes, and list their keys
     #[command(subcommand)]
     Scene(scene::Command),
+    /// Make a scene of the wires of a CAD model: curves or tubes in STEP or DXF, or points as text
+    Import(import::Args),
     /// Open the recording of a run in an installed Rerun viewer, or serve it to a browser
     View(view::Args),
     /// Look at a run from any side in a browser: turn it, cut it open, follow its strain, click what broke
@@ -149,6 +152,7 @@ fn dispatch(command: Command) -> Result<Ended> {
         Command::Resume(args) => resume::resume(&args),
         Command::Plan(args) => plan::plan(&args).map(|()| Ended::Well),
         Command::Scene(command) => scene::scene(&command).map(|()| Ended::Well),
+        Command::Import(args) => import::import(&args).map(|()| Ended::Well),
         Command::Export(args) => export::export(args),
         Command::Calibrate(args) => calibrate::run(&args),
         Command::Accuracy(args) => accuracy::accuracy(&args),

@@ -91,7 +91,7 @@ fn new(name: &Path, from: &str) -> Result<()> {
 }
 
 /// A path as it can be pasted into a shell.
-fn for_shell(path: &Path) -> String {
+pub(super) fn for_shell(path: &Path) -> String {
     let path = path.display().to_string();
     let plain = |c: char| c.is_alphanumeric() || "-_./\\:+".contains(c);
     if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', r"'\''")) }

@@ -1,6 +1,7 @@
 //! How single arguments are written.
 
 use crate::base::error::Result;
+use crate::base::units::{self, Dimension};
 use crate::scene::look::FRAME_SIDE;
 use crate::scene::quality::Quality;
 use crate::scene::{self, Scene};
@@ -211,6 +212,15 @@ pub fn strain_range(text: &str) -> std::result::Result<[f64; 2], String> {
 
 /// Longest span of time (s): a hundred years and more.
 const LONGEST_TIME: f64 = 3600.0 * 1e6;
+
+/// Reads a length greater than 0, such as `0.39 mm` (m).
+pub fn length(text: &str) -> std::result::Result<f64, String> {
+    let parsed = units::parse(text, Dimension::Length).map_err(|error| format!("{error}; {}", error.help))?;
+    match parsed > 0.0 && parsed.is_finite() {
+        true => Ok(parsed),
+        false => Err("a length is greater than 0, such as 0.39 mm".into()),
+    }
+}
 
 /// A span of time, written as `90s`, `20m` or `2h`.
 pub fn duration(text: &str) -> std::result::Result<Duration, String> {

@@ -18,7 +18,7 @@ use std::path::Path;
 use words::{Commas, Row};
 
 /// Layer of a wire whose block names none.
-const DEFAULT_LAYER: &str = "wire";
+pub const DEFAULT_LAYER: &str = "wire";
 
 /// The centreline of one wire.
 #[derive(Debug, Clone, PartialEq)]
