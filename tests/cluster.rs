@@ -85,8 +85,8 @@ fn a_study_runs_side_by_side_with_gnu_parallel_and_what_failed_is_tried_again() 
     assert!(said.contains("All 6 cases are there"), "{said}");
     // Again with one that is missing, in a folder whose name means something to parallel.
     std::fs::rename(folder.path().join("there"), folder.path().join("{} it's")).unwrap();
-    let cases: Vec<_> = std::fs::read_dir(folder.path().join("{} it's/cases")).unwrap().flatten().collect();
-    std::fs::remove_dir_all(cases[0].path()).unwrap();
+    let inside = |folder: &Path| std::fs::read_dir(folder).unwrap().next().unwrap().unwrap().path();
+    std::fs::remove_dir_all(inside(&inside(&folder.path().join("{} it's/cases")))).unwrap();
     let said = study(&["--out", "{} it's", "--emit", "gnu-parallel"]);
     assert!(said.contains("1 case to run"), "{said}");
     let ran = Command::new("bash").arg(folder.path().join("{} it's/cluster/cases.sh")).output().unwrap();

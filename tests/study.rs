@@ -109,8 +109,8 @@ fn cases_may_be_run_one_by_one_and_gathered() {
 fn kill_at_a_checkpoint(folder: &Path) -> bool {
     let cases = folder.join("out/study/own/cases");
     let unfinished = || -> Vec<std::path::PathBuf> {
-        let entries = std::fs::read_dir(&cases).into_iter().flatten().flatten();
-        entries.map(|case| case.path().join("unfinished")).collect()
+        let within = |folder| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+        within(cases.clone()).flat_map(within).map(|case| case.join("unfinished")).collect()
     };
     let newest = || {
         let kept = unfinished().into_iter().filter_map(|run| strandsnap::run::checkpoint::latest(&run).ok());
@@ -168,7 +168,7 @@ fn a_damaged_record_is_told_and_its_case_run_again() {
     let folder = tempfile::tempdir().unwrap();
     let first = printed(&study(folder.path(), SPEEDS, &[]));
     let cases = folder.path().join("out/study/own/cases");
-    let case = std::fs::read_dir(&cases).unwrap().next().unwrap().unwrap().file_name().into_string().unwrap();
+    let case = rows(&folder.path().join("out/study/own/cases.csv"))[0]["folder"].clone();
     let record = cases.join(&case).join("case.json");
     let whole = std::fs::read_to_string(&record).unwrap();
     std::fs::write(&record, &whole[..whole.len() / 3]).unwrap();

@@ -53,13 +53,15 @@ impl Identity {
         Self { device, ..self }
     }
 
-    /// Name of its folder: FNV-1a over all of it. The record holds the whole identity, so that a clash of names is seen.
+    /// Path of its folder in that of all cases: FNV-1a over all of it, its first two digits a folder for themselves, so that
+    /// none holds ten thousand. The record holds the whole identity, so that a clash of names is seen.
     pub fn name(&self) -> String {
         let mut text = format!("{} {:?} {} {}", self.revision, self.threads, self.writes, self.definition);
         self.device.iter().for_each(|device| text += device);
         let fnv = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
         let hash = text.bytes().fold(0xCBF2_9CE4_8422_2325, fnv);
-        format!("{hash:016x}")
+        let name = format!("{hash:016x}");
+        format!("{}/{}", &name[..2], &name[2..])
     }
 }
 
@@ -104,8 +106,11 @@ impl CaseStore {
         let cases = &store.folder;
         regular::make_folder(cases)?;
         if fresh {
-            let entries = std::fs::read_dir(cases).map_err(|e| Error::io("cannot read the folder", cases, e))?;
-            for case in entries.flatten().map(|entry| entry.path()) {
+            let within = |folder: &Path| -> Result<Vec<PathBuf>> {
+                let entries = std::fs::read_dir(folder).map_err(|e| Error::io("cannot read the folder", folder, e))?;
+                Ok(entries.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect())
+            };
+            for case in within(cases)?.iter().map(|some| within(some)).collect::<Result<Vec<_>>>()?.concat() {
                 let record = case.join(RECORD);
                 if record.is_file() {
                     std::fs::remove_file(&record).map_err(|e| Error::io("cannot remove", &record, e))?;
