@@ -17,7 +17,7 @@ pub struct ImportOptions {
     pub diameter: Option<f64>,
     /// Greatest distance of a wire from the polygon of its points (m); `None`: a thousandth of the least diameter.
     pub chord: Option<f64>,
-    /// Distance up to which ends are joined (m); `None`: see [`chains::join`].
+    /// Distance up to which ends are joined (m); `None`: see [`join`](crate::import::chains::join).
     pub reach: Option<f64>,
     /// Leave wires where they are drawn, whatever their axis.
     pub as_drawn: bool,
