@@ -1,6 +1,7 @@
 //! Processor time and versions, for the summary.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 /// The lock file that this program was built from: it names the version of everything in it.
 const LOCK: &str = include_str!("../../Cargo.lock");
@@ -51,10 +52,10 @@ pub fn versions() -> BTreeMap<String, String> {
     versions
 }
 
-/// Version of a package in the lock file.
+/// Version of a package in the lock file, which is read once: that takes as long as hundreds of steps.
 fn locked(package: &str) -> Option<String> {
-    let lock: toml::Table = LOCK.parse().ok()?;
-    let packages = lock.get("package")?.as_array()?;
+    static LOCKED: LazyLock<Option<toml::Table>> = LazyLock::new(|| LOCK.parse().ok());
+    let packages = LOCKED.as_ref()?.get("package")?.as_array()?;
     let entry = packages.iter().find(|p| p.get("name").and_then(|n| n.as_str()) == Some(package))?;
     Some(entry.get("version")?.as_str()?.to_string())
 }
