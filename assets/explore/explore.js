@@ -709,7 +709,7 @@ run.layers.forEach((name, k) => {
   label.append(box, ` ${name} (${run.wires.filter(w => w.layer === k).length})`);
   const ghost = document.createElement("button");
   Object.assign(ghost, { type: "button", className: "ghost", textContent: "ghost", title: "Draw see-through" });
-  ghost.setAttribute("aria-label", `${name} layer see-through`);
+  ghost.setAttribute("aria-label", `ghost: ${name} layer see-through`);
   ghost.dataset.layer = k;
   ghost.onclick = () => {
     const solid = view.ghost_layers.includes(k);

@@ -39,6 +39,8 @@ pub enum Why {
     NoUnit,
     /// The same line is there already.
     Twice,
+    /// It stands on a sheet, not in the model.
+    OnSheet,
 }
 
 /// Something that is not used.

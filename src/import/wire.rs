@@ -100,12 +100,16 @@ impl Wire {
         self.pieces.iter().all(|part| part.piece.shape.is_polygon())
     }
 
-    /// Whether it is straight.
+    /// Whether it is straight, and never turns back.
     pub fn is_straight(&self) -> bool {
         let [from, to] = self.ends();
         let Some(along) = (to - from).try_normalize() else { return false };
-        let off = |mark: &Mark| (mark.point - from).reject_from_normalized(along).length();
-        self.pieces.iter().flat_map(|part| &part.marks).all(|mark| off(mark) <= STRAIGHT * self.length())
+        let (most, mut reached) = (STRAIGHT * self.length(), 0.0f64);
+        self.pieces.iter().flat_map(|part| &part.marks).all(|mark| {
+            let way = (mark.point - from).dot(along);
+            reached = reached.max(way);
+            (mark.point - from).reject_from_normalized(along).length() <= most && way >= reached - most
+        })
     }
 
     /// Points along it (m) whose polygon it leaves by `chord` (m) at most: a curve of curvature κ leaves chords of length h

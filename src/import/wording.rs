@@ -38,6 +38,7 @@ impl fmt::Display for Why {
             Self::NoTube(why) => write!(f, "is no tube around one line: {why}"),
             Self::NoUnit => write!(f, "gives no unit of length: give --unit, such as --unit mm"),
             Self::Twice => write!(f, "lies on another line from end to end"),
+            Self::OnSheet => write!(f, "stands on a sheet (paper space), not in the model"),
         }
     }
 }

@@ -159,10 +159,12 @@ impl Painter {
 
     /// Begins to draw a picture whose top left corner is pixel `origin` of the panels; it is there when it is read.
     pub fn draw(&self, origin: [f32; 2], style: &Style, segments: &[Segment], drawings: &[Drawing]) {
+        // Where all is hidden there is only the ground.
+        let nothing = segments.is_empty();
         let segments = self.upload(segments);
         let views: Vec<_> = drawings.iter().map(|d| self.bind(d, style)).collect();
         self.target.draw(&self.gpu, super::colour::linear4(style.panel), |pass| {
-            for (drawing, view) in drawings.iter().zip(&views) {
+            for (drawing, view) in drawings.iter().zip(&views).filter(|_| !nothing) {
                 let Rect { x, y, w, h } = drawing.camera.panel;
                 let (x, y) = (x - origin[0], y - origin[1]);
                 pass.set_viewport(x, y, w, h, 0.0, 1.0);

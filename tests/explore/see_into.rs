@@ -122,3 +122,16 @@ fn layers_in_front_are_seen_through_and_hide_nothing() {
     // Nothing see-through changes what a view without such layers shows.
     assert_eq!(drawn(folder.path(), &plain), solid);
 }
+
+#[test]
+fn where_all_is_hidden_there_is_only_the_ground() {
+    if strandsnap::render::check().is_err() {
+        return skipped("where_all_is_hidden_there_is_only_the_ground", "no graphics adapter");
+    }
+    let (folder, run) = (folder(12), Run::new(12));
+    let hidden = View { hidden_layers: vec![0, 1, 2], ..section(&run, 20.0) };
+    let below = View { cut: Some(-500.0), ..section(&run, 20.0) };
+    let empty = drawn(folder.path(), &hidden);
+    assert!(empty.pixels().all(|pixel| pixel == empty.get_pixel(0, 0)));
+    assert_eq!(drawn(folder.path(), &below), empty);
+}

@@ -88,6 +88,29 @@ fn swept_disks_along_composite_curves() {
     assert!((length(&found, 0) - 8e-3).abs() < 1e-6, "{}", length(&found, 0));
 }
 
+/// What is read of a swept disk is all of it, or nothing, and that is said.
+#[test]
+fn disks_that_are_swept_in_part_or_hollow_are_named() {
+    let line = "#10 = CARTESIAN_POINT('',(0.,0.,30.));\n#11 = POLYLINE('',(#4,#10));\n";
+    for (disk, why) in
+        [("0.25,0.1,$,$", "hollow"), ("0.25,$,0.5,1.", "whole directrix"), ("0.25,$,$,0.5", "whole directrix")]
+    {
+        let text = format!("{line}#20 = SWEPT_DISK_SOLID('',#11,{disk});\n#21 = SHAPE_REPRESENTATION('',(#20),#3);");
+        let told = format!("{:?}", found("a.step", &step(&text), ImportOptions::default()).unwrap_err());
+        assert!(told.contains(why), "{disk}: {told}");
+    }
+    let text = format!("{line}#20 = SWEPT_DISK_SOLID('',#11,0.25,$,0.,1.);\n#21 = SHAPE_REPRESENTATION('',(#20),#3);");
+    assert!((length(&found("a.step", &step(&text), ImportOptions::default()).unwrap(), 0) - 30e-3).abs() < 1e-9);
+}
+
+/// A polygon that turns back keeps the point where it does.
+#[test]
+fn a_line_that_turns_back_is_not_straight() {
+    let found = found("a.txt", "0 0 0\n0 0 40\n0 0 20\n", with_diameter()).unwrap();
+    assert!((length(&found, 0) - 60e-3).abs() < 1e-9, "{}", length(&found, 0));
+    assert_eq!(found.wires[0].points.len(), 3);
+}
+
 /// A representation within another twice, the second time twice as large.
 #[test]
 fn mapped_items_are_placed_and_scaled() {

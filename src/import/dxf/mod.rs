@@ -97,10 +97,14 @@ impl<'a> Drawing<'a> {
                 return Err(Error::input(what, "export the wires alone, without blocks within blocks"));
             }
             // Sheets of paper show the model again.
-            if entity.first(67).is_some_and(|tag| tag.value == "1") || entity.kind == "VIEWPORT" {
+            if entity.kind == "VIEWPORT" {
                 continue;
             }
             let source = Place { entity: entity.kind.to_owned(), number: None, line: entity.line };
+            if entity.first(67).is_some_and(|tag| tag.value == "1") {
+                self.contents.unread.push(Unread { why: Why::OnSheet, place: source });
+                continue;
+            }
             if entity.kind == "INSERT" {
                 let Some(block) = self.blocks.find(entity) else {
                     let why = Why::Unusable("block: its name is that of a BLOCK");

@@ -3,11 +3,12 @@
 //! Faces that count are cylinders, tori and B-spline surfaces whose sections are circles; plane ones close the ends. The
 //! two halves of a tube give one centre line.
 
-use super::model::Read;
+use super::model::{self, Attributes, Read};
 use super::reader::{Reader, Segment, within};
 use super::{curves, edges, surfaces};
 use crate::import::circle;
 use crate::import::fault::Why;
+use crate::import::part21::Value;
 use crate::import::shape::{Shape, ring};
 use crate::import::spline::SplineSurface;
 use crate::import::surface::{Frame, Surface};
@@ -36,7 +37,11 @@ pub fn tube(reader: &Reader, number: u64) -> Read<Vec<Segment>> {
     let model = reader.model;
     if let Some(disk) = model.record(number, "SWEPT_DISK_SOLID") {
         let diameter = 2.0 * disk.positive(2, "radius: a number greater than 0")?;
+        if matches!(disk.value(3), Some(Value::Number(_) | Value::Typed(..))) {
+            return Err(model.fault(number, Why::NoTube("it is hollow")));
+        }
         let line = curves::curve(reader, number, disk.reference(1, "directrix: an instance")?, 0)?;
+        whole(&disk, &line)?;
         return Ok(line.into_iter().map(|segment| Segment { diameter: Some(diameter), ..segment }).collect());
     }
     let refuse = |why| model.fault(number, Why::NoTube(why));
@@ -57,6 +62,22 @@ pub fn tube(reader: &Reader, number: u64) -> Read<Vec<Segment>> {
     }
     let diameter = Some(2.0 * radius);
     Ok(lines.into_iter().map(|line| Segment { diameter, ..line.segment }).collect())
+}
+
+/// Refuses a disk that is swept along a part of its directrix. Parameters of a composite curve count its segments.
+fn whole(disk: &Attributes, line: &[Segment]) -> Read<()> {
+    let own = match line {
+        [one] => [one.from, one.to],
+        several => [0.0, several.len() as f64],
+    };
+    let differs = |(index, own): (usize, f64)| {
+        let given = disk.value(index).and_then(model::number);
+        given.is_some_and(|given| (given - own).abs() > 1e-6 * (own.abs() + 1.0))
+    };
+    match [(4, own[0]), (5, own[1])].into_iter().any(differs) {
+        true => Err(disk.unusable("parameters of start and end: those of the whole directrix")),
+        false => Ok(()),
+    }
 }
 
 /// Faces of a solid or shell.
