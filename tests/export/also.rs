@@ -111,3 +111,23 @@ fn the_tables_of_a_study_in_pandas_and_polars() {
     let Some(python) = super::readers(test) else { return };
     super::script(&python, test, "study_tables.py", &[&out]);
 }
+
+#[cfg(feature = "record")]
+#[test]
+fn the_recording_is_a_table_by_the_lines_of_the_document() {
+    let test = "the_recording_is_a_table_by_the_lines_of_the_document";
+    let Some(python) = super::readers(test) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("strand.toml"), crate::drive::STRAND).unwrap();
+    let set = ["--set", "output.also=[\"parquet\"]", "--set", "output.samples=60", "--set", "output.snapshots=4"];
+    let command = ["run", "strand.toml", "--no-frames", "--quiet", "--out", "run"];
+    let output = strandsnap(folder.path(), &[&command[..], &set].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/results/files.md");
+    let run = folder.path().join("run");
+    let layer = fs::read_to_string(run.join("wires.csv")).unwrap();
+    let layer = layer.lines().nth(2).and_then(|row| row.split(',').nth(1)).unwrap().to_owned();
+    let series = run.join("parquet/wire_series.parquet");
+    let arguments = [&document, &run.join("recording.rrd"), Path::new(&layer), &series];
+    super::script(&python, test, "recording_table.py", &arguments);
+}
