@@ -117,7 +117,10 @@ assert numpy.allclose(exported, 1000 * final.astype(float), rtol=1e-6, atol=0), 
 also = strandsnap.run(scene, "also", overwrite=True)
 assert not pathlib.Path("also/xyz").exists()
 also = strandsnap.run(strandsnap.Scene("also/scene.toml", output__also=["xyz"]), "also-xyz")
-assert pathlib.Path("also-xyz/xyz/particles.xyz").read_bytes() == pathlib.Path("xyz/particles.xyz").read_bytes()
+# Lines with a sign of equality name the run, which is another one.
+bodies = [pathlib.Path(folder, "particles.xyz").read_text().splitlines() for folder in ("also-xyz/xyz", "xyz")]
+of_particles = [[line for line in lines if "=" not in line] for lines in bodies]
+assert of_particles[0] == of_particles[1] and len(of_particles[0]) > count
 del run, opened
 gc.collect()
 assert numpy.array_equal(stress, before) and len(strain) == len(stress)
