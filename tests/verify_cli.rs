@@ -62,8 +62,8 @@ fn verify_goes_on_where_it_was_killed() {
     let args = [&known[..], &["--quick", "--threads", "1"]].concat();
     let kept = folder.path().join("out/verify/unfinished-verify");
     // A case counts once its record is there, which comes last.
-    let is_kept = |entry: &std::fs::DirEntry| entry.path().join("case.json").is_file();
-    let count = || std::fs::read_dir(&kept).map_or(0, |entries| entries.flatten().filter(is_kept).count());
+    let within = |folder| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let count = || within(kept.clone()).flat_map(within).filter(|case| case.join("case.json").is_file()).count();
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_strandsnap"))
         .args([&["verify"], &args[..]].concat())
         .current_dir(folder.path())
