@@ -10,6 +10,7 @@ pub mod devices;
 pub mod drawing;
 mod drive;
 pub mod estimate;
+pub mod exported;
 pub mod folder;
 pub mod identity;
 pub mod lock;

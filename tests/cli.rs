@@ -56,7 +56,9 @@ fn help_and_version_are_well() {
     assert_code(&strandsnap(folder.path(), &["--help"]), 0);
     let version = strandsnap(folder.path(), &["--version"]);
     assert_code(&version, 0);
-    assert!(stdout(&version).contains(env!("CARGO_PKG_VERSION")));
+    let revision =
+        format!("strandsnap {} (physics revision {})", env!("CARGO_PKG_VERSION"), strandsnap::engine::REVISION);
+    assert_eq!(stdout(&version).trim(), revision);
 }
 
 #[test]

@@ -4,12 +4,12 @@ use super::say::say;
 use crate::base::error::{Error, Result};
 use crate::base::finding::StopReason;
 use crate::base::wording::counted;
-use crate::export::{ExportOptions, export};
+use crate::export::also;
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{FRAMES, RECORDING};
-use crate::run::replay::Selection;
 use crate::run::{self, RunOptions, RunSummary, outputs};
 use crate::scene::spec::OutputSpec;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Says how a run ended, and where its results are.
@@ -52,45 +52,22 @@ pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
     }
 }
 
-/// Makes the files that `output.also` asks for where a run and its pictures have come to their end, in place of earlier ones.
+/// Makes the files that `output.also` asks for, see [`also`], and says so.
 ///
 /// # Errors
-/// As for [`export`]; [`Error::Interrupted`] when `stop` was set meanwhile, with what is left to be made told.
+/// As for [`also`]; [`Error::Interrupted`] when it was stopped meanwhile, with what makes the rest told.
 pub fn export_also(
     summary: &RunSummary,
     output: &OutputSpec,
-    options: &RunOptions,
+    run: &Path,
     quiet: bool,
     stop: &AtomicBool,
 ) -> Result<()> {
-    let run = &options.out;
-    let undrawn = summary.cost.frames.is_some_and(|frames| frames.unfinished());
-    let ended = summary.stopped != StopReason::Interrupted && !undrawn;
-    for (k, format) in output.also.iter().enumerate().filter(|_| ended) {
-        let wanted = ExportOptions {
-            format: *format,
-            selection: Selection::default(),
-            out: None,
-            overwrite: true,
-            anyway: false,
-        };
-        match export(run, &wanted, stop) {
-            Ok(made) if !quiet => {
-                say!(
-                    "  {}: {} ({})",
-                    made.folder.display(),
-                    counted(made.files, "file"),
-                    outputs::megabytes(made.bytes)
-                );
-            }
-            Err(Error::Interrupted) => {
-                for left in &output.also[k..] {
-                    say!("Still to be made: strandsnap export {} --format {}", run.display(), left.word());
-                }
-                return Err(Error::Interrupted);
-            }
-            made => drop(made?),
-        }
+    let also = also(run, summary, &output.also, stop)?;
+    for made in also.made.iter().filter(|_| !quiet) {
+        let size = outputs::megabytes(made.bytes);
+        say!("  {}: {} ({size})", made.folder.display(), counted(made.files, "file"));
     }
-    Ok(())
+    also.left.iter().for_each(|command| say!("Still to be made: {command}"));
+    if also.left.is_empty() { Ok(()) } else { Err(Error::Interrupted) }
 }

@@ -51,6 +51,13 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
 }
 
 pub fn import(args: &Args) -> Result<()> {
+    if let Some(folder) = args.out.as_ref().filter(|out| out.is_dir()) {
+        let what = format!("--out {} is a folder", folder.display());
+        return Err(Error::input(
+            what,
+            format!("give the file of the scene, such as {}", folder.join("strand.toml").display()),
+        ));
+    }
     let scene = match &args.out {
         Some(out) if out.extension().is_some_and(|extension| extension == "toml") => out.clone(),
         Some(out) => out.with_added_extension("toml"),

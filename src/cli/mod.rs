@@ -40,15 +40,17 @@ mod verify;
 mod view;
 
 use crate::base::error::{Error, Result};
+use crate::engine::REVISION;
 use clap::{CommandFactory, Parser, Subcommand};
 use ended::Ended;
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 /// Pull stranded wire until it snaps: a discrete-element engine, and the pictures that show how it fails.
 #[derive(Debug, Parser)]
-#[command(name = "strandsnap", version, about, propagate_version = true, after_help = EXIT_CODES)]
+#[command(name = "strandsnap", version = VERSION.as_str(), about, propagate_version = true, after_help = EXIT_CODES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -129,6 +131,10 @@ pub fn main_within(starts: Vec<String>, arguments: Vec<OsString>) -> u8 {
     called::tell(starts, arguments);
     answer()
 }
+
+/// Version of the program, and the revision of the physics, which decides what its runs give.
+static VERSION: LazyLock<String> =
+    LazyLock::new(|| format!("{} (physics revision {REVISION})", env!("CARGO_PKG_VERSION")));
 
 fn answer() -> u8 {
     let typed = std::iter::once(OsString::from("strandsnap")).chain(called::arguments().iter().cloned());

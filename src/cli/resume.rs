@@ -52,7 +52,7 @@ pub(super) fn go_on(
     time_limit.into_iter().for_each(interrupt::after);
     let options = resumable.options.clone();
     let output = resumable.scene.spec.output.clone();
-    export::check(&output.also)?;
+    export::check_also(&options.out, &output.also)?;
     let mut watched = Watched::begin(explore, &options.out, &resumable.scene.spec, stop)?;
     let summary = run::in_pool(options.threads, || {
         let mut progress = (!quiet).then(|| Progress::new(&resumable.scene.spec.stop));
@@ -61,7 +61,7 @@ pub(super) fn go_on(
         resumable.go_on(&|what| eprintln!("note: {what}"), watchers, stop)
     })??;
     print(&summary, &options, quiet);
-    export_also(&summary, &output, &options, quiet, stop)?;
+    export_also(&summary, &output, &options.out, quiet, stop)?;
     watched.end(&summary, stop);
     interrupt::ended_run(&summary)
 }
@@ -72,13 +72,13 @@ pub(super) fn draw(undrawn: Undrawn, time_limit: Option<Duration>, quiet: bool) 
     time_limit.into_iter().for_each(interrupt::after);
     let options = undrawn.options.clone();
     let output = undrawn.scene().spec.output.clone();
-    export::check(&output.also)?;
+    export::check_also(&options.out, &output.also)?;
     eprintln!("note: the run has come to its end; drawing the pictures that are missing");
     let mut drawing = undrawn.begin()?;
     let count = drawing.replay.count();
     drawing.replay.show(&mut Counted::new(&mut *drawing.writer, count, !quiet), stop)?;
     let summary = drawing.end()?;
     print(&summary, &options, quiet);
-    export_also(&summary, &output, &options, quiet, stop)?;
+    export_also(&summary, &output, &options.out, quiet, stop)?;
     interrupt::ended_run(&summary)
 }

@@ -100,7 +100,7 @@ pub fn run(args: Args) -> Result<Ended> {
             "there is nothing to go on with; --overwrite runs it again, in place of its results",
         ));
     }
-    export::check(&scene.spec.output.also)?;
+    export::check_also(&out, &scene.spec.output.also)?;
     let options = RunOptions {
         animation: args.animation.resolve(&out.join(ANIMATION)),
         // What was ended before its first checkpoint begins anew.
@@ -125,7 +125,7 @@ pub fn run(args: Args) -> Result<Ended> {
         run::run_watched(&scene, &options, watchers, stop)
     })??;
     print(&summary, &options, args.quiet);
-    export_also(&summary, &scene.spec.output, &options, args.quiet, stop)?;
+    export_also(&summary, &scene.spec.output, &options.out, args.quiet, stop)?;
     watched.end(&summary, stop);
     interrupt::ended_run(&summary)
 }

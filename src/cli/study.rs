@@ -80,7 +80,7 @@ pub fn study(args: &Args) -> Result<Ended> {
         seeds: args.seeds.clone().map_or(Vec::new(), |seeds| seeds.0),
     };
     if args.parquet {
-        export::check(&[Format::Parquet])?;
+        export::check(Format::Parquet)?;
     }
     let definition = Definition::load(name, &changes)?;
     for one in &definition.merged {

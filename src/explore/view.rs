@@ -135,7 +135,7 @@ impl View {
                 self.height > 1e-4 && self.height < 1e6,
                 "height",
                 shortest(self.height),
-                "a length in mm above zero".into(),
+                "a length in mm above zero, below a kilometre".into(),
             ),
             (
                 (0.0..=MOST_EXPLODED).contains(&self.explode),

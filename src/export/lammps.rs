@@ -4,11 +4,11 @@
 //! Formats: LAMMPS manual, `read_data`, `dump` (styles custom and local, with `units yes` and `time yes`).
 
 use super::body::{Body, bounds};
-use super::format::{ATOMS, BONDS, DATA};
 use super::target::{Growing, Target};
 use crate::base::error::Result;
 use crate::engine::view::{RunInfo, Sample, Snapshot};
 use crate::observe::Observer;
+use crate::run::exported::{ATOMS, BONDS, DATA};
 use std::io::Write;
 use std::sync::Arc;
 

@@ -5,7 +5,6 @@
 //! files hold, in which units, and how programs open them.
 
 mod body;
-mod format;
 mod lammps;
 #[cfg(feature = "export")]
 mod parquet;
@@ -18,12 +17,14 @@ mod vtk;
 mod xyz;
 
 use crate::base::error::{Error, Result};
+use crate::base::finding::StopReason;
 use crate::observe::Observer;
+use crate::observe::summary::RunSummary;
+pub use crate::run::exported::Format;
 use crate::run::folder::OutFolder;
 use crate::run::identity;
 use crate::run::outputs::built_without;
 use crate::run::replay::{Replay, Selection};
-pub use format::Format;
 use staged::Staged;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -84,15 +85,67 @@ pub fn export(run: &Path, options: &ExportOptions, stop: &AtomicBool) -> Result<
     Ok(Exported { folder: out, files, bytes, snapshots, cut_off: replay.cut_off().map(ToString::to_string) })
 }
 
-/// Checks that this program can write these formats, for what would find out only after a long run.
+/// What a run that has ended has made of `output.also`.
+#[derive(Debug, Default)]
+pub struct Also {
+    /// What was made.
+    pub made: Vec<Exported>,
+    /// Commands that make the rest, where it was stopped before.
+    pub left: Vec<String>,
+}
+
+/// Makes the files that `output.also` asks for of the run in the folder `run`, where it and its pictures have come to their end
+/// by its `summary`, in place of earlier ones.
 ///
 /// # Errors
-/// [`Error::Missing`] for a format that was not built.
-pub fn check(formats: &[Format]) -> Result<()> {
-    formats.iter().try_for_each(|format| match format {
+/// As for [`export`], but that what `stop` leaves out is no error.
+pub fn also(run: &Path, summary: &RunSummary, formats: &[Format], stop: &AtomicBool) -> Result<Also> {
+    let undrawn = summary.cost.frames.is_some_and(|frames| frames.unfinished());
+    let mut also = Also::default();
+    if summary.stopped == StopReason::Interrupted || undrawn {
+        return Ok(also);
+    }
+    for format in formats {
+        let (selection, out, overwrite, anyway) = (Selection::default(), None, true, false);
+        match export(run, &ExportOptions { format: *format, selection, out, overwrite, anyway }, stop) {
+            Ok(made) => also.made.push(made),
+            Err(Error::Interrupted) => {
+                also.left.push(format!("strandsnap export {} --format {}", run.display(), format.word()));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(also)
+}
+
+/// Checks that this program can write these formats, and that they have room in the folder `run`, for what would find out only
+/// after a long run.
+///
+/// # Errors
+/// [`Error::Missing`] for a format that was not built; [`Error::Input`] where something else than a folder has its name.
+pub fn check_also(run: &Path, formats: &[Format]) -> Result<()> {
+    formats.iter().try_for_each(|format| {
+        check(*format)?;
+        let folder = run.join(format.word());
+        if folder.is_dir() || std::fs::symlink_metadata(&folder).is_err() {
+            return Ok(());
+        }
+        Err(Error::input(
+            format!("{} is not a folder, and output.also writes into it", folder.display()),
+            format!("move it away, or leave {} out of output.also", format.word()),
+        ))
+    })
+}
+
+/// Checks that this program can write a format.
+///
+/// # Errors
+/// [`Error::Missing`] when it was not built.
+pub fn check(format: Format) -> Result<()> {
+    match format {
         Format::Parquet | Format::Vtk if !cfg!(feature = "export") => Err(not_built()),
         Format::Parquet | Format::Vtk | Format::Lammps | Format::Xyz => Ok(()),
-    })
+    }
 }
 
 fn not_built() -> Error {

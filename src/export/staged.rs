@@ -1,8 +1,8 @@
 //! Files that get their names when all of them are whole.
 
-use super::format::Format;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
+use crate::run::exported::Format;
 use crate::run::lock::Lock;
 use std::fs;
 use std::path::{Path, PathBuf};

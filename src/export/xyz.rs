@@ -4,12 +4,12 @@
 //! pairs, of which `Properties` names the columns.
 
 use super::body::Body;
-use super::format::XYZ;
 use super::target::{Growing, Target};
 use crate::base::error::Result;
 use crate::base::units::{mm, mpa, percent};
 use crate::engine::view::{RunInfo, Snapshot};
 use crate::observe::Observer;
+use crate::run::exported::XYZ;
 use std::io::Write;
 use std::sync::Arc;
 

@@ -4,7 +4,9 @@ use super::imported::Imported;
 use super::wording;
 use crate::base::units;
 use crate::base::wording::counted;
+use crate::scene::builtin;
 use std::path::Path;
+use toml_edit::DocumentMut;
 
 /// Rate of strain of the shipped scenes (1/s): 2.5 m/s on 50 mm.
 const STRAIN_RATE: f64 = 50.0;
@@ -13,29 +15,8 @@ const GRIP: [f64; 2] = [0.08, 4.0];
 /// Greatest length of a grip over that of the wires (-).
 const LONGEST_GRIP: f64 = 0.25;
 
-/// Material, bonds and contacts of annealed copper, as in the shipped scene `strand-1x7`.
-const COPPER: &str = r#"
-# No drawing says what wires are made of. This is annealed copper, as in `strandsnap scene show strand-1x7`: put in your own.
-[material]
-density = "8960 kg/m^3"
-young = "115 GPa"
-poisson = 0.34
-
-[bond]
-law = "elasto-plastic"
-damping = 0.02
-hardening = { form = "voce", yield_stress = "100 MPa", saturation = "177.4 MPa", rate = 12, linear = "541.8 MPa" }
-rupture = { criterion = "plastic-strain", strain = "28.314 %", weibull_modulus = 30 }
-
-[contact]
-normal = "thornton"
-tangential = "mindlin"
-friction = 0.2
-shape = "wire" # smooth wires: what they do does not depend on where particles lie
-hardness_factor = 2.8
-hardness_strain = "8 %"
-damping = 0.1
-"#;
+/// The shipped scene whose material, bonds and contacts are taken: annealed copper.
+const COPPER: &str = "strand-1x7";
 
 /// The scene. `source` is the file that was read, `points` the one that holds the wires, as the scene names it.
 pub fn scene(found: &Imported, source: &Path, points: &str) -> String {
@@ -51,10 +32,23 @@ pub fn scene(found: &Imported, source: &Path, points: &str) -> String {
     wording::unread(&found.unread).iter().for_each(|line| comment(&format!("NOT USED: {line}")));
     wording::forks(found).iter().for_each(|line| comment(&format!("NOT JOINED: {line}")));
     let about = format!("{} imported from {file}.", counted(found.wires.len(), "wire"));
-    text.push_str(&format!("about = {}\nseed = 1\nspacing = 1.0\n{COPPER}", quoted(&about)));
+    text.push_str(&format!("about = {}\nseed = 1\nspacing = 1.0\n{}", quoted(&about), copper()));
     text.push_str(&format!("\n[[wire]]\nfile = {}\nall = true\n", quoted(points)));
     text.push_str(&held(found));
     text
+}
+
+/// Material, bonds and contacts, of smooth wires: what those do does not depend on where particles lie.
+fn copper() -> String {
+    let text = builtin::find(COPPER).expect("the scene is shipped");
+    let mut scene: DocumentMut = text.parse().expect("shipped scenes are TOML");
+    scene.retain(|key, _| ["material", "bond", "contact"].contains(&key));
+    scene["contact"]["shape"] = toml_edit::value("wire");
+    format!(
+        "\n# No drawing says what wires are made of. This is annealed copper, as in `strandsnap scene show {COPPER}`: put in your \
+         own.\n{}\n",
+        scene.to_string().trim()
+    )
 }
 
 /// Grips and an end, where wires run along z.

@@ -1,5 +1,6 @@
 //! The output folder: checked before the simulation, cleared only when nothing else can fail.
 
+use super::exported;
 use super::lock::{self, LOCK, Lock};
 use super::options::Outputs;
 use crate::base::digest::Digest;
@@ -162,6 +163,7 @@ impl OutFolder {
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;
         }
+        exported::clear(&self.path)?;
         let frames = self.path.join(FRAMES);
         clear_pictures(&frames, None)?;
         remove_if_there(&frames.join(UNFINISHED))?;

@@ -55,6 +55,7 @@ fn a_run_makes_the_files_that_an_export_makes() {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let second = files(&folder.path().join("run/parquet"));
     assert!(first.len() == 5 && second.len() == 5 && first != second);
+    assert!(!folder.path().join("run/xyz").exists(), "what was exported of the first run is of no other");
     let scene = fs::read_to_string(folder.path().join("run/scene.toml")).unwrap();
     assert!(scene.contains("also = [\"parquet\"]"), "{scene}");
 }
@@ -62,13 +63,35 @@ fn a_run_makes_the_files_that_an_export_makes() {
 #[test]
 fn a_run_that_was_interrupted_makes_them_when_it_has_been_resumed() {
     let folder = tempfile::tempdir().unwrap();
-    let slow = ["--set", "output.also=[\"lammps\"]", "--set", "grip.speed=5 cm/s", "--time-limit", "1s"];
+    let slow = ["--set", "output.also=[\"lammps\"]", "--set", "grip.speed=5 cm/s", "--time-limit", "0.3s"];
     let output = wire(folder.path(), "run", &slow);
     assert_eq!(output.status.code(), Some(130), "{}", text(&output));
     assert!(!folder.path().join("run/lammps").exists());
     let output = strandsnap(folder.path(), &["resume", "run"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     assert_eq!(files(&folder.path().join("run/lammps")).len(), 3);
+}
+
+#[test]
+fn what_stands_in_the_way_is_told_before_the_run_and_what_is_not_its_own_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("run");
+    fs::create_dir_all(run.join("xyz")).unwrap();
+    fs::write(run.join("xyz/notes.txt"), "mine").unwrap();
+    fs::write(run.join("parquet"), "mine").unwrap();
+    let with = |formats: &str| wire(folder.path(), "run", &["--overwrite", "--set", &format!("output.also={formats}")]);
+    let output = with("[\"parquet\"]");
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+    assert!(
+        text(&output).contains("run/parquet is not a folder") && !run.join("curve.csv").exists(),
+        "{}",
+        text(&output)
+    );
+    let output = with("[\"xyz\"]");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert_eq!(fs::read_to_string(run.join("xyz/notes.txt")).unwrap(), "mine");
+    assert_eq!(fs::read_to_string(run.join("parquet")).unwrap(), "mine");
+    assert!(run.join("xyz/particles.xyz").is_file());
 }
 
 #[test]
@@ -108,6 +131,13 @@ fn the_tables_of_a_study_in_pandas_and_polars() {
     assert!(text(&output).contains("cases.parquet") && text(&output).contains("breaks.parquet"), "{}", text(&output));
     let out = folder.path().join("out/study/own");
     assert!(files(&out).iter().all(|(name, _)| !name.ends_with(".partial")));
+    // With fewer seeds, and without being asked for again, they go along with the CSV files.
+    let before = fs::read(out.join("cases.parquet")).unwrap();
+    let output = strandsnap(folder.path(), &["study", "own.toml", "--seeds", "1"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert_ne!(fs::read(out.join("cases.parquet")).unwrap(), before);
+    let output = strandsnap(folder.path(), &["study", "own.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let Some(python) = super::readers(test) else { return };
     super::script(&python, test, "study_tables.py", &[&out]);
 }

@@ -28,6 +28,9 @@ pub fn parts(file: &File, entity: &Entity) -> Result<Result<Vec<Part>, Why>> {
         "CIRCLE" => Ok(Err(Why::Closed)),
         "ARC" => {
             let radius = file.number_or(entity, 40, 0.0)?;
+            if radius <= 0.0 {
+                return Ok(Err(Why::Unusable("radius: a number greater than 0")));
+            }
             let centre = file.point_or(entity, 10, DVec3::ZERO)?;
             let shape = Shape::Round { centre, x: DVec3::X * radius, y: DVec3::Y * radius, rise: DVec3::ZERO };
             let from = file.number_or(entity, 50, 0.0)?.to_radians();

@@ -14,15 +14,14 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use strandsnap::base::error::{Error, Result};
 use strandsnap::engine::view::{RunInfo, Sample};
-use strandsnap::export::{self, ExportOptions, Format};
+use strandsnap::export::{self, Format};
 use strandsnap::observe::Observer;
 use strandsnap::observe::animation::Animation;
 use strandsnap::observe::column::{Column, Value};
 use strandsnap::observe::planned::PlannedEnd;
 use strandsnap::observe::tables;
 use strandsnap::run::drawing::Undrawn;
-use strandsnap::run::replay::Selection;
-use strandsnap::run::{self, Resumable, RunOptions, RunSummary, StopReason, cautions};
+use strandsnap::run::{self, Resumable, RunOptions, RunSummary, cautions};
 use strandsnap::scene::spec::StopSpec;
 
 /// Runs a scene and writes its results into the folder `out`; without it, into `out/NAME`.
@@ -80,7 +79,7 @@ pub fn py_run(
     warn(py, &before)?;
     let calls = Calls::new(py, &scene.spec.name, progress, on_row)?;
     let also = &scene.spec.output.also;
-    export::check(also).or_raise(py)?;
+    export::check_also(&options.out, also).or_raise(py)?;
     let ended = watched(py, calls, limit, &scene.spec.stop, |watchers, stop| {
         let run = || run::run_watched(scene, &options, watchers.observers(), stop);
         export_also(run::in_pool(options.threads, run)??, also, &options.out, stop)
@@ -108,7 +107,7 @@ pub fn resume(
         py.import("strandsnap._mesa")?.call_method0("quiet")?;
         let calls = Calls::new(py, "pictures", None, None)?;
         let also = undrawn.scene().spec.output.also.clone();
-        export::check(&also).or_raise(py)?;
+        export::check_also(&folder, &also).or_raise(py)?;
         let ended = watched(py, calls, limit, &StopSpec::default(), |_, stop| {
             let mut drawing = undrawn.begin()?;
             drawing.replay.show(&mut *drawing.writer, stop)?;
@@ -119,7 +118,7 @@ pub fn resume(
     let resumable = py.detach(|| Resumable::open(&folder, threads, device)).or_raise(py)?;
     let calls = Calls::new(py, &resumable.scene.spec.name, progress, on_row)?;
     let (end, also) = (resumable.scene.spec.stop.clone(), resumable.scene.spec.output.also.clone());
-    export::check(&also).or_raise(py)?;
+    export::check_also(&folder, &also).or_raise(py)?;
     let ended = watched(py, calls, limit, &end, |watchers, stop| {
         // The notes say from which step it goes on, which the first row that is new tells.
         let run = || resumable.go_on(&|_| {}, watchers.observers(), stop);
@@ -128,24 +127,10 @@ pub fn resume(
     finish(py, ended, &folder)
 }
 
-/// Makes the files that `output.also` asks for, where a run and its pictures have come to their end; what `stop` leaves out is
-/// among its warnings.
+/// Makes the files that `output.also` asks for; what `stop` leaves out is among the warnings.
 fn export_also(mut summary: RunSummary, also: &[Format], run: &Path, stop: &AtomicBool) -> Result<RunSummary> {
-    let undrawn = summary.cost.frames.is_some_and(|frames| frames.unfinished());
-    if summary.stopped == StopReason::Interrupted || undrawn {
-        return Ok(summary);
-    }
-    for format in also {
-        let (selection, out, overwrite, anyway) = (Selection::default(), None, true, false);
-        let wanted = ExportOptions { format: *format, selection, out, overwrite, anyway };
-        match export::export(run, &wanted, stop) {
-            Err(Error::Interrupted) => {
-                let left = format!("still to be made: strandsnap export {} --format {}", run.display(), format.word());
-                summary.warnings.push(left);
-            }
-            made => drop(made?),
-        }
-    }
+    let also = export::also(run, &summary, also, stop)?;
+    summary.warnings.extend(also.left.iter().map(|command| format!("still to be made: {command}")));
     Ok(summary)
 }
 

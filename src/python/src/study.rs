@@ -279,7 +279,7 @@ impl StudyResults {
 
 /// Whether tables can be written so.
 fn check(py: Python, parquet: bool) -> PyResult<()> {
-    if parquet { export::check(&[Format::Parquet]).or_raise(py) } else { Ok(()) }
+    if parquet { export::check(Format::Parquet).or_raise(py) } else { Ok(()) }
 }
 
 fn changes(

@@ -30,8 +30,9 @@ impl TableSink for Files<'_> {
         let csv = self.folder.join(name).with_extension("csv");
         write_csv(columns, rows, &csv)?;
         self.written.push(csv);
-        if self.parquet {
-            let file = self.folder.join(name).with_extension("parquet");
+        let file = self.folder.join(name).with_extension("parquet");
+        // One that is there would otherwise tell what the CSV file does no more.
+        if self.parquet || (cfg!(feature = "export") && file.is_file()) {
             parquet(&file, self.study, columns, rows)?;
             self.written.push(file);
         }
@@ -46,7 +47,7 @@ fn parquet<R>(path: &Path, study: &str, columns: &[Column<R>], rows: &[R]) -> Re
 
 #[cfg(not(feature = "export"))]
 fn parquet<R>(_: &Path, _: &str, _: &[Column<R>], _: &[R]) -> Result<()> {
-    crate::export::check(&[crate::export::Format::Parquet])
+    crate::export::check(crate::export::Format::Parquet)
 }
 
 /// Hands all three tables to `sink`, under their names without `.csv`.

@@ -1,15 +1,41 @@
-//! The names of the files of each format.
+//! The files that a run has for other programs, in folders within its own that are named by their formats.
 
 /// LAMMPS: particles and bonds before loading.
-pub(super) const DATA: &str = "particles.data";
+pub const DATA: &str = "particles.data";
 /// LAMMPS: particles over time.
-pub(super) const ATOMS: &str = "particles.dump";
+pub const ATOMS: &str = "particles.dump";
 /// LAMMPS: bonds over time.
-pub(super) const BONDS: &str = "bonds.dump";
+pub const BONDS: &str = "bonds.dump";
 /// Extended XYZ.
-pub(super) const XYZ: &str = "particles.xyz";
+pub const XYZ: &str = "particles.xyz";
 
 pub use crate::scene::look::Format;
+
+use super::folder::remove_if_there;
+use crate::base::error::Result;
+use std::fs;
+use std::path::Path;
+
+/// Removes what was exported of an earlier run into its folder `run`, and nothing else.
+///
+/// # Errors
+/// [`Error::Io`](crate::base::error::Error::Io).
+pub(super) fn clear(run: &Path) -> Result<()> {
+    for format in Format::ALL {
+        let folder = run.join(format.word());
+        let Ok(entries) = fs::read_dir(&folder) else { continue };
+        let own =
+            |path: &Path| path.is_file() && path.file_name().is_some_and(|name| format.writes(&name.to_string_lossy()));
+        entries
+            .flatten()
+            .map(|entry| entry.path())
+            .filter(|path| own(path))
+            .try_for_each(|file| remove_if_there(&file))?;
+        // Fails when something else is in it, which is right.
+        let _ = fs::remove_dir(folder);
+    }
+    Ok(())
+}
 
 impl Format {
     /// The file to open first, which gets its name last.
@@ -23,7 +49,7 @@ impl Format {
     }
 
     /// Whether a file of this name is one that this format writes.
-    pub(super) fn writes(self, name: &str) -> bool {
+    pub fn writes(self, name: &str) -> bool {
         let numbered = |kind: &str| {
             let digits = name.strip_prefix(kind).and_then(|rest| rest.strip_suffix(".vtp"));
             digits.is_some_and(|digits| digits.len() > 1 && digits[1..].bytes().all(|b| b.is_ascii_digit()))
