@@ -103,8 +103,12 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         keep(simd, record, live, Layout::<L, TURN>::AXIAL * BLOCK + lane, force.axial);
         keep(simd, record, live, Layout::<L, TURN>::DASHPOT * BLOCK + lane, dashpot);
         let history = Layout::<L, TURN>::HISTORY * BLOCK + lane;
+        let mut thinning = self.law.thinning(&shape, &state);
         if (!live).any() {
             L::each_number(&state, |k, number| keep(simd, record, live, history + k * BLOCK, number));
+            // What a bond has thinned stays thin when it breaks.
+            let before = Lanes::load(simd, self.actions, BondActions::THINNING * CHUNK + block * BLOCK + lane);
+            thinning = Lanes::select(live, thinning, before);
         } else {
             L::each_number(&state, |k, number| number.store(record, history + k * BLOCK));
         }
@@ -113,7 +117,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         };
         book(&mut sums.plastic, step.plastic);
         book(&mut sums.damping, step.damping);
-        self.act(simd, block, lane, live, &acts, self.law.thinning(&shape, &state));
+        self.act(simd, block, lane, live, &acts, thinning);
         self.limit.is_some_and(|limit| {
             let limit = Lanes::load_up_to_end(simd, limit, slot);
             (live & reached(self.law.plastic_strain(&shape, &state), limit)).any()
@@ -130,7 +134,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
         }
     }
 
-    /// Writes what the bonds do: nothing where none holds. The factor on the radius of one that broke stays.
+    /// Writes what the bonds do, nothing where none holds, and their factors on the radius.
     #[inline(always)]
     fn act<S: Simd>(
         &mut self,
@@ -143,7 +147,7 @@ impl<L: BondLaw, const TURN: bool> Chunk<'_, L, TURN> {
     ) {
         let at = block * BLOCK + lane;
         let Acts { pull, near, far } = acts;
-        keep(simd, self.actions, live, BondActions::THINNING * CHUNK + at, thinning);
+        thinning.store(self.actions, BondActions::THINNING * CHUNK + at);
         let all = [pull.x, pull.y, pull.z, near.x, near.y, near.z, far.x, far.y, far.z];
         let fields = if TURN { BondActions::FAR + 3 } else { BondActions::PULL + 3 } - BondActions::PULL;
         let zero = thinning.splat(0.0);
