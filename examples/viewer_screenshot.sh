@@ -52,7 +52,11 @@ has_vulkan() {
 home=$(mktemp -d)
 process=
 clean() {
-    [ -z "$process" ] || kill "$process" 2>/dev/null || true
+    if [ -n "$process" ]; then
+        kill "$process" 2>/dev/null || true
+        # It writes into its home until it has ended, and holds its port.
+        wait "$process" 2>/dev/null || true
+    fi
     rm -rf "$home"
 }
 trap clean EXIT

@@ -14,7 +14,7 @@ use strandsnap::engine::view::Snapshot;
 use strandsnap::observe::Observer;
 use strandsnap::observe::recording::read::{RecordingContents, contents};
 use strandsnap::observe::recording::{
-    CONTACT_PRESSURE, PLASTIC_STRAIN, Recording, RecordingOptions, STATE, STRAIN, STRESS, UTILISATION,
+    CONTACT_PRESSURE, PLASTIC_STRAIN, Recording, RecordingOptions, STATE, STRAIN, STRESS, TIME, UTILISATION,
 };
 use synthetic::Run;
 
@@ -237,6 +237,42 @@ fn a_viewer_that_does_not_listen_is_said_before_the_run() {
     };
     assert_eq!(open(format!("rerun+http://127.0.0.1:{port}/proxy")).exit_code(), 3);
     assert_eq!(open("localhost".into()).exit_code(), 2);
+}
+
+#[test]
+fn a_run_plays_in_twenty_seconds() {
+    let (run, folder) = (Run::new(30), folder());
+    let layout = recorded(&run, &folder.path().join("recording.rrd")).last_layout;
+    let most = run.samples().iter().map(|s| s.strain * 1e6).fold(0.0, f64::max);
+    assert_eq!((layout.timeline.as_str(), layout.speed), (STRAIN, None));
+    assert!((most / layout.per_second.unwrap() - 20.0).abs() < 1e-3, "{layout:?} up to {most}");
+    let [from, to] = layout.selection.unwrap();
+    for rupture in run.ruptures() {
+        let at = rupture.strain * 1e6;
+        assert!(from as f64 <= at && at <= to as f64, "{at} is not in {from} to {to}");
+    }
+    assert!(from > 0 && to as f64 <= most + 1.0, "{from} to {to}, and the run ends at {most}");
+}
+
+#[test]
+fn a_run_without_strain_plays_over_time() {
+    let (mut run, folder) = (Run::new(5), folder());
+    std::sync::Arc::make_mut(&mut run.info).gauge = None;
+    let layout = recorded(&run, &folder.path().join("recording.rrd")).last_layout;
+    let end = run.samples().last().unwrap().time;
+    assert_eq!((layout.timeline.as_str(), layout.per_second, layout.selection), (TIME, None, None));
+    assert!((end / layout.speed.unwrap() - 20.0).abs() < 1e-6, "{layout:?} up to {end} s");
+}
+
+#[test]
+fn views_have_names_of_their_own() {
+    let (mut run, folder) = (Run::new(30), folder());
+    // What broke first is below the outermost layer.
+    run.events.retain(|event| !matches!(event, synthetic::Event::Rupture(rupture) if rupture.layer == 2));
+    let views = recorded(&run, &folder.path().join("recording.rrd")).last_layout.views;
+    let apart: std::collections::BTreeSet<_> = views.iter().collect();
+    assert!(views.len() > 10 && apart.len() == views.len(), "{views:?}");
+    assert!(views.iter().any(|name| name == "Particles without the outer layer"), "{views:?}");
 }
 
 /// Set STRANDSNAP_KEEP to a path to keep the file for the viewer.

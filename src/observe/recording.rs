@@ -18,6 +18,9 @@
 //! | `/ruptures` | log, a line per rupture, and notices as warnings |
 //! | `/about`, properties | what the run is |
 //!
+//! A viewer plays a run in twenty seconds, over strain, or over time where nothing is pulled; the stretch around the
+//! ruptures is selected, so that its button for loops repeats it.
+//!
 //! Everything is on three timelines: `step`, `sim_time` and `microstrain` (whole µm/m: 10,000 is 1 %). Snapshots go
 //! out in batches of fixed size, everything as columns without clock times, so that the same run gives the same
 //! contents.

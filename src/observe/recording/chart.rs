@@ -2,6 +2,7 @@
 //! cent and MPa, and room to name the first break. The view shows all times up to the cursor, so the curve grows with
 //! it and every piece is sent once.
 
+use super::marks::OVER;
 use super::paint::{self, distinct, labels};
 use super::stream::{Instant, Stream, strips, texts, vectors};
 use super::{curve, names};
@@ -80,7 +81,7 @@ impl Chart {
         let marks = Points2D::update_fields()
             .with_colors([Color::from_u32(paint::BROKEN)])
             .with_radii([Radius::new_ui_points(2.5)])
-            .with_draw_order(10.0)
+            .with_draw_order(OVER)
             .with_show_labels(false);
         stream.fixed(path("ruptures"), &marks)
     }
@@ -125,8 +126,10 @@ impl Chart {
         let [strain, stress] = mark(first);
         let [x, y] = self.place([strain, stress]);
         let colour = Color::from_u32(paint::FIRST);
-        let text = format!("{}\n{strain:.2} %, {stress:.0} MPa", names::first_break(info, first));
-        let label = [0.65 * x, 0.72 * y];
+        // In short lines, left of the line that leads down to the axis.
+        let words = names::first_break(info, first).replacen(": ", ":\n", 1);
+        let text = format!("{words}\n{strain:.2} %, {stress:.0} MPa");
+        let label = [0.6 * x, 0.72 * y];
         let leader = LineStrips2D::new([[[x, y], label], [[x, y], [x, 0.0]], [[x, y], [0.0, y]]]);
         let leader = leader.with_colors([colour]).with_radii([Radius::new_ui_points(0.75)]);
         let points = Points2D::new([[x, y], label])
@@ -134,7 +137,7 @@ impl Chart {
             .with_radii([Radius::new_ui_points(5.0), Radius::new_ui_points(0.1)])
             .with_labels([String::new(), text])
             .with_show_labels(true)
-            .with_draw_order(20.0);
+            .with_draw_order(OVER + 10.0);
         let instant = Instant::from(first);
         stream.row(path("first_break"), instant, &leader.with_draw_order(15.0))?;
         stream.row(path("first_break").join(&"mark".into()), instant, &points)

@@ -10,7 +10,9 @@ use crate::observe::unrolled::ends;
 use rerun::{Color, LineStrips3D, Points3D, Radius};
 
 /// Distance of the label from the axis in the close view, in thicknesses of the body (-).
-const NEAR: f32 = 0.72;
+const NEAR: f32 = 0.7;
+/// Share of the way to the label after which its leader ends (-): the viewer writes a text below its point.
+const LEADER: f32 = 0.65;
 /// The same in the view of the whole strand, in its lengths (-).
 const FAR: f32 = 0.06;
 
@@ -103,8 +105,12 @@ impl FirstBreak {
             let lift = (reach - along).max(0.0);
             std::array::from_fn(|axis| p[axis] + lift * direction.up[axis])
         };
+        let below = |p: [f32; 3]| -> [f32; 3] {
+            let end = label(p);
+            std::array::from_fn(|axis| p[axis] + LEADER * (end[axis] - p[axis]))
+        };
         let ends = vectors(Points3D::descriptor_positions(), places.iter().map(|(_, p)| label(*p)));
-        let leaders = strips(LineStrips3D::descriptor_strips(), places.iter().flat_map(|(_, p)| [*p, label(*p)]), 2);
+        let leaders = strips(LineStrips3D::descriptor_strips(), places.iter().flat_map(|(_, p)| [*p, below(*p)]), 2);
         stream.rows(path, &instants, [(ends, one.clone()), (leaders, one)])
     }
 

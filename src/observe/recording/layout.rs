@@ -13,11 +13,11 @@ use crate::engine::view::RunInfo;
 use crate::observe::unrolled::ends;
 use crate::observe::wording::layer_words;
 use rerun::blueprint::components::{
-    BackgroundKind, ContainerKind, Corner2D, Eye3DKind, IncludedContent, PanelState, PlayState, RootContainer,
-    VisualBounds2D,
+    AbsoluteTimeRange, BackgroundKind, ContainerKind, Corner2D, Eye3DKind, Fps, IncludedContent, PanelState, PlayState,
+    PlaybackSpeed, RootContainer, VisualBounds2D,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
-use rerun::datatypes::{Range2D, TimeRange, TimeRangeBoundary, VisibleTimeRange};
+use rerun::datatypes::{self, Range2D, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes as blueprint;
 use rerun::external::uuid::Uuid;
@@ -31,6 +31,8 @@ const BACKGROUND: [u8; 3] = [17, 20, 26];
 const SPACE: [u8; 3] = [62, 68, 78];
 /// Width over height that the view of the whole strand has in a window of usual shape (-).
 const ASPECT: f32 = 6.5;
+/// How long the viewer takes to play a run (s).
+const LASTS: f64 = 20.0;
 /// Rerun's vertical field of view (rad).
 const FIELD_OF_VIEW: f32 = 0.96;
 
@@ -44,6 +46,17 @@ pub(super) struct Scenery<'a> {
     pub target: [f32; 3],
     /// Layer of the first break, when there was one.
     pub broken_layer: Option<usize>,
+    pub playback: Playback,
+}
+
+/// What the viewer plays, from start to end in [`LASTS`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Playback {
+    /// The timeline of simulated time, up to `end` (s): without strain nothing lies along the timeline of strain.
+    Time { end: f64 },
+    /// The timeline of strain, up to `end` (µm/m). `selection` is the stretch around the ruptures, which the viewer's
+    /// button for loops repeats.
+    Strain { end: i64, selection: Option<[i64; 2]> },
 }
 
 /// Sends a layout with the recording under an id of its own. A viewer that is open takes it up at once when `active`;
@@ -77,7 +90,7 @@ fn messages(id: &str, scenery: &Scenery) -> RecordingStreamResult<Vec<LogMsg>> {
     store.set_time_sequence("blueprint", 0);
     let mut layout = Layout { store, ids: first_id(id) };
     let root = layout.root(scenery)?;
-    layout.panels(root)?;
+    layout.panels(root, scenery.playback)?;
     Ok(memory.take())
 }
 
@@ -148,7 +161,8 @@ impl Layout {
             let off: Vec<_> = (layer + 1..=outermost).map(|layer| layer_words(info, layer)).collect();
             let name = format!("The same without the {}", off.join(" and "));
             let inside = self.close_view(&name, scenery, layer, Wires::Tubes)?;
-            let particles = self.close_view("Particles", scenery, layer, Wires::Particles)?;
+            let name = format!("Particles without the {}", off.join(" and "));
+            let particles = self.close_view(&name, scenery, layer, Wires::Particles)?;
             shown.push(self.container(ContainerKind::Tabs, &[inside, particles], &[])?);
         }
         let particles = self.close_view("Particles", scenery, outermost, Wires::Particles)?;
@@ -201,7 +215,7 @@ impl Layout {
     }
 
     fn map_view(&mut self, map: &Map) -> RecordingStreamResult<Item> {
-        let view = self.view("2D", "Unrolled: a row per wire, position before loading", names::MAP, &["/map/**"])?;
+        let view = self.view("2D", "Unrolled: a row per wire; numbers: order of break", names::MAP, &["/map/**"])?;
         self.bounds(&view, map.bounds())?;
         self.background(&view, BACKGROUND)?;
         Ok(view)
@@ -276,7 +290,7 @@ impl Layout {
         Ok(container)
     }
 
-    fn panels(&self, root: Item) -> RecordingStreamResult<()> {
+    fn panels(&self, root: Item, playback: Playback) -> RecordingStreamResult<()> {
         let viewport = blueprint::ViewportBlueprint::new()
             .with_root_container(RootContainer(root.id.into()))
             .with_auto_layout(false)
@@ -287,9 +301,23 @@ impl Layout {
         self.store.log("selection_panel", &collapsed)?;
         // Following shows the last state of a finished run, and the newest of a running one.
         let time = blueprint::TimePanelBlueprint::new()
-            .with_timeline(stream::STRAIN)
             .with_play_state(PlayState::Following)
             .with_state(PanelState::Collapsed);
+        let time = match playback {
+            Playback::Time { end } => {
+                time.with_timeline(stream::TIME).with_playback_speed(PlaybackSpeed((end / LASTS).into()))
+            }
+            Playback::Strain { end, selection } => {
+                let time = time.with_timeline(stream::STRAIN).with_fps(Fps((end as f64 / LASTS).into()));
+                match selection {
+                    Some([min, max]) => {
+                        let range = datatypes::AbsoluteTimeRange { min: min.into(), max: max.into() };
+                        time.with_time_selection(AbsoluteTimeRange(range))
+                    }
+                    None => time,
+                }
+            }
+        };
         self.store.log("time_panel", &time)
     }
 

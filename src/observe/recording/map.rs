@@ -19,9 +19,9 @@ const NAMES: u32 = 0xC8CDD4FF;
 const LAYER_GAP: f64 = 1.5;
 
 /// Columns in which neighbours write their place in the order of break.
-const ORDER_COLUMNS: usize = 2;
+const ORDER_COLUMNS: usize = 3;
 /// Width of such a column over the length of the map (-).
-const ORDER_WIDTH: f32 = 0.115;
+const ORDER_WIDTH: f32 = 0.07;
 
 /// Where a wire's place in the order of break is written, and the line that leads there.
 pub(super) struct Order {
@@ -71,7 +71,7 @@ impl Map {
     /// x and y range that the view shows.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         let length = self.z[1] - self.z[0];
-        let x = [self.z[0] - 0.13 * length, self.z[1] + (0.03 + ORDER_WIDTH * ORDER_COLUMNS as f32) * length];
+        let x = [self.z[0] - 0.13 * length, self.z[1] + (0.04 + ORDER_WIDTH * ORDER_COLUMNS as f32) * length];
         let y = [-4.0 * self.row, self.height + 6.0 * self.row];
         [x.map(f64::from), y.map(f64::from)]
     }
@@ -87,9 +87,10 @@ impl Map {
         let y = self.y(self.map.row[rupture.wire]);
         let length = self.z[1] - self.z[0];
         let column = (rupture.wire % ORDER_COLUMNS) as f32;
-        let x = self.z[1] + (0.08 + ORDER_WIDTH * column) * length;
-        // Texts stand below their point.
-        Order { leader: [[self.z[1], y], [x - 0.5 * ORDER_WIDTH * length, y]], label: [x, y - 0.85 * self.row] }
+        let x = self.z[1] + (0.06 + ORDER_WIDTH * column) * length;
+        // Texts stand below their point. A leader ends before the first column: further on it would strike out the
+        // texts of neighbours.
+        Order { leader: [[self.z[1], y], [self.z[1] + 0.02 * length, y]], label: [x, y - 0.85 * self.row] }
     }
 
     /// Leads from the first break to the axis of z, where its place is written.

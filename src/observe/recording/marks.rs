@@ -11,6 +11,9 @@ use crate::observe::wording::{rupture_line, wire_number};
 use rerun::{Color, LineStrips2D, Points2D, Points3D, Radius, TextLog, TextLogLevel};
 use std::collections::BTreeMap;
 
+/// Draw order of marks: over points, which the viewer draws at 30.
+pub(super) const OVER: f32 = 40.0;
+
 /// Ruptures of one wire so far.
 #[derive(Default)]
 struct WireMarks {
@@ -117,7 +120,7 @@ impl WireMarks {
         let on_map = Points2D::update_fields()
             .with_colors([Color::from_u32(if first.order == 1 { paint::FIRST } else { paint::BROKEN })])
             .with_radii([Radius::new_ui_points(if first.order == 1 { 6.0 } else { 3.5 })])
-            .with_draw_order(if first.order == 1 { 20.0 } else { 10.0 })
+            .with_draw_order(if first.order == 1 { OVER + 10.0 } else { OVER })
             .with_show_labels(false);
         let marks = names::marks(names::MAP, info, number);
         stream.fixed(marks.clone(), &on_map)?;
@@ -125,7 +128,7 @@ impl WireMarks {
         let leader = LineStrips2D::new([order.leader])
             .with_colors([Color::from_u32(colour)])
             .with_radii([Radius::new_ui_points(0.5)]);
-        let words = paint::labels([(order.label, label(first))], colour);
+        let words = paint::labels([(order.label, ordinal(first))], colour);
         let path = marks.join(&names::ORDER.into());
         stream.row(path.clone(), first.into(), &leader)?;
         stream.row(path.join(&"label".into()), first.into(), &words)?;
@@ -135,8 +138,12 @@ impl WireMarks {
 
 /// `5: wire 14`, with `1st` for the first.
 fn label(rupture: &Rupture) -> String {
-    let order = if rupture.order == 1 { "1st".to_owned() } else { rupture.order.to_string() };
-    format!("{order}: wire {}", wire_number(rupture.wire))
+    format!("{}: wire {}", ordinal(rupture), wire_number(rupture.wire))
+}
+
+/// `5`, and `1st` for the first.
+fn ordinal(rupture: &Rupture) -> String {
+    if rupture.order == 1 { "1st".to_owned() } else { rupture.order.to_string() }
 }
 
 /// Place of the bond when it broke (mm).

@@ -15,6 +15,11 @@ pub(super) const FIRST: u32 = 0xFF9A1FFF;
 /// Grips and other things that carry no value.
 pub(super) const NEUTRAL: u32 = 0x9AA3AEFF;
 
+/// Where in its map a range starts (-). The darkest colours look black on a shaded wire.
+const DARKEST: f64 = 0.2;
+/// Share of the range up to which a place counts as unloaded, and is grey (-): what still trembles in a wire that broke.
+const UNLOADED: f64 = 0.02;
+
 /// Colours particles by one quantity.
 pub(super) struct Palette {
     by: ColourBy,
@@ -39,7 +44,7 @@ impl Palette {
             ColourBy::ContactPressure | ColourBy::Velocity => CIVIDIS,
             _ => VIRIDIS,
         };
-        Self { by, range: range(info, by), table: (0..256).map(|i| at(gradient, i)).collect(), first: None }
+        Self { by, range: range(info, by), table: table(gradient), first: None }
     }
 
     /// Gives the ends of the bond that broke first a colour of their own.
@@ -130,10 +135,38 @@ pub(super) fn labels(all: impl IntoIterator<Item = ([f32; 2], String)>, colour: 
         .with_radii([Radius::new_ui_points(0.1)])
 }
 
-fn at(gradient: Gradient, i: usize) -> u32 {
-    rgba(gradient.eval_rational(i, 256))
+/// Colours (0xRRGGBBAA) from the low to the high end of a range: grey, then the map.
+fn table(gradient: Gradient) -> Vec<u32> {
+    let colour = |t: f64| {
+        if t <= UNLOADED { NEUTRAL } else { rgba(gradient.eval_continuous(DARKEST + (1.0 - DARKEST) * t)) }
+    };
+    (0..256).map(|i| colour(f64::from(i) / 255.0)).collect()
 }
 
 fn rgba(colour: colorous::Color) -> u32 {
     u32::from_be_bytes([colour.r, colour.g, colour.b, 0xFF])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance of sRGB (IEC 61966-2-1).
+    fn luminance(colour: u32) -> f64 {
+        let linear = |byte: u8| {
+            let v = f64::from(byte) / 255.0;
+            if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+        };
+        let [r, g, b, _] = colour.to_be_bytes().map(linear);
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+
+    #[test]
+    fn unloaded_is_grey_and_no_value_is_near_black() {
+        for gradient in [VIRIDIS, PLASMA, CIVIDIS] {
+            let table = table(gradient);
+            assert_eq!(table[..6], [NEUTRAL; 6]);
+            assert!(table[6..].iter().all(|c| *c != NEUTRAL && luminance(*c) > 0.04), "{table:08X?}");
+        }
+    }
 }

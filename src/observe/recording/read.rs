@@ -3,9 +3,11 @@
 use super::names::{CONTACT_PRESSURE, PLASTIC_STRAIN, STRESS, UTILISATION};
 use super::{names, stream};
 use crate::base::error::{Error, Result};
+use rerun::blueprint::components::AbsoluteTimeRange;
 use rerun::external::re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
+use rerun::external::re_sdk_types::blueprint::archetypes::{TimePanelBlueprint, ViewBlueprint};
 use rerun::log::{Chunk, LogMsg};
-use rerun::{Points3D, Scalars, StoreKind, TextDocument, TextLog};
+use rerun::{ComponentDescriptor, Points3D, Scalars, StoreKind, TextDocument, TextLog};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -74,6 +76,41 @@ pub struct Entity {
     pub components: BTreeSet<String>,
 }
 
+/// What a layout says about views and time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Layout {
+    /// Names of its views.
+    pub views: Vec<String>,
+    /// The timeline that it opens with.
+    pub timeline: String,
+    /// Units of that timeline that pass in a second, where it counts (1/s).
+    pub per_second: Option<f64>,
+    /// Speed against the clock, where the timeline is one of time (-).
+    pub speed: Option<f64>,
+    /// Selected stretch of that timeline.
+    pub selection: Option<[i64; 2]>,
+}
+
+impl Layout {
+    fn add(&mut self, chunk: &Chunk) {
+        let text = |component: ComponentDescriptor| {
+            let all: Vec<String> =
+                chunk.iter_slices::<String>(component.component).flatten().map(|t| t.to_string()).collect();
+            all
+        };
+        let number =
+            |component: ComponentDescriptor| chunk.iter_slices::<f64>(component.component).flatten().next().copied();
+        self.views.extend(text(ViewBlueprint::descriptor_display_name()));
+        self.timeline.extend(text(TimePanelBlueprint::descriptor_timeline()));
+        self.per_second = number(TimePanelBlueprint::descriptor_fps()).or(self.per_second);
+        self.speed = number(TimePanelBlueprint::descriptor_playback_speed()).or(self.speed);
+        let selection =
+            chunk.iter_component::<AbsoluteTimeRange>(TimePanelBlueprint::descriptor_time_selection().component);
+        let ends = selection.flat_map(|range| range.as_slice().to_vec()).next();
+        self.selection = ends.map(|range| [range.min.0, range.max.0]).or(self.selection);
+    }
+}
+
 /// What a recording holds.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordingContents {
@@ -99,6 +136,8 @@ pub struct RecordingContents {
     pub layout: bool,
     /// Layouts: one from the start, one from the end, when the place of the first break is known.
     pub layouts: usize,
+    /// The layout that stands when all is read.
+    pub last_layout: Layout,
     /// Messages, for an estimate of overhead.
     pub messages: usize,
 }
@@ -118,6 +157,16 @@ pub fn contents(path: &Path) -> Result<RecordingContents> {
         if let LogMsg::BlueprintActivationCommand(_) = message {
             all.layout |= all.entities.is_empty();
             all.layouts += 1;
+        }
+        if let LogMsg::SetStoreInfo(store) = &message
+            && store.info.store_id.kind() == StoreKind::Blueprint
+        {
+            all.last_layout = Layout::default();
+        }
+        if let LogMsg::ArrowMsg(store, arrow) = &message
+            && store.kind() == StoreKind::Blueprint
+        {
+            all.last_layout.add(&Chunk::from_arrow_msg(arrow).map_err(|e| broken(&e))?);
         }
         if let LogMsg::ArrowMsg(store, arrow) = message
             && store.kind() == StoreKind::Recording

@@ -3,7 +3,7 @@
 use super::chart::Chart;
 use super::first_break::{FirstBreak, ViewDirection};
 use super::headline::{Headline, about};
-use super::layout::Scenery;
+use super::layout::{Playback, Scenery};
 use super::map::Map;
 use super::marks::Marks;
 use super::paint::Palette;
@@ -44,6 +44,10 @@ pub(super) struct Run {
     samples: Vec<Sample>,
     /// Snapshots that go out together.
     batch: usize,
+    /// The last sample, the greatest strain of all samples, and strains of the first and the last rupture (-).
+    last: Option<Instant>,
+    strain_most: f64,
+    ruptured: Option<[f64; 2]>,
     /// Snapshots whose section the eye already follows, and places of the first break that are sent.
     followed: [usize; 2],
 }
@@ -69,6 +73,9 @@ impl Run {
             snapshots: Vec::new(),
             samples: Vec::new(),
             batch,
+            last: None,
+            strain_most: 0.0,
+            ruptured: None,
             followed: [0; 2],
         };
         run.send_fixed()?;
@@ -77,6 +84,8 @@ impl Run {
 
     pub fn sample(&mut self, sample: &Sample) -> Result<()> {
         self.summariser.sample(sample)?;
+        self.last = Some(curve::instant(sample));
+        self.strain_most = self.strain_most.max(sample.strain);
         self.samples.push(sample.clone());
         Ok(())
     }
@@ -93,6 +102,8 @@ impl Run {
 
     pub fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
         self.summariser.rupture(rupture)?;
+        let [from, to] = self.ruptured.unwrap_or([rupture.strain; 2]);
+        self.ruptured = Some([from.min(rupture.strain), to.max(rupture.strain)]);
         self.states.set(rupture.wire, BondState::Broken, Instant::from(rupture));
         self.marks.add(&self.info, rupture);
         self.headline.rupture(rupture);
@@ -139,7 +150,23 @@ impl Run {
             direction,
             target: self.sections.last(rest_z).unwrap_or([0.0, 0.0, rest_z]),
             broken_layer: self.first.as_ref().map(|first| first.rupture.layer),
+            playback: self.playback(),
         }
+    }
+
+    /// What is known so far of the range that is played; before the first sample, what the scene expects.
+    fn playback(&self) -> Playback {
+        let micro = |strain: f64| (strain * 1e6).round() as i64;
+        if !self.info.is_pulled() {
+            // Before anything is known, at the clock's speed.
+            return Playback::Time { end: self.last.map_or(20.0, |last| last.time) };
+        }
+        let end = self.last.map_or(self.info.strain_end.unwrap_or(1.0), |_| self.strain_most);
+        let selection = self.ruptured.map(|[from, to]| {
+            let room = (0.05 * end).max(0.1 * (to - from));
+            [micro((from - room).max(0.0)), micro((to + room).min(end))]
+        });
+        Playback::Strain { end: micro(end).max(1), selection }
     }
 
     fn send_fixed(&mut self) -> Result<()> {
