@@ -2,8 +2,7 @@
 //! cent and MPa, and room to name the first break. The view shows all times up to the cursor, so the curve grows with
 //! it and every piece is sent once.
 
-use super::marks::OVER;
-use super::paint::{self, distinct, labels};
+use super::paint::{self, OVER, distinct, labels};
 use super::stream::{Instant, Stream, strips, texts, vectors};
 use super::{curve, names};
 use crate::base::error::Result;

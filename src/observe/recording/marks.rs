@@ -11,9 +11,6 @@ use crate::observe::wording::{rupture_line, wire_number};
 use rerun::{Color, LineStrips2D, Points2D, Points3D, Radius, TextLog, TextLogLevel};
 use std::collections::BTreeMap;
 
-/// Draw order of marks: over points, which the viewer draws at 30.
-pub(super) const OVER: f32 = 40.0;
-
 /// Ruptures of one wire so far.
 #[derive(Default)]
 struct WireMarks {
@@ -120,7 +117,7 @@ impl WireMarks {
         let on_map = Points2D::update_fields()
             .with_colors([Color::from_u32(if first.order == 1 { paint::FIRST } else { paint::BROKEN })])
             .with_radii([Radius::new_ui_points(if first.order == 1 { 6.0 } else { 3.5 })])
-            .with_draw_order(if first.order == 1 { OVER + 10.0 } else { OVER })
+            .with_draw_order(if first.order == 1 { paint::OVER + 10.0 } else { paint::OVER })
             .with_show_labels(false);
         let marks = names::marks(names::MAP, info, number);
         stream.fixed(marks.clone(), &on_map)?;

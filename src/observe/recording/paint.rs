@@ -12,6 +12,8 @@ pub(super) const BROKEN: u32 = 0xFF2A4DFF;
 pub(super) const MARK: u32 = 0xFFFFFFFF;
 /// The first break: apart from the maps, from red and from white.
 pub(super) const FIRST: u32 = 0xFF9A1FFF;
+/// Draw order of marks: over points, which the viewer draws at 30.
+pub(super) const OVER: f32 = 40.0;
 /// Grips and other things that carry no value.
 pub(super) const NEUTRAL: u32 = 0x9AA3AEFF;
 
