@@ -11,30 +11,22 @@ pub const XYZ: &str = "particles.xyz";
 
 pub use crate::scene::look::Format;
 
-use super::folder::remove_if_there;
-use crate::base::error::Result;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Removes what was exported of an earlier run into its folder `run`, and nothing else.
-///
-/// # Errors
-/// [`Error::Io`](crate::base::error::Error::Io).
-pub(super) fn clear(run: &Path) -> Result<()> {
-    for format in Format::ALL {
-        let folder = run.join(format.word());
-        let Ok(entries) = fs::read_dir(&folder) else { continue };
-        let own =
-            |path: &Path| path.is_file() && path.file_name().is_some_and(|name| format.writes(&name.to_string_lossy()));
-        entries
-            .flatten()
-            .map(|entry| entry.path())
-            .filter(|path| own(path))
-            .try_for_each(|file| remove_if_there(&file))?;
-        // Fails when something else is in it, which is right.
-        let _ = fs::remove_dir(folder);
-    }
-    Ok(())
+/// Folders within that of a run that exports go into.
+pub(super) fn folders(run: &Path) -> [PathBuf; Format::ALL.len()] {
+    Format::ALL.map(|format| run.join(format.word()))
+}
+
+/// What was exported of a run into its folder `run`, and nothing else.
+pub(super) fn files(run: &Path) -> Vec<PathBuf> {
+    let own = |format: Format, folder: PathBuf| {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+        let writes = |name: &std::ffi::OsStr| format.writes(&name.to_string_lossy());
+        entries.filter(move |path| path.is_file() && path.file_name().is_some_and(writes))
+    };
+    Format::ALL.into_iter().zip(folders(run)).flat_map(|(format, folder)| own(format, folder)).collect()
 }
 
 impl Format {

@@ -163,7 +163,11 @@ impl OutFolder {
             remove_if_there(&partial::name(&file))?;
             remove_if_there(&file)?;
         }
-        exported::clear(&self.path)?;
+        exported::files(&self.path).iter().try_for_each(|file| remove_if_there(file))?;
+        for folder in exported::folders(&self.path) {
+            // Fails when something else is in it, which is right.
+            let _ = fs::remove_dir(folder);
+        }
         let frames = self.path.join(FRAMES);
         clear_pictures(&frames, None)?;
         remove_if_there(&frames.join(UNFINISHED))?;
