@@ -24,7 +24,7 @@ const stage = $("stage"), overlay = $("overlay"), canvas = $("picture");
 
 // ---- What is looked at. -------------------------------------------------------------------------------------------
 const view = {
-  state: 0, azimuth: 0, elevation: 0, centre: [...run.body.axis, 0], height: 4 * run.body.radius, colour: "stress",
+  state: 0, azimuth: 0, elevation: 0, centre: [...run.body.axis, 0], height: 4 * run.body.radius, perspective: 0, colour: "stress",
   hidden_layers: [], hidden_wires: [], ghost_layers: [], explode: 0, theme: "dark",
 };
 let shown = null;        // the view of the picture on the screen
@@ -183,12 +183,18 @@ const spread = ([x, y, z]) => {
   const [ax, ay] = run.body.axis, apart = 1 + view.explode;
   return [ax + (x - ax) * apart, ay + (y - ay) * apart, z];
 };
+// Tangent of half the angle under which the eye sees the height of the picture.
+const slopeOf = of => Math.tan((of.perspective ?? 0) * Math.PI / 360);
 function projector(of, told, left) {
   const rotate = turned(of), { width, height } = pane(), scale = height / of.height;
   const centre = [of.centre[0], of.centre[1], of.centre[2] + (of.follow !== undefined ? told?.follow_offset ?? 0 : 0)];
+  const slope = slopeOf(of);
   return p => {
     const [x, y, z] = rotate(p.map((v, k) => v - centre[k]));
-    return [left + width / 2 + x * scale, height / 2 - y * scale, z];
+    // As src/render/perspective.rs has it; what lies behind the eye is nowhere.
+    const share = 1 - 2 * z * slope / of.height;
+    if (share < 0.05) return [NaN, NaN, z];
+    return [left + width / 2 + x / share * scale, height / 2 - y / share * scale, z];
   };
 }
 function move([dx, dy]) {
@@ -221,10 +227,10 @@ function fit() {
   let [w, h] = [0, 0];
   for (let k = 0; k < 8; k++) {
     const corner = reach.map(([low, high], axis) => (axis < 2 ? apart : 1) * ((k >> axis) & 1 ? high - low : low - high) / 2);
-    const [x, y] = rotate(corner);
-    [w, h] = [Math.max(w, Math.abs(x)), Math.max(h, Math.abs(y))];
+    const [x, y, z] = rotate(corner), nearer = z * slopeOf(view);
+    [w, h] = [Math.max(w, Math.abs(x) * height / width + nearer), Math.max(h, Math.abs(y) + nearer)];
   }
-  view.height = 2.15 * Math.max(h, w * height / width);
+  view.height = 2.15 * Math.max(h, w);
 }
 const keepPlace = angles => () => Object.assign(view, angles);
 const views = {
@@ -258,6 +264,12 @@ function go(name) {
   $("follow").checked = view.follow !== undefined;
   changed();
 }
+// An eye that sees the height of the picture under 30°.
+$("perspective").onchange = ({ target }) => {
+  view.perspective = target.checked ? 30 : 0;
+  if (fitted) fit();
+  changed();
+};
 document.querySelectorAll("[data-view]").forEach(button => { button.onclick = () => go(button.dataset.view); });
 $("follow").onchange = ({ target }) => {
   if (target.checked) {
@@ -384,6 +396,7 @@ stage.onkeydown = event => {
   else if (event.key === ",") toState(Math.ceil(view.state) - 1);
   else if (event.key === ".") toState(Math.floor(view.state) + 1);
   else if (event.key === " ") play(!playing);
+  else if (event.key === "p" || event.key === "P") $("perspective").click();
   else if (event.key === "k" || event.key === "K") film.add();
   else return;
   event.preventDefault();
@@ -499,7 +512,7 @@ function drawBreaks(of, told, left, right) {
     const r = of.ruptures[order - 1];
     if (view.hidden_layers.includes(r.layer) || view.hidden_wires.includes(r.wire) || (view.cut !== undefined && at[2] > view.cut)) continue;
     const [x, y] = project(spread(at));
-    if (x < left || y < 0 || x > right || y > height) continue;
+    if (!(x >= left && y >= 0 && x <= right && y <= height)) continue;
     element(overlay, "circle", { class: "mark", cx: x, cy: y, r: r.wire === view.selected ? 9 : 5 });
     if (r.first_of_wire && taken.every(p => Math.hypot(p[0] - x, p[1] - y) > 20)) {
       taken.push([x, y]);
@@ -521,7 +534,7 @@ function drawScale(width, height) {
   const length = [5, 2, 1].map(v => v * power).find(v => v <= raw) ?? power;
   const [right, y] = [width - 14, height - 14], left = right - length * scale;
   element(overlay, "path", { class: "axis", d: `M${left} ${y - 4}V${y}H${right}V${y - 4}` });
-  const text = element(overlay, "text", { class: "caption", x: (left + right) / 2, y: y - 6 }, `${+length.toPrecision(3)} mm`);
+  const text = element(overlay, "text", { class: "caption", x: (left + right) / 2, y: y - 6 }, `${+length.toPrecision(3)} mm${shown.view.perspective ? " in the middle" : ""}`);
   text.setAttribute("text-anchor", "middle");
 }
 
@@ -818,6 +831,7 @@ function show(wanted) {
   Object.assign(view, wanted);
   theme(view.theme);
   $("follow").checked = view.follow !== undefined;
+  $("perspective").checked = view.perspective > 0;
   $("explode").value = view.explode;
   $("colour").value = view.colour;
   if (view.cut !== undefined) $("cut").value = view.cut;

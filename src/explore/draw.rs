@@ -12,6 +12,7 @@ use crate::render::canvas::Rect;
 use crate::render::colour::ColourScale;
 use crate::render::occlusion::Occlusion;
 use crate::render::painter::{Drawing, Painter};
+use crate::render::perspective::Perspective;
 use crate::render::style::Rgb;
 use crate::render::wires::{self, Looks};
 use glam::{Vec2, Vec3};
@@ -68,6 +69,7 @@ impl Key {
             elevation: still.elevation,
             centre: still.centre,
             height: still.height,
+            perspective: still.perspective,
             follow: None,
             theme: still.theme,
             ..view.clone()
@@ -123,8 +125,14 @@ impl Artist {
         let along = (camera.rotation * Vec3::Z).z.abs();
         let fade = self.body.radius * (1.0 + view.explode as f32) + along * size[0] as f32 / camera.scale;
         let mut seen = Vec::new();
-        let drawings = [Drawing::new(camera, fade, &ready.segments, &mut seen)];
-        self.painter.draw([0.0, 0.0], &style, &seen, &drawings);
+        let drawing = match eye(camera, view) {
+            None => Drawing::new(camera, fade, &ready.segments, &mut seen),
+            Some(eye) => {
+                let changed: Vec<_> = ready.segments.iter().filter_map(|segment| eye.segment(segment)).collect();
+                Drawing::new(eye.straight(), fade, &changed, &mut seen)
+            }
+        };
+        self.painter.draw([0.0, 0.0], &style, &seen, &[drawing]);
         let mut image = RgbImage::new(size[0], size[1]);
         let width = size[0] as usize * 3;
         let bytes: &mut [u8] = &mut image;
@@ -230,7 +238,14 @@ impl Artist {
         let camera = self.camera(info, &ready.snapshot, view, size);
         let pixel = Vec2::new(right as f32 * camera.panel.w, down as f32 * camera.panel.h);
         let at = (pixel - 0.5 * Vec2::new(camera.panel.w, camera.panel.h)) / camera.scale * Vec2::new(1.0, -1.0);
-        let place = |i: usize| (camera.to_view(Vec3::from(ready.position[i])), ready.snapshot.radius[i]);
+        let eye = eye(camera, view);
+        let place = |i: usize| {
+            let (centre, radius) = (Vec3::from(ready.position[i]), ready.snapshot.radius[i]);
+            match eye {
+                None => Some((camera.to_view(centre), radius)),
+                Some(eye) => eye.place(centre).map(|(place, larger)| (place, radius * larger)),
+            }
+        };
         // Clicks go through what is seen through.
         let solid: Vec<bool> = solid(info, &ready.snapshot, view).collect();
         let shown = |i: usize| solid[i];
@@ -238,17 +253,22 @@ impl Artist {
         for (number, wire) in info.wires.iter().enumerate() {
             for i in wire.particles() {
                 let bonded = i + 1 < wire.particles().end && ready.snapshot.bond_state[i].holds() && shown(i + 1);
-                if shown(i) {
-                    let j = if bonded { i + 1 } else { i };
-                    cones.push(Cone { ends: [place(i), place(j)], what: [(i, Some(number)), (j, Some(number))] });
+                let j = if bonded { i + 1 } else { i };
+                if let (true, Some(from), Some(to)) = (shown(i), place(i), place(j)) {
+                    cones.push(Cone { ends: [from, to], what: [(i, Some(number)), (j, Some(number))] });
                 }
             }
         }
         for i in (info.wire_particles..info.particles).filter(|i| shown(*i)) {
-            cones.push(Cone { ends: [place(i); 2], what: [(i, None); 2] });
+            cones.extend(place(i).map(|place| Cone { ends: [place; 2], what: [(i, None); 2] }));
         }
         nearest(&cones, at).map(|(particle, wire)| Picked { particle, wire })
     }
+}
+
+/// The eye of a view in perspective. Below a hundredth of a degree lines of sight are parallel to a pixel.
+fn eye(camera: Camera, view: &View) -> Option<Perspective> {
+    (view.perspective > 0.01).then(|| Perspective::new(camera, view.perspective.to_radians()))
 }
 
 /// Refuses a picture that would take too much memory.

@@ -107,6 +107,7 @@ fn between(record: &Record, from: &View, to: &View, share: f64) -> View {
         centre: [0, 1, 2].map(|k| mix(a[k], b[k])),
         // The same share of the picture in the same time, however near the eye is.
         height: (from.height.ln() + (to.height.ln() - from.height.ln()) * gentle).exp(),
+        perspective: mix(from.perspective, to.perspective),
         follow: from.follow.filter(|_| rides),
         range,
         explode: mix(from.explode, to.explode),

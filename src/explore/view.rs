@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 
 /// Furthest that wires are drawn apart (-).
 const MOST_EXPLODED: f64 = 4.0;
+/// Widest angle of a perspective (°).
+const WIDEST: f64 = 90.0;
 
 /// A view of a run. Lengths are in mm and angles in degrees, as the page and the command line write them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,8 +23,10 @@ pub struct View {
     pub elevation: f64,
     /// The point in the middle of the picture (mm).
     pub centre: [f64; 3],
-    /// What the height of the picture spans (mm).
+    /// What the height of the picture spans (mm); in perspective, where its middle lies.
     pub height: f64,
+    /// Angle under which the eye sees that height (°); 0 is the view along parallel lines, true to scale everywhere.
+    pub perspective: f64,
     /// z before loading of the material section that the view rides on (mm); the z of `centre` is relative to it then.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub follow: Option<f64>,
@@ -57,6 +61,7 @@ impl Default for View {
             elevation: 0.0,
             centre: [0.0; 3],
             height: 10.0,
+            perspective: 0.0,
             follow: None,
             colour: ColourBy::Stress,
             range: None,
@@ -136,6 +141,12 @@ impl View {
                 "height",
                 shortest(self.height),
                 "a length in mm above zero, below a kilometre".into(),
+            ),
+            (
+                (0.0..=WIDEST).contains(&self.perspective),
+                "perspective",
+                shortest(self.perspective),
+                format!("an angle from 0° to {WIDEST}°"),
             ),
             (
                 (0.0..=MOST_EXPLODED).contains(&self.explode),

@@ -40,6 +40,8 @@ mod overview;
 pub(crate) mod painter;
 mod panel;
 mod panels;
+#[cfg(feature = "explore")]
+pub(crate) mod perspective;
 pub mod png;
 mod sides;
 pub(crate) mod style;

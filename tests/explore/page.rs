@@ -100,12 +100,19 @@ fn a_person_finds_what_broke_first() {
     page.value("document.querySelector('#reset-range').click()");
     settled(&mut page);
     keep(&mut page, "explore-ghost.png");
+    // In perspective.
+    let before = page.value(pixels);
+    page.value("document.querySelector('#perspective').click()");
+    settled(&mut page);
+    assert_eq!(page.value("explore.view.perspective"), 30);
+    assert_ne!(page.value(pixels), before);
     // The command that makes the view.
     page.value("document.querySelector('#command').click()");
     page.wait_for("String(document.querySelector('#command-text').hidden)", "false");
     let command = page.value("document.querySelector('#command-text').textContent");
     assert!(command.as_str().unwrap().contains("hidden_layers = [2]"), "{command}");
     assert!(command.as_str().unwrap().contains("ghost_layers = [1]"), "{command}");
+    assert!(command.as_str().unwrap().contains("perspective = 30"), "{command}");
     assert_eq!(page.complaints(), Vec::<Value>::new(), "the console has complaints");
 
     page.visit(&shown.0, "light");

@@ -135,3 +135,41 @@ fn where_all_is_hidden_there_is_only_the_ground() {
     assert!(empty.pixels().all(|pixel| pixel == empty.get_pixel(0, 0)));
     assert_eq!(drawn(folder.path(), &below), empty);
 }
+
+#[test]
+fn in_perspective_the_near_end_is_as_much_wider_as_a_pinhole_camera_shows_it() {
+    let test = "in_perspective_the_near_end_is_as_much_wider_as_a_pinhole_camera_shows_it";
+    if strandsnap::render::check().is_err() {
+        return skipped(test, "no graphics adapter");
+    }
+    let (folder, run) = (folder(2), Run::new(2));
+    let snapshot = &run.snapshots()[0];
+    let place = |p: &[f32; 3]| p.map(|x| f64::from(x) * 1e3);
+    let far_out = |p: &[f32; 3]| place(p)[0].hypot(place(p)[1]);
+    let radius = f64::from(snapshot.radius[0]) * 1e3;
+    let out = snapshot.position.iter().map(far_out).fold(0.0, f64::max) + radius;
+    let ends = snapshot.position.iter().map(|p| place(p)[2]);
+    let [low, high] = [ends.clone().fold(f64::MAX, f64::min), ends.fold(f64::MIN, f64::max)];
+    let height = 8.0 * out;
+    let along = View { azimuth: -90.0, centre: [0.0, 0.0, 0.5 * (low + high)], height, ..View::default() };
+    // Half the width of what is drawn in the row through the middle (px), on the ground that the corner shows.
+    let half = |view: &View| {
+        let image = drawn(folder.path(), view);
+        let ground = image.get_pixel(0, 0);
+        let differs = |x: &u32| (0..3).any(|k| image.get_pixel(*x, SIDE / 2)[k].abs_diff(ground[k]) > 12);
+        let wide: Vec<u32> = (0..SIDE).filter(differs).collect();
+        0.5 * f64::from(wide[wide.len() - 1] - wide[0] + 1)
+    };
+    let scale = f64::from(SIDE) / height;
+    let parallel = half(&along);
+    assert!((parallel - out * scale).abs() < 1.5, "{parallel} instead of {}", out * scale);
+    for angle in [4.0f64, 8.0, 12.0] {
+        let distance = 0.5 * height / (0.5 * angle.to_radians()).tan();
+        let nearest = distance - 0.5 * (high - low);
+        // The rounded end reaches half a radius nearer, at most.
+        let [least, most] = [nearest, nearest - radius].map(|to| out * scale * distance / to);
+        let seen = half(&View { perspective: angle, ..along.clone() });
+        assert!(seen > least - 1.5 && seen < most + 1.5, "{angle}°: {seen} px, between {least} and {most} expected");
+        assert!(seen > parallel * 1.1);
+    }
+}
