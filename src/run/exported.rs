@@ -23,8 +23,8 @@ pub(super) fn folders(run: &Path) -> [PathBuf; Format::ALL.len()] {
 pub(super) fn files(run: &Path) -> Vec<PathBuf> {
     let own = |format: Format, folder: PathBuf| {
         let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-        let writes = |name: &std::ffi::OsStr| format.writes(&name.to_string_lossy());
-        entries.filter(move |path| path.is_file() && path.file_name().is_some_and(writes))
+        let writes = move |path: &PathBuf| path.file_name().is_some_and(|name| format.writes(&name.to_string_lossy()));
+        entries.filter(move |path| path.is_file() && writes(path))
     };
     Format::ALL.into_iter().zip(folders(run)).flat_map(|(format, folder)| own(format, folder)).collect()
 }
