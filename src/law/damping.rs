@@ -1,4 +1,6 @@
-//! Viscous damping as a fraction of the critical one.
+//! Viscous damping as a fraction of the critical one, and the coefficient of restitution that it gives.
+
+use crate::base::bisect::bisect;
 
 /// Coefficient c = 2 ξ √(m k) (N s/m) of a dashpot beside a spring (linear oscillator; ξ = 1 is critical).
 ///
@@ -9,6 +11,44 @@
 pub fn viscous_coefficient(fraction: f64, mass: f64, stiffness: f64) -> f64 {
     2.0 * fraction * (mass * stiffness).sqrt()
 }
+
+/// Coefficient of restitution e (-), speed of parting over speed of approach, of an oscillator with the damping ratio
+/// `ratio` ζ (-) whose bodies part when they no longer push, without a pull.
+///
+/// e = exp(−2ζ acos ζ/√(1 − ζ²)), with acosh and √(ζ² − 1) beyond critical (Schwager & Pöschel 2007, Granular Matter 9, 465,
+/// their β/ω₀ = ζ and angles drawn together). It holds for a Hertzian contact too: see [`hertzian_fraction`].
+pub fn restitution(ratio: f64) -> f64 {
+    let rest = 1.0 - ratio * ratio;
+    let angle = if rest.abs() < 1e-12 {
+        1.0
+    } else if rest > 0.0 {
+        ratio.acos() / rest.sqrt()
+    } else {
+        ratio.acosh() / (-rest).sqrt()
+    };
+    (-2.0 * ratio * angle).exp()
+}
+
+/// Damping ratio ζ (-) that gives the coefficient of restitution `coefficient` e (-), 0 < e ≤ 1: [`restitution`] solved by
+/// bisection.
+pub fn ratio_of_restitution(coefficient: f64) -> f64 {
+    if coefficient >= 1.0 {
+        return 0.0;
+    }
+    // Beyond critical e ≤ (ζ + √(ζ² − 1))⁻² ≤ (2ζ − 1)⁻², so that the root lies below.
+    bisect(0.0, 1.0 + 0.5 / coefficient.sqrt(), 0.0, |ratio| restitution(ratio) > coefficient)[0]
+}
+
+/// Fraction ξ (-) of [`viscous_coefficient`] at which a Hertzian contact has the damping ratio `ratio` ζ (-).
+///
+/// With F = K δ^(3/2) and c = 2ξ√(m* dF/dδ), the variable x = (4/5) δ^(5/4) over the time dτ = δ^(1/4) dt obeys a linear
+/// oscillator of ω² = (5/4) K/m* and ζ = √(6/5) ξ. A contact of constant stiffness has ζ = ξ.
+pub fn hertzian_fraction(ratio: f64) -> f64 {
+    ratio / HERTZIAN
+}
+
+/// ζ/ξ of a Hertzian contact (-): √(6/5).
+pub const HERTZIAN: f64 = 1.095_445_115_010_332_2;
 
 #[cfg(test)]
 mod tests {

@@ -208,6 +208,7 @@ fn of_contact(found: &mut Found, raw: &RawScene, plan: &Plan) {
             ("hardness_strain", contact.hardness_strain.is_some()),
             ("limiting_pressure", contact.limiting_pressure.is_some()),
             ("damping", contact.damping.is_some()),
+            ("restitution", contact.restitution.is_some()),
             ("skin", contact.skin.is_some()),
         ];
         let switch = InFile::ToldUnless("contact.normal");

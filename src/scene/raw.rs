@@ -116,6 +116,10 @@ pub struct RawContact {
     /// Viscous damping of the normal motion as a fraction of critical.
     #[schemars(extend("x-unit" = "-", "x-default" = "0"))]
     pub damping: Option<Scalar>,
+    /// Coefficient of restitution of two elastic bodies in one contact, whatever their size, speed and stiffness, instead of
+    /// `damping`. Plastic loss under thornton comes on top, so that bodies part more slowly than it says.
+    #[schemars(extend("x-unit" = "-", "x-otherwise" = "what `damping` gives"))]
+    pub restitution: Option<Scalar>,
     /// Skin of the neighbour list over the largest diameter.
     #[schemars(extend("x-unit" = "-", "x-default" = "0.15"))]
     pub skin: Option<Scalar>,

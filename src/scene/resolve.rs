@@ -9,6 +9,7 @@ use super::spec::*;
 use super::{resolve_bodies, resolve_drive};
 use crate::base::error::{Error, Result};
 use crate::base::units::{Dimension, shortest};
+use crate::law::damping::{hertzian_fraction, ratio_of_restitution};
 use std::path::Path;
 
 /// Friction between bare copper wires where a scene gives none (-) (the reference paper's).
@@ -114,7 +115,12 @@ fn contact(
     // Values are checked even where `normal = "none"` leaves them without effect: switching contacts off for one run
     // must not need the rest of the table to go.
     let friction = at.ratio_or("friction", &raw.friction, FRICTION, Range::NotNegative)?;
-    let damping = at.ratio_or("damping", &raw.damping, 0.0, Range::NotNegative)?;
+    let mut damping = at.ratio_or("damping", &raw.damping, 0.0, Range::NotNegative)?;
+    let restitution = at.optional("restitution", &raw.restitution, Dimension::Ratio, Range::Fraction)?;
+    if let Some(coefficient) = restitution {
+        at.refuse("damping", &raw.damping, "and `restitution` both say how contacts are damped")?;
+        damping = hertzian_fraction(ratio_of_restitution(coefficient));
+    }
     let skin = at.ratio_or("skin", &raw.skin, SKIN, Range::Positive)?;
     let given = GivenHardness::of_contact(at, raw)?;
     let pairs = materials.pairs(&at.key("pair"), &raw.pair)?;
@@ -150,6 +156,7 @@ fn contact(
             RawShape::Wire => Shape::Wire,
         },
         damping,
+        restitution,
         skin,
     }))
 }

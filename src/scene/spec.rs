@@ -181,7 +181,10 @@ pub struct ContactSpec {
     /// Shape of a wire in contact.
     pub shape: Shape,
     /// Viscous damping of the normal contact motion, fraction of critical (-); friction damps the tangential one.
+    /// Where `restitution` is given, that of a Hertzian contact with this coefficient.
     pub damping: f64,
+    /// Coefficient of restitution of an elastic contact (-), where it is what was given.
+    pub restitution: Option<f64>,
     /// Skin of the neighbour list over the largest particle diameter (-).
     pub skin: f64,
 }

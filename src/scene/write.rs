@@ -237,7 +237,10 @@ fn contact(out: &mut Lines, spec: &Spec) {
         Shape::Wire => "wire",
     };
     out.entry("shape", text(shape));
-    out.entry("damping", number(contact.damping));
+    match contact.restitution {
+        Some(coefficient) => out.entry("restitution", number(coefficient)),
+        None => out.entry("damping", number(contact.damping)),
+    }
     out.entry("skin", number(contact.skin));
     for pair in &contact.pairs {
         let names = pair.materials.map(|number| text(spec.material_at(number).label()));

@@ -2,6 +2,7 @@
 
 use super::pair::Laws;
 use crate::engine::bytes::behind;
+use crate::law::contact::constants::reduced_mass;
 use crate::strand::assembly::Assembly;
 
 /// Laws of contacts between the materials of a run.
@@ -11,6 +12,8 @@ pub struct LawTable<N, T> {
     laws: Vec<Laws<N, T>>,
     /// Material of each particle; empty with one material.
     material_of: Vec<u32>,
+    /// Whether damping is to give a coefficient of restitution.
+    pub restitution: bool,
 }
 
 /// Place of the laws between materials `a` and `b`.
@@ -27,7 +30,7 @@ impl<N, T> LawTable<N, T> {
         if materials > 1 {
             material_of = (0..assembly.len()).map(|particle| assembly.material_of(particle) as u32).collect();
         }
-        Self { laws: pairs.map(|(a, b)| between(a, b)).collect(), material_of }
+        Self { laws: pairs.map(|(a, b)| between(a, b)).collect(), material_of, restitution: false }
     }
 
     /// Number of laws.
@@ -59,6 +62,17 @@ impl<N, T> LawTable<N, T> {
     /// Viscous damping of all of them, fraction of critical (-).
     pub fn damping(&self) -> f64 {
         self.laws[0].damping
+    }
+
+    /// Reduced mass of two particles for their damping (kg). For a coefficient of restitution one whose place is prescribed
+    /// has the mass infinity; where both are, nothing is to be met, and they count as free.
+    pub fn damped_mass(&self, masses: [f64; 2], fixed: [u8; 2]) -> f64 {
+        const PLACE: u8 = 0b111;
+        let still = fixed.map(|fixed| self.restitution && fixed & PLACE == PLACE);
+        match (still, masses) {
+            ([true, false], [_, mass]) | ([false, true], [mass, _]) => mass,
+            (_, [a, b]) => reduced_mass(a, b),
+        }
     }
 
     /// Memory behind it (bytes).

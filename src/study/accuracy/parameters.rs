@@ -352,7 +352,10 @@ fn around(now: f64, usual: f64) -> Vec<f64> {
 
 fn contact_damping(scene: &Scene) -> Variations {
     let now = touching(scene)?.damping;
-    let set = |spec: &mut Spec, value| contact(spec).damping = value;
+    let set = |spec: &mut Spec, value| {
+        let contact = contact(spec);
+        (contact.damping, contact.restitution) = (value, None);
+    };
     let levels = around(now, 0.1).into_iter().map(|v| number(scene, v, "", 1.0, set)).collect();
     Ok(Variation { role: Role::Neutral, base: base(now, ""), levels })
 }

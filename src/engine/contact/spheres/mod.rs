@@ -28,7 +28,7 @@ use crate::engine::state::{BondActions, CHUNK, ChunkSums, ContactSides, Deepest,
 use crate::engine::team::Team;
 use crate::engine::time_step::Element;
 use crate::law::contact::NormalLaw;
-use crate::law::contact::constants::{reduced_mass, reduced_radius};
+use crate::law::contact::constants::reduced_radius;
 use crate::law::damping::viscous_coefficient;
 use crate::law::tangential::TangentialLaw;
 use crate::strand::assembly::Assembly;
@@ -116,7 +116,7 @@ impl<N: NormalLaw, T: TangentialLaw> SphereContacts<N, T> {
             let mut rows = [0.0; 2 * BLOCK];
             for lane in block.lanes() {
                 let [i, j] = [block.i, block.j].map(|p| p as usize + lane);
-                let mass = reduced_mass(state.mass[i], state.mass[j]);
+                let mass = laws.damped_mass([state.mass[i], state.mass[j]], [state.fixed[i], state.fixed[j]]);
                 rows[lane] = reduced_radius(state.radius0[i], state.radius0[j]);
                 rows[BLOCK + lane] = viscous_coefficient(laws.damping(), mass, 1.0);
             }
@@ -269,7 +269,7 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     fn elements(&self, state: &State, chunk: usize, stiffness: &[[f64; 2]], each: &mut dyn FnMut(Element)) {
         let touching = self.stores.get(chunk).into_iter().flat_map(|store| self.touching_in(store));
         for (Touching { pair: [i, j], .. }, k) in touching.zip(stiffness).filter(|(_, k)| **k != [0.0; 2]) {
-            let mass = reduced_mass(state.mass[i], state.mass[j]);
+            let mass = self.laws.damped_mass([state.mass[i], state.mass[j]], [state.fixed[i], state.fixed[j]]);
             let viscosity = viscous_coefficient(self.laws.damping(), mass, k[0]);
             let (nodes, arms) = ([i as u32, j as u32, 0], [state.radius[i], state.radius[j]]);
             each(Element::contact(nodes, [1.0, 1.0, 0.0], *k, arms, viscosity));

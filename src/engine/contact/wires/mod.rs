@@ -40,9 +40,9 @@ use crate::engine::state::{CHUNK, ChunkSums, Deepest, State};
 use crate::engine::team::Team;
 use crate::engine::time_step::Element;
 use crate::law::contact::NormalLaw;
-use crate::law::contact::constants::{reduced_mass, reduced_radius};
+use crate::law::contact::constants::reduced_radius;
 use crate::law::contact::line::{CELLS, LineStiffness, patch_length};
-use crate::law::damping::viscous_coefficient;
+use crate::law::damping::{HERTZIAN, viscous_coefficient};
 use crate::law::tangential::{TangentialInput, TangentialLaw};
 use crate::strand::assembly::Assembly;
 use chains::Chains;
@@ -143,8 +143,14 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         }
         c.edge =
             c.kind != Kind::Stretch || c.end_to_end || !c.place.joined || self.chains.near_end(c.i, c.place.j, state);
-        let mass = reduced_mass(state.mass[c.i as usize], c.place.between(&state.mass));
-        c.viscosity = viscous_coefficient(self.laws.damping(), mass, 1.0);
+        let (i, j) = (c.i as usize, c.place.j as usize);
+        // The two particles of a bond are mostly held both or neither.
+        let fixed = [state.fixed[i], state.fixed[j] & state.fixed[j + usize::from(c.place.joined)]];
+        let mass = self.laws.damped_mass([state.mass[i], c.place.between(&state.mass)], fixed);
+        // Side by side the stiffness is constant, elsewhere Hertzian.
+        let linear = self.laws.restitution && c.kind == Kind::Stretch && c.mode == Mode::Line;
+        let fraction = self.laws.damping() * if linear { HERTZIAN } else { 1.0 };
+        c.viscosity = viscous_coefficient(fraction, mass, 1.0);
     }
 
     /// Whether two particles of one wire are near to a break between them.
