@@ -129,7 +129,7 @@ impl Artist {
             None => Drawing::new(camera, fade, &ready.segments, &mut seen),
             Some(eye) => {
                 let changed: Vec<_> = ready.segments.iter().filter_map(|segment| eye.segment(segment)).collect();
-                Drawing::new(eye.straight(), fade, &changed, &mut seen)
+                Drawing::round(eye.straight(), fade, &changed, &mut seen)
             }
         };
         self.painter.draw([0.0, 0.0], &style, &seen, &[drawing]);

@@ -36,6 +36,8 @@ pub struct Drawing {
     /// Facets of a roof and of a tube.
     facets: [u32; 2],
     fade: f32,
+    /// Component of a wire's direction along the line of sight up to which it is a roof (-).
+    steep: f32,
 }
 
 /// What a segment is drawn as: see `wires.wgsl`.
@@ -50,7 +52,7 @@ enum Shape {
 }
 
 const SHAPES: usize = 3;
-/// Component of a wire's direction along the line of sight up to which it is a roof (-).
+/// Component of a wire's direction along the line of sight up to which it is a roof (-), where lines of sight are parallel.
 const STEEP: f32 = 0.85;
 /// By how much a roof may turn in the picture, and a tube in space: cosines (-).
 const TURN: [f32; 2] = [0.95, 0.5];
@@ -63,11 +65,22 @@ impl Drawing {
     /// Adds those of `segments` that `camera` sees to the list `all`; its panel is in pixels of the frame. Things darken over
     /// the depth `fade` (m).
     pub fn new(camera: Camera, fade: f32, segments: &[Segment], all: &mut Vec<Segment>) -> Self {
+        Self::up_to(STEEP, camera, fade, segments, all)
+    }
+
+    /// The same without roofs: where lines of sight are not parallel, wires pass from roof to tube within the picture, and what
+    /// they press into one another would jump there.
+    #[cfg(feature = "explore")]
+    pub fn round(camera: Camera, fade: f32, segments: &[Segment], all: &mut Vec<Segment>) -> Self {
+        Self::up_to(-1.0, camera, fade, segments, all)
+    }
+
+    fn up_to(steep: f32, camera: Camera, fade: f32, segments: &[Segment], all: &mut Vec<Segment>) -> Self {
         let towards_eye = camera.to_eye();
         let mut seen: [Vec<(f32, u32)>; SHAPES] = Default::default();
         let mut widest = [0f32; SHAPES];
         for (number, segment) in segments.iter().enumerate().filter(|(_, s)| camera.sees(s.a, s.b)) {
-            let shape = Shape::of(segment, &camera);
+            let shape = Shape::of(segment, &camera, steep);
             widest[shape as usize] = widest[shape as usize].max(segment.a[3]);
             seen[shape as usize].push((towards_eye.dot(xyz(segment.a) + xyz(segment.b)), number as u32));
         }
@@ -82,18 +95,18 @@ impl Drawing {
         // The outline of a tube is off by a tenth of a pixel at most: by the radius times (π / facets)² / 2.
         let of_tube = (PI * (5.0 * tube).sqrt()).ceil() as u32;
         let facets = [if roof < FLAT { 1 } else { 2 }, of_tube.clamp(*FACETS.start(), *FACETS.end())];
-        Self { camera, segments: ranges, facets, fade }
+        Self { camera, segments: ranges, facets, fade, steep }
     }
 }
 
 impl Shape {
-    fn of(segment: &Segment, camera: &Camera) -> Self {
+    fn of(segment: &Segment, camera: &Camera, steep: f32) -> Self {
         if segment.tangent_a[3] != JOINT || segment.tangent_b[3] != JOINT {
             return Self::Capsule;
         }
         let [a, b] = [segment.tangent_a, segment.tangent_b].map(|t| camera.rotation * xyz(t));
         let turn = |a: Vec2, b: Vec2| a.dot(b) / (a.length_squared() * b.length_squared()).sqrt();
-        if a.z.abs().max(b.z.abs()) < STEEP && turn(a.truncate(), b.truncate()) > TURN[0] {
+        if a.z.abs().max(b.z.abs()) < steep && turn(a.truncate(), b.truncate()) > TURN[0] {
             Self::Roof
         } else if a.dot(b) > TURN[1] {
             Self::Tube
@@ -207,7 +220,7 @@ impl Painter {
                 1.0 / camera.scale,
             ],
             rim: [r, g, b, style.edge],
-            fade: [drawing.facets[1] as f32, drawing.fade, drawing.facets[0] as f32, STEEP],
+            fade: [drawing.facets[1] as f32, drawing.fade, drawing.facets[0] as f32, drawing.steep],
             signal: super::colour::signal4(),
             cut: super::colour::linear4(style.cut),
         };

@@ -24,6 +24,13 @@ pub const THORNTON: VerificationCase = VerificationCase {
     run: thornton_restitution,
 };
 
+pub const RESTITUTION: VerificationCase = VerificationCase {
+    name: "restitution",
+    about: "two elastic spheres part with the coefficient of restitution that the scene asks for, whatever their speed",
+    source: "Schwager & Pöschel, Granular Matter 9 (2007) 465: damped oscillator without a pull",
+    run: asked_restitution,
+};
+
 pub const TANGENTIAL: VerificationCase = VerificationCase {
     name: "friction-constant-load",
     about: "tangential force over displacement at constant normal force, both laws",
@@ -118,6 +125,30 @@ fn thornton_restitution(context: &Context) -> Result<Vec<Comparison>> {
         Ok(Comparison::new(what, "-", restitution, thornton::restitution(ratio), simulation.finish()).within(1e-3))
     };
     [0.9, 1.5, 3.0, 10.0, 100.0].into_iter().map(collide_at).collect()
+}
+
+/// A contact of each speed in 2000 steps of the undamped one.
+fn asked_restitution(context: &Context) -> Result<Vec<Comparison>> {
+    let whole = pair(&context.simulation("verify/hertz", &[])?);
+    let collide_at = |(coefficient, speed): (f64, f64)| {
+        let half = |sign: f64| format!(r#"["0 m/s", "0 m/s", "{:e} m/s"]"#, 0.5 * sign * speed);
+        let time = whole.contact_time(speed);
+        let options = [
+            set("contact.restitution", coefficient),
+            set("sphere.0.velocity", half(1.0)),
+            set("sphere.1.velocity", half(-1.0)),
+            set("time.step", format!("{:e} s", time / 2000.0)),
+            set("stop.time", format!("{:e} s", 6.0 * time)),
+        ];
+        let mut simulation = context.simulation("verify/hertz", &options)?;
+        simulation.run(|_| {})?;
+        let v = &simulation.engine.state().v;
+        let found = (v.z[1] - v.z[0]) / speed;
+        let what = format!("asked for {coefficient} at {speed} m/s");
+        Ok(Comparison::new(what, "-", found, coefficient, simulation.finish()).within(1e-3))
+    };
+    let coefficients = [0.8, 0.6, 0.4, 0.2];
+    coefficients.into_iter().flat_map(|e| [(e, 1.0), (e, 1e-3)]).map(collide_at).collect()
 }
 
 /// At every tenth of the displacement at which the whole contact slides, up to 1.3 of it.

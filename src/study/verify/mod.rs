@@ -62,6 +62,7 @@ pub const CASES: &[VerificationCase] = &[
     // Contacts of spheres
     contacts::HERTZ,
     contacts::THORNTON,
+    contacts::RESTITUTION,
     repeated::REPEATED,
     contacts::TANGENTIAL,
     contacts::ROLLING,
