@@ -79,6 +79,7 @@ cases! {
     strand_stiffness "strand-stiffness",
     strand_textbook "strand-textbook",
     strand_utting "strand-utting",
+    restitution "restitution",
     thornton "thornton",
     thornton_repeated "thornton-repeated",
     torsion_bar "torsion-bar",

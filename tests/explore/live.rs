@@ -227,8 +227,17 @@ fn a_person_watches_a_run_holds_it_and_stops_it() {
     page.value("document.querySelector('#hold').click()");
     page.wait_for("document.querySelector('#hold').textContent", "Go on");
     let state = "explore.view.state";
-    page.wait_for("String(explore.view.state === explore.run().states.length - 1)", "true");
-    let before = page.value(state).as_f64().unwrap();
+    // The page hears of states a little after the run has written them.
+    let begin = Instant::now();
+    let before = loop {
+        let held = states(&run.at);
+        std::thread::sleep(Duration::from_millis(1000));
+        let shown = page.value(state).as_f64().unwrap();
+        if states(&run.at) == held && shown == held as f64 - 1.0 {
+            break shown;
+        }
+        assert!(begin.elapsed() < PATIENCE, "a run that is held goes on, or its newest state is not shown");
+    };
     page.value("document.querySelector('#step').click()");
     page.wait_for(&format!("String({state} > {before})"), "true");
     page.wait_for("document.querySelector('#hold').textContent", "Go on");

@@ -152,13 +152,15 @@ fn in_perspective_the_near_end_is_as_much_wider_as_a_pinhole_camera_shows_it() {
     let [low, high] = [ends.clone().fold(f64::MAX, f64::min), ends.fold(f64::MIN, f64::max)];
     let height = 8.0 * out;
     let along = View { azimuth: -90.0, centre: [0.0, 0.0, 0.5 * (low + high)], height, ..View::default() };
-    // Half the width of what is drawn in the row through the middle (px), on the ground that the corner shows.
+    // How far from the middle anything is drawn (px), on the ground that the corner shows.
     let half = |view: &View| {
         let image = drawn(folder.path(), view);
         let ground = image.get_pixel(0, 0);
-        let differs = |x: &u32| (0..3).any(|k| image.get_pixel(*x, SIDE / 2)[k].abs_diff(ground[k]) > 12);
-        let wide: Vec<u32> = (0..SIDE).filter(differs).collect();
-        0.5 * f64::from(wide[wide.len() - 1] - wide[0] + 1)
+        let differs = |pixel: &image::Rgb<u8>| (0..3).any(|k| pixel[k].abs_diff(ground[k]) > 12);
+        let middle = 0.5 * f64::from(SIDE);
+        let away = |x: u32, y: u32| (f64::from(x) + 0.5 - middle).hypot(f64::from(y) + 0.5 - middle);
+        let seen = image.enumerate_pixels().filter(|(.., pixel)| differs(pixel));
+        seen.map(|(x, y, _)| away(x, y)).fold(0.0, f64::max)
     };
     let scale = f64::from(SIDE) / height;
     let parallel = half(&along);
