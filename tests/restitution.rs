@@ -35,8 +35,7 @@ fn measured(mut engine: Engine) -> f64 {
         let touches = engine.contact_counts().2 > 0;
         if touched && !touches {
             let energy = engine.energy();
-            let kinetic = 1e-3 * energy.damping;
-            assert!(energy.damping > 0.0 && energy.residual().abs() < kinetic, "{energy:?}");
+            assert!(energy.damping > 0.0 && energy.residual().abs() < 1e-3 * energy.damping, "{energy:?}");
             return -parting(&engine) / before;
         }
         touched |= touches;

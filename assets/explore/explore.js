@@ -184,7 +184,7 @@ const spread = ([x, y, z]) => {
   return [ax + (x - ax) * apart, ay + (y - ay) * apart, z];
 };
 // Tangent of half the angle under which the eye sees the height of the picture.
-const slopeOf = of => Math.tan((of.perspective ?? 0) * Math.PI / 360);
+const slopeOf = of => Math.tan(of.perspective * Math.PI / 360);
 function projector(of, told, left) {
   const rotate = turned(of), { width, height } = pane(), scale = height / of.height;
   const centre = [of.centre[0], of.centre[1], of.centre[2] + (of.follow !== undefined ? told?.follow_offset ?? 0 : 0)];

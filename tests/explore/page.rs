@@ -106,6 +106,7 @@ fn a_person_finds_what_broke_first() {
     settled(&mut page);
     assert_eq!(page.value("explore.view.perspective"), 30);
     assert_ne!(page.value(pixels), before);
+    keep(&mut page, "explore-perspective.png");
     // The command that makes the view.
     page.value("document.querySelector('#command').click()");
     page.wait_for("String(document.querySelector('#command-text').hidden)", "false");

@@ -1,8 +1,9 @@
 //! Views into the strand: a section whose wires are discs, layers that are seen through.
 
-use crate::shown::{folder, skipped};
+use crate::shown::{Shown, folder, next_words, say, skipped};
 use crate::synthetic::Run;
 use image::RgbImage;
+use serde_json::json;
 use std::path::Path;
 use strandsnap::engine::view::{BondState, Snapshot};
 use strandsnap::explore::{View, picture};
@@ -174,4 +175,36 @@ fn in_perspective_the_near_end_is_as_much_wider_as_a_pinhole_camera_shows_it() {
         assert!(seen > least - 1.5 && seen < most + 1.5, "{angle}°: {seen} px, between {least} and {most} expected");
         assert!(seen > parallel * 1.1);
     }
+}
+
+/// By similar triangles: an eye at azimuth 0 and elevation 0 looks along +x, with z to the right and y up.
+#[test]
+fn in_perspective_a_click_finds_what_a_pinhole_camera_shows_there() {
+    let Some(shown) = Shown::start("in_perspective_a_click_finds_what_a_pinhole_camera_shows_there") else { return };
+    let run = Run::new(12);
+    let snapshot = &run.snapshots()[0];
+    let (height, angle, middle) = (30.0, 40.0f64, 60.0);
+    let view = View { centre: [0.0, 0.0, middle], height, perspective: angle, ..View::default() };
+    let distance = 0.5 * height / (0.5 * angle.to_radians()).tan();
+    let spacing = 2e3 * f64::from(snapshot.radius[0]);
+    let mut socket = shown.socket();
+    let mut wires = std::collections::HashSet::new();
+    for number in 0..9 {
+        // The particle at this height that lies nearest to the eye hides what is behind it.
+        let z = middle + 4.0 * f64::from(number - 4);
+        let place = |i: usize| snapshot.position[i].map(|x| f64::from(x) * 1e3);
+        let near = (0..run.info.wire_particles).filter(|i| (place(*i)[2] - z).abs() < spacing);
+        let nearest = near.min_by(|a, b| place(*a)[0].total_cmp(&place(*b)[0])).unwrap();
+        let [x, y, z] = place(nearest);
+        let larger = distance / (distance + x);
+        let at = [0.5 + (z - middle) * larger / (1.6 * height), 0.5 - y * larger / height];
+        say(&mut socket, json!({ "pick": { "number": number, "size": [768, 480], "at": at, "view": view } }));
+        let found = next_words(&mut socket, "picked");
+        let wire = run.info.wires.iter().position(|wire| wire.particles().contains(&nearest)).unwrap();
+        assert_eq!(found["wire"], wire, "at {at:?}: {found}");
+        let off = found["position"][2].as_f64().unwrap() - z;
+        assert!(off.abs() < 1.5 * spacing, "{off} mm from {z} mm");
+        wires.insert(wire);
+    }
+    assert!(wires.len() > 4, "the same wire everywhere: {wires:?}");
 }

@@ -13,7 +13,7 @@ pub struct LawTable<N, T> {
     /// Material of each particle; empty with one material.
     material_of: Vec<u32>,
     /// Whether damping is to give a coefficient of restitution.
-    pub restitution: bool,
+    restitution: bool,
 }
 
 /// Place of the laws between materials `a` and `b`.
@@ -31,6 +31,16 @@ impl<N, T> LawTable<N, T> {
             material_of = (0..assembly.len()).map(|particle| assembly.material_of(particle) as u32).collect();
         }
         Self { laws: pairs.map(|(a, b)| between(a, b)).collect(), material_of, restitution: false }
+    }
+
+    /// The same, whose damping is to give a coefficient of restitution, or not: see [`Self::damped_mass`].
+    pub fn with_restitution(self, restitution: bool) -> Self {
+        Self { restitution, ..self }
+    }
+
+    /// Whether damping is to give a coefficient of restitution.
+    pub fn gives_restitution(&self) -> bool {
+        self.restitution
     }
 
     /// Number of laws.

@@ -81,8 +81,8 @@ impl Choice<'_> {
     ) -> Box<dyn Contacts> {
         let damping = self.contact.damping;
         let laws = |a, b| Laws { normal: normal(a, b), tangential: tangential(a, b), damping };
-        let mut laws = LawTable::new(self.spec.materials().len(), self.assembly, laws);
-        laws.restitution = self.contact.restitution.is_some();
+        let laws = LawTable::new(self.spec.materials().len(), self.assembly, laws)
+            .with_restitution(self.contact.restitution.is_some());
         match self.contact.shape {
             Shape::Sphere => Box::new(SphereContacts::new(laws, self.assembly)),
             Shape::Wire => Box::new(WireContacts::new(laws, self.assembly)),

@@ -148,7 +148,7 @@ impl<N: NormalLaw, T: TangentialLaw> WireContacts<N, T> {
         let fixed = [state.fixed[i], state.fixed[j] & state.fixed[j + usize::from(c.place.joined)]];
         let mass = self.laws.damped_mass([state.mass[i], c.place.between(&state.mass)], fixed);
         // Side by side the stiffness is constant, elsewhere Hertzian.
-        let linear = self.laws.restitution && c.kind == Kind::Stretch && c.mode == Mode::Line;
+        let linear = self.laws.gives_restitution() && c.kind == Kind::Stretch && c.mode == Mode::Line;
         let fraction = self.laws.damping() * if linear { HERTZIAN } else { 1.0 };
         c.viscosity = viscous_coefficient(fraction, mass, 1.0);
     }
