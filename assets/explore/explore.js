@@ -534,8 +534,8 @@ function drawScale(width, height) {
   const length = [5, 2, 1].map(v => v * power).find(v => v <= raw) ?? power;
   const [right, y] = [width - 14, height - 14], left = right - length * scale;
   element(overlay, "path", { class: "axis", d: `M${left} ${y - 4}V${y}H${right}V${y - 4}` });
-  const text = element(overlay, "text", { class: "caption", x: (left + right) / 2, y: y - 6 }, `${+length.toPrecision(3)} mm${shown.view.perspective ? " in the middle" : ""}`);
-  text.setAttribute("text-anchor", "middle");
+  const text = element(overlay, "text", { class: "caption", x: right, y: y - 6 }, `${+length.toPrecision(3)} mm${shown.view.perspective ? " in the middle" : ""}`);
+  text.setAttribute("text-anchor", "end");
 }
 
 function drawNow() {
