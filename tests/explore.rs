@@ -11,6 +11,8 @@ mod films;
 mod live;
 #[path = "explore/page.rs"]
 mod page;
+#[path = "explore/pictures.rs"]
+mod pictures;
 #[path = "common/program.rs"]
 mod program;
 #[path = "explore/see_into.rs"]

@@ -215,3 +215,25 @@ fn an_interrupted_run_has_a_greatest_stress_so_far_and_no_strength() {
     assert!(summary.greatest_stress_mpa.unwrap() > 1.0);
     assert_eq!(summary.warnings, Vec::<String>::new(), "nothing is judged by its first rows");
 }
+
+/// A wire that is turned slowly twists evenly: by θ z/L at z, θ being what its end has turned.
+#[test]
+fn roll_rises_evenly_along_a_wire_that_is_turned() {
+    let scene = load("torsion", &["stop.time=0.3 ms", "bond.law=elastic", "bond.hardening="]);
+    let mut all = All::default();
+    run::summarise(&scene, vec![&mut all], &AtomicBool::new(false)).unwrap();
+    let last = all.snapshots.last().unwrap();
+    let turned = scene.spec.grip.as_ref().unwrap().rotation_rate * last.sample.time;
+    let [low, high] = [0, last.roll.len() - 1];
+    assert!(last.roll[low] == 0.0 && (f64::from(last.roll[high]) / turned - 1.0).abs() < 1e-6, "{:?}", last.roll);
+    for (i, roll) in last.roll.iter().enumerate() {
+        let share = i as f64 / high as f64;
+        // Waves go to and fro fifteen times, damped.
+        assert!((f64::from(*roll) / turned - share).abs() < 0.01, "{roll} at {share} of {turned}");
+    }
+    // Where no grip turns, nothing is told of it.
+    let scene = load("single-wire", &["stop.steps=10"]);
+    let mut all = All::default();
+    run::summarise(&scene, vec![&mut all], &AtomicBool::new(false)).unwrap();
+    assert!(all.snapshots.iter().all(|snapshot| snapshot.roll.is_empty()));
+}

@@ -6,6 +6,8 @@ use strandsnap::base::error::{Error, SceneError};
 use strandsnap::law::bond::elasto_plastic::ElastoPlastic;
 use strandsnap::law::bond::{BondForce, BondIncrement, BondLaw, BondShape, Moduli};
 use strandsnap::reference::plasticity::tension_at;
+use strandsnap::scene::look::Moment;
+use strandsnap::scene::picture::When;
 use strandsnap::scene::spec::*;
 use strandsnap::scene::{self, Scene, builtin, write};
 
@@ -164,6 +166,14 @@ fn every_key_arrives_in_si() {
     assert_eq!(spec.output.views, [View::Midsection, View::CrossSection, View::Curve]);
     assert_eq!((spec.output.theme, spec.output.camera.zoom), (Theme::Light, 1.5));
     assert_close(spec.output.camera.azimuth, 20f64.to_radians());
+    let [last, usual] = &spec.output.pictures[..] else { panic!("{:?}", spec.output.pictures) };
+    assert_eq!((last.when, last.size, last.theme), (When::Strain(0.12), [64, 48], Theme::Dark));
+    assert_eq!((&last.hidden_wires[..], last.selected, last.supersampling), (&[2, 0][..], Some(1), 3));
+    assert_close(last.azimuth, -28.1f64.to_radians());
+    assert_close(last.centre.unwrap().y, -20e-6);
+    assert_close(last.height.unwrap(), 4e-3);
+    assert_eq!((usual.when, usual.size, usual.theme), (When::At(Moment::End), [640, 480], Theme::Light));
+    assert_eq!((usual.height, usual.supersampling), (None, 2));
     assert_close(spec.output.camera.elevation, -0.5);
     assert_close(spec.output.camera.focus_z.unwrap(), 0.02);
 }

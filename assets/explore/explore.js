@@ -126,9 +126,10 @@ function heard(message) {
   if (message.film) film.heard(message.film);
   if (message.picked !== undefined) picked(message.number, message.picked);
   const words = message.command ?? message["film-command"];
-  if (words) {
+  const text = words ? `${run.command} ${words}` : message.entry;
+  if (text) {
     $("command-text").hidden = false;
-    $("command-text").textContent = `${run.command} ${words}`;
+    $("command-text").textContent = text;
     navigator.clipboard?.writeText($("command-text").textContent).catch(() => {});
   }
   if (message.error) {
@@ -813,8 +814,10 @@ $("low").onchange = $("high").onchange = () => {
 $("reset-range").onclick = () => { delete view.range; drawLegend(); changed(); };
 
 const fileSize = () => ($("size").value ? $("size").value.split("x").map(Number) : sizeOf());
-$("save").onclick = () => say({ picture: { size: fileSize(), view } });
-$("command").onclick = () => say({ command: { size: fileSize(), view } });
+const fileView = of => ($("finer").checked ? { ...of, supersampling: 2 } : of);
+$("save").onclick = () => say({ picture: { size: fileSize(), view: fileView(view) } });
+$("command").onclick = () => say({ command: { size: fileSize(), view: fileView(view) } });
+$("entry").onclick = () => say({ entry: { size: fileSize(), view: fileView(view) } });
 function keep(blob, ending) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
@@ -844,7 +847,7 @@ function show(wanted) {
   select(view.selected ?? null);
 }
 const film = new Film($, {
-  say, show, file: keep, size: fileSize, present: () => structuredClone(view),
+  say, show, file: keep, size: fileSize, present: () => structuredClone(view), finish: fileView,
   name: of => moment(run.states[clamp(Math.round(of.state), 0, last)]),
 });
 

@@ -1,9 +1,9 @@
 // A film of the camera: views that it comes by, in their order. The server draws it, as the command line does.
 
 export class Film {
-  // `present` gives the view on the screen, `show` goes to one, `name` says what it shows, `size` is that of the film.
-  constructor($, { say, present, show, name, size, file }) {
-    Object.assign(this, { $, say, present, show, name, size, file, views: [], making: false });
+  // `present` gives the view on the screen, `finish` makes one ready for a file, `show` goes to one, `name` says what it shows, `size` is that of the film.
+  constructor($, { say, present, finish, show, name, size, file }) {
+    Object.assign(this, { $, say, present, show, name, size, file, finish, views: [], making: false });
     $("add-view").onclick = () => this.add();
     $("make-film").onclick = () => this.make();
     $("film-words").onclick = () => this.say({ "film-command": this.asked() });
@@ -18,7 +18,7 @@ export class Film {
   }
 
   asked() {
-    return { size: this.size(), seconds: +this.$("leg").value || 2, views: this.views };
+    return { size: this.size(), seconds: +this.$("leg").value || 2, views: this.views.map(this.finish) };
   }
 
   make() {

@@ -5,6 +5,7 @@
 //! cargo run --release --example bench -- [--scene ka4] [--threads 1,2] [--lengths 1,10] [--json FILE]
 //! cargo run --release --example bench -- --plans
 //! cargo run --release --example bench -- --device gpu --batch 1,16,256 [--json FILE]
+//! cargo run --release --example bench -- --explore out/ka4 [--size 1920x1080]
 //! ```
 //!
 //! The strand is first pulled fast (same strain rate for every length) until it is in full contact, then timed at that
@@ -14,6 +15,7 @@
 mod adapter;
 mod checkpoint;
 mod counted;
+mod explore;
 mod loops;
 mod machine;
 mod measure;
@@ -65,6 +67,12 @@ pub struct Args {
     /// Strands that are stepped at once on it
     #[arg(long, value_delimiter = ',', default_value = "1,4", requires = "device")]
     batch: Vec<usize>,
+    /// Measure instead how long `explore` takes from a move to its picture, of the run in this folder
+    #[arg(long, value_name = "RUN")]
+    explore: Option<PathBuf>,
+    /// Width and height of its pictures (px)
+    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = size, requires = "explore")]
+    size: [u32; 2],
     /// Also write the rows to this file, with what the machine is and which program was measured
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -80,6 +88,9 @@ fn main() -> miette::Result<()> {
     let args = Args::parse();
     if args.plans {
         return Ok(plans::print(&args)?);
+    }
+    if let Some(run) = &args.explore {
+        return Ok(explore::print(&args, run)?);
     }
     if let Some(factor) = args.only {
         println!("{}", serde_json::to_string(&measure::rows(&args, factor)?).expect("rows are plain data"));
@@ -97,6 +108,13 @@ fn main() -> miette::Result<()> {
     checkpoint::print(&args)?;
     output::print(&args, &rows)?;
     Ok(args.json.as_ref().map_or(Ok(()), |file| keep(file, &rows))?)
+}
+
+/// Two numbers with an x between them.
+fn size(text: &str) -> std::result::Result<[u32; 2], String> {
+    let sides: Option<(&str, &str)> = text.split_once('x');
+    let both = sides.and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    both.ok_or_else(|| "it is written as 1920x1080".into())
 }
 
 /// Writes rows, with what the machine is and which program was measured.

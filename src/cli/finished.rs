@@ -4,11 +4,11 @@ use super::say::say;
 use crate::base::error::{Error, Result};
 use crate::base::finding::StopReason;
 use crate::base::wording::counted;
-use crate::export::also;
+use crate::export::{self, also};
 use crate::observe::report::{one_line, report};
 use crate::run::folder::{FRAMES, RECORDING};
 use crate::run::{self, RunOptions, RunSummary, outputs};
-use crate::scene::spec::OutputSpec;
+use crate::scene::spec::{OutputSpec, Spec};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -52,22 +52,54 @@ pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
     }
 }
 
-/// Makes the files that `output.also` asks for, see [`also`], and says so.
+/// Checks, before the simulation, that what [`make_more`] makes after it can be made.
 ///
 /// # Errors
-/// As for [`also`]; [`Error::Interrupted`] when it was stopped meanwhile, with what makes the rest told.
-pub fn export_also(
-    summary: &RunSummary,
-    output: &OutputSpec,
-    run: &Path,
-    quiet: bool,
-    stop: &AtomicBool,
-) -> Result<()> {
-    let also = also(run, summary, &output.also, stop)?;
+/// [`Error::Missing`] without what it takes; [`Error::Input`] where something stands in its way.
+pub fn check_more(run: &Path, output: &OutputSpec) -> Result<()> {
+    export::check_also(run, &output.also)?;
+    check_pictures(run, output)
+}
+
+/// Makes what `output.picture` and `output.also` ask for, see [`also`], and says so.
+///
+/// # Errors
+/// As for [`also`], and what drawing says; [`Error::Interrupted`] when it was stopped meanwhile, with what makes the rest told.
+pub fn make_more(summary: &RunSummary, spec: &Spec, run: &Path, quiet: bool, stop: &AtomicBool) -> Result<()> {
+    let undrawn = draw_pictures(summary, spec, run, quiet, stop)?;
+    let also = also(run, summary, &spec.output.also, stop)?;
     for made in also.made.iter().filter(|_| !quiet) {
         let size = outputs::megabytes(made.bytes);
         say!("  {}: {} ({size})", made.folder.display(), counted(made.files, "file"));
     }
-    also.left.iter().for_each(|command| say!("Still to be made: {command}"));
-    if also.left.is_empty() { Ok(()) } else { Err(Error::Interrupted) }
+    let left: Vec<String> = undrawn.into_iter().chain(also.left).collect();
+    left.iter().for_each(|command| say!("Still to be made: {command}"));
+    if left.is_empty() { Ok(()) } else { Err(Error::Interrupted) }
+}
+
+#[cfg(feature = "explore")]
+fn check_pictures(run: &Path, output: &OutputSpec) -> Result<()> {
+    crate::explore::pictures::check(run, output)
+}
+
+#[cfg(not(feature = "explore"))]
+fn check_pictures(_: &Path, output: &OutputSpec) -> Result<()> {
+    match output.pictures[..] {
+        [] => Ok(()),
+        _ => Err(outputs::built_without("pictures of a view", "explore", "leave out output.picture")),
+    }
+}
+
+/// Draws the pictures of a scene and gives the commands that draw what was left.
+#[cfg(feature = "explore")]
+fn draw_pictures(summary: &RunSummary, spec: &Spec, run: &Path, quiet: bool, stop: &AtomicBool) -> Result<Vec<String>> {
+    let drawn = crate::explore::pictures::draw(run, summary, spec, stop)?;
+    drawn.made.iter().filter(|_| !quiet).for_each(|file| say!("  {}", file.display()));
+    drawn.left_out.iter().for_each(|why| eprintln!("WARNING: {why}"));
+    Ok(drawn.left)
+}
+
+#[cfg(not(feature = "explore"))]
+fn draw_pictures(_: &RunSummary, _: &Spec, _: &Path, _: bool, _: &AtomicBool) -> Result<Vec<String>> {
+    Ok(Vec::new())
 }

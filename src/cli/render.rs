@@ -27,7 +27,7 @@ pub struct Args {
     /// Draw one view, as `strandsnap explore` writes it, to view.png in that folder; several of them and --animation
     /// make the film of a camera that goes from each to the next
     #[arg(long, value_name = "KEYS", conflicts_with_all = ["strain_range", "events", "every", "animation_width", "views",
-        "colour", "theme", "azimuth", "elevation", "zoom", "focus_z"])]
+        "colour", "theme", "supersampling", "azimuth", "elevation", "zoom", "focus_z"])]
     view: Vec<String>,
     /// Time that the camera of a film takes from each view to the next
     #[arg(long, value_name = "TIME", value_parser = super::values::duration, default_value = "2s", requires = "view")]

@@ -3,12 +3,11 @@
 use super::counted::Counted;
 use super::ended::Ended;
 use super::explore::{AddressArgs, Watched};
-use super::finished::{export_also, print};
+use super::finished::{check_more, make_more, print};
 use super::interrupt;
 use super::progress::Progress;
 use super::values::{Threads, duration, threads};
 use crate::base::error::Result;
-use crate::export;
 use crate::observe::Observer;
 use crate::run::drawing::Undrawn;
 use crate::run::{self, DeviceChoice, Resumable};
@@ -51,8 +50,8 @@ pub(super) fn go_on(
     let stop = interrupt::install()?;
     time_limit.into_iter().for_each(interrupt::after);
     let options = resumable.options.clone();
-    let output = resumable.scene.spec.output.clone();
-    export::check_also(&options.out, &output.also)?;
+    let spec = resumable.scene.spec.clone();
+    check_more(&options.out, &spec.output)?;
     let mut watched = Watched::begin(explore, &options.out, &resumable.scene.spec, stop)?;
     let summary = run::in_pool(options.threads, || {
         let mut progress = (!quiet).then(|| Progress::new(&resumable.scene.spec.stop));
@@ -61,7 +60,7 @@ pub(super) fn go_on(
         resumable.go_on(&|what| eprintln!("note: {what}"), watchers, stop)
     })??;
     print(&summary, &options, quiet);
-    export_also(&summary, &output, &options.out, quiet, stop)?;
+    make_more(&summary, &spec, &options.out, quiet, stop)?;
     watched.end(&summary, stop);
     interrupt::ended_run(&summary)
 }
@@ -71,14 +70,14 @@ pub(super) fn draw(undrawn: Undrawn, time_limit: Option<Duration>, quiet: bool) 
     let stop = interrupt::install()?;
     time_limit.into_iter().for_each(interrupt::after);
     let options = undrawn.options.clone();
-    let output = undrawn.scene().spec.output.clone();
-    export::check_also(&options.out, &output.also)?;
+    let spec = undrawn.scene().spec.clone();
+    check_more(&options.out, &spec.output)?;
     eprintln!("note: the run has come to its end; drawing the pictures that are missing");
     let mut drawing = undrawn.begin()?;
     let count = drawing.replay.count();
     drawing.replay.show(&mut Counted::new(&mut *drawing.writer, count, !quiet), stop)?;
     let summary = drawing.end()?;
     print(&summary, &options, quiet);
-    export_also(&summary, &output, &options.out, quiet, stop)?;
+    make_more(&summary, &spec, &options.out, quiet, stop)?;
     interrupt::ended_run(&summary)
 }

@@ -3,14 +3,13 @@
 use super::animation::AnimationArgs;
 use super::ended::Ended;
 use super::explore::{AddressArgs, Watched};
-use super::finished::{export_also, print};
+use super::finished::{check_more, make_more, print};
 use super::interrupt;
 use super::look::LookArgs;
 use super::progress::Progress;
 use super::resume::{draw, go_on};
 use super::values::{SceneArgs, Threads, duration, threads};
 use crate::base::error::{Error, Result};
-use crate::export;
 use crate::observe::Observer;
 use crate::run::drawing::Undrawn;
 use crate::run::folder::{ANIMATION, SUMMARY};
@@ -100,7 +99,7 @@ pub fn run(args: Args) -> Result<Ended> {
             "there is nothing to go on with; --overwrite runs it again, in place of its results",
         ));
     }
-    export::check_also(&out, &scene.spec.output.also)?;
+    check_more(&out, &scene.spec.output)?;
     let options = RunOptions {
         animation: args.animation.resolve(&out.join(ANIMATION)),
         // What was ended before its first checkpoint begins anew.
@@ -125,7 +124,7 @@ pub fn run(args: Args) -> Result<Ended> {
         run::run_watched(&scene, &options, watchers, stop)
     })??;
     print(&summary, &options, args.quiet);
-    export_also(&summary, &scene.spec.output, &options.out, args.quiet, stop)?;
+    make_more(&summary, &scene.spec, &options.out, args.quiet, stop)?;
     watched.end(&summary, stop);
     interrupt::ended_run(&summary)
 }

@@ -11,6 +11,7 @@ use super::recorded::{Gathering, Motion};
 use super::{BOUND_INTERVAL, Engine, RUNAWAY, monitor};
 use crate::base::error::{Error, Result};
 use crate::base::recorder::{Function, Unrecordable};
+use crate::base::vectors::Vectors;
 
 /// Steps of the longest block.
 pub const LONGEST: u64 = BOUND_INTERVAL;
@@ -234,6 +235,8 @@ impl Engine {
     /// # Errors
     /// As for [`Engine::step`].
     pub fn take_block(&mut self, block: &Block, outcome: &Outcome, mut between: impl FnMut(&Self)) -> Result<()> {
+        // Spins between these steps are not told here.
+        self.state.turned = Vectors::default();
         for (k, measured) in outcome.measured.iter().enumerate() {
             if k > 0 {
                 between(self);

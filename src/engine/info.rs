@@ -109,7 +109,7 @@ impl Body<'_> {
         let OneMaterial { material, bond, .. } = one;
         match &bond.law {
             BondLawSpec::ElastoPlastic(h) => {
-                let p = if strain > 0.0 { strain.ln_1p() } else { 0.01 };
+                let p = if strain > 0.0 { strain.ln_1p() } else { self.plastic_shear().unwrap_or(0.01) };
                 ([0.0, round_up(h.stress(p))], [0.0, round_up(p)])
             }
             BondLawSpec::Elastic => {
@@ -119,6 +119,15 @@ impl Body<'_> {
                 ([-top, top], [0.0, 1.0])
             }
         }
+    }
+
+    /// Equivalent strain γ/√3 (von Mises) that the surface of a single straight wire has when a grip has turned to the end of
+    /// the scene (-): γ = r θ / L. `None` where the grips do not turn, or more than one wire is turned.
+    fn plastic_shear(&self) -> Option<f64> {
+        let ([wire], [low, high]) = (&self.assembly.wires[..], self.gauge) else { return None };
+        let turn = self.spec.grip.as_ref()?.rotation_rate.abs() * self.spec.stop.time?;
+        let shear = 0.5 * wire.diameter * turn / (high - low);
+        (shear > 0.0 && high > low).then(|| shear / 3f64.sqrt())
     }
 
     /// Upper end of a range of contact pressure (Pa); `stress` is that of the range of axial stress (Pa).

@@ -34,6 +34,7 @@ pub mod view;
 
 use crate::base::error::{Error, Result};
 use crate::base::finding::{Failure, Notice, StepLimit, Stopped};
+use crate::base::vectors::Vectors;
 use crate::law::bond::BondLaw;
 use crate::scene::plan::{ContactPlan, Plan};
 use crate::scene::spec::{BondLawSpec, Spec};
@@ -127,6 +128,9 @@ impl Engine {
     ) -> Result<Self> {
         let mut state = State::new(&assembly, plan.rotations);
         let holds = Holds::new(spec, &assembly, &mut state)?;
+        if spec.grip.as_ref().is_some_and(|grip| grip.rotation_rate != 0.0 || grip.free_rotation) {
+            state.turned = Vectors::zeros(state.len());
+        }
         let bonds = if plan.bonds { Some(build_bonds(spec, plan, &assembly)) } else { None };
         let measures = Measures::new(spec, &assembly, &holds);
         let least_radius = assembly.radius.iter().copied().fold(f64::MAX, f64::min);
@@ -221,6 +225,7 @@ impl Engine {
         let strain = self.holds.strain();
         self.holds.apply(&mut self.state, kicked, self.arch);
         let largest2 = integrate::drift(&mut self.state, self.arch, &self.team);
+        self.state.add_turn();
         self.state.step += 1;
         self.state.time += self.state.dt;
         let axial = |slot| self.bonds.as_ref().map_or(0.0, |bonds| bonds.axial_force(slot));

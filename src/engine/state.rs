@@ -177,6 +177,8 @@ pub struct State {
     pub hold: Vec<u16>,
     /// Prescribed components of each particle, bits 0–2 for translation, 3–5 for rotation.
     pub fixed: Vec<u8>,
+    /// Time integrals of the spins (rad), where a grip turns; empty elsewhere.
+    pub turned: Vectors,
     /// Steps done.
     pub step: u64,
     /// Simulated time (s).
@@ -211,6 +213,7 @@ impl State {
             inverse_inertia: a.inertia.iter().map(|j| 1.0 / j).collect(),
             hold: vec![0; n],
             fixed: vec![0; n],
+            turned: Vectors::default(),
             step: 0,
             time: 0.0,
             dt: 0.0,
@@ -222,6 +225,13 @@ impl State {
     pub fn force_from_contacts(&self, p: usize) -> DVec3 {
         let before = if p > 0 { self.bond.pull(p - 1) } else { DVec3::ZERO };
         self.force.get(p) - (self.bond.pull(p) - before)
+    }
+
+    /// Adds the turn of the last step to [`Self::turned`].
+    pub(super) fn add_turn(&mut self) {
+        for (turned, w) in self.turned.rows_mut().into_iter().zip(self.w.rows()) {
+            turned.iter_mut().zip(w).for_each(|(turned, w)| *turned += w * self.dt);
+        }
     }
 
     /// What contacts read, and what they write.
@@ -296,7 +306,7 @@ impl State {
         let vectors = [&self.x, &self.v, &self.w, &self.force, &self.torque];
         let numbers = [&self.length_at_break, &self.radius, &self.thinned, &self.radius0, &self.mass, &self.inertia];
         let inverses = [&self.inverse_mass, &self.inverse_inertia];
-        let of_contacts = [&self.contact_force, &self.contact_torque];
+        let of_contacts = [&self.contact_force, &self.contact_torque, &self.turned];
         vectors.iter().flat_map(|v| v.rows()).all(|row| row.len() == n)
             && numbers.iter().chain(&inverses).all(|list| list.len() == n)
             && of_contacts.iter().flat_map(|v| v.rows()).all(|row| row.is_empty() || row.len() == n)

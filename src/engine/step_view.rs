@@ -180,7 +180,20 @@ impl StepView<'_> {
             plastic_strain,
             utilisation,
             contact_pressure: self.contact_pressure(),
+            roll: self.roll(),
         }
+    }
+
+    /// [`Snapshot::roll`] (rad).
+    fn roll(&self) -> Vec<f32> {
+        let State { x, turned, .. } = self.state;
+        let mut roll = Vec::new();
+        for wire in self.assembly.wires.iter().filter(|_| !turned.is_empty()) {
+            let last = wire.first + wire.len - 1;
+            let along = |i: usize| x.get((i + 1).min(last)) - x.get(i.saturating_sub(1).max(wire.first));
+            roll.extend((wire.first..=last).map(|i| turned.get(i).dot(along(i).normalize_or_zero()) as f32));
+        }
+        roll
     }
 
     /// [`Snapshot::contact_pressure`] (Pa).

@@ -232,6 +232,9 @@ pub struct Snapshot {
     /// Normal forces of a particle's contacts over the area that it shows to its neighbours (Pa), one per particle:
     /// ΣF_n / (d a) in a wire of diameter d with spacing a, ΣF_n / (π r²) for a free sphere.
     pub contact_pressure: Vec<f32>,
+    /// By how much each particle has turned about its wire since the start (rad): the time integral of its spin, along the wire as
+    /// it lies now. Empty where no grip turns.
+    pub roll: Vec<f32>,
 }
 
 /// What an engine has seen of its own limits over a run.

@@ -15,15 +15,14 @@ use crate::render::painter::{Drawing, Painter};
 use crate::render::perspective::Perspective;
 use crate::render::style::Rgb;
 use crate::render::wires::{self, Looks};
+use crate::scene::picture::SIDES;
 use glam::{Vec2, Vec3};
 use image::RgbImage;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Sides of a picture (px).
-const SIDES: std::ops::RangeInclusive<u32> = 16..=8192;
-/// Most pixels of a picture: with four samples each, half a gigabyte on the adapter.
+/// Most pixels of a picture, as fine as it is drawn: with four samples each, half a gigabyte on the adapter.
 const MOST_PIXELS: u64 = 16 << 20;
 /// Memory for what was made ready to be drawn (bytes).
 const READY_MEMORY: usize = 256 << 20;
@@ -70,6 +69,7 @@ impl Key {
             centre: still.centre,
             height: still.height,
             perspective: still.perspective,
+            supersampling: still.supersampling,
             follow: None,
             theme: still.theme,
             ..view.clone()
@@ -101,7 +101,7 @@ impl Artist {
     /// # Errors
     /// [`Error::Missing`] when there is none, with the package to install.
     pub fn new(record: &Record) -> Result<Self> {
-        let (painter, body) = (Painter::open([1, 1])?, Body::of(record.info()));
+        let (painter, body) = (Painter::open([1, 1], 1)?, Body::of(record.info()));
         Ok(Self { painter, body, ready: VecDeque::new(), occlusion: None })
     }
 
@@ -116,8 +116,8 @@ impl Artist {
     /// [`Error::Input`] for a size that cannot be drawn, [`Error::Missing`] when the adapter is lost.
     pub fn draw(&mut self, record: &Record, view: &View, size: [u32; 2]) -> Result<Picture> {
         let begin = Instant::now();
-        check_size(size)?;
-        self.painter.resize(size)?;
+        check_size(size, view.supersampling)?;
+        self.painter.resize(size, view.supersampling)?;
         let style = view.theme.style();
         let ready = self.ready(record, view, size);
         let camera = self.camera(record.info(), &ready.snapshot, view, size);
@@ -272,14 +272,16 @@ fn eye(camera: Camera, view: &View) -> Option<Perspective> {
 }
 
 /// Refuses a picture that would take too much memory.
-pub(super) fn check_size(size: [u32; 2]) -> Result<()> {
+pub(super) fn check_size(size: [u32; 2], times: u32) -> Result<()> {
     let fits = size.iter().all(|side| SIDES.contains(side));
-    if fits && u64::from(size[0]) * u64::from(size[1]) <= MOST_PIXELS {
+    let finer = if times > 1 { format!(", each {times} times finer,") } else { String::new() };
+    let most = MOST_PIXELS / u64::from(times * times);
+    if fits && u64::from(size[0]) * u64::from(size[1]) <= most {
         return Ok(());
     }
     Err(Error::input(
-        format!("a picture of {} × {} pixels cannot be drawn here", size[0], size[1]),
-        format!("choose sides from {} to {} pixels, {MOST_PIXELS} pixels at most", SIDES.start(), SIDES.end()),
+        format!("a picture of {} × {} pixels{finer} cannot be drawn here", size[0], size[1]),
+        format!("choose sides from {} to {} pixels, {most} pixels at most", SIDES.start(), SIDES.end()),
     ))
 }
 
@@ -308,5 +310,5 @@ fn solid<'a>(info: &'a RunInfo, snapshot: &'a Snapshot, view: &'a View) -> impl 
 /// Most bonds of a segment.
 fn stride(info: &RunInfo, view: &View, size: [u32; 2]) -> usize {
     let spacing = 2.0 * mm(f64::from(info.radius.first().copied().unwrap_or(1e-3)));
-    wires::stride((spacing * f64::from(size[1]) / view.height) as f32)
+    wires::stride((spacing * f64::from(size[1] * view.supersampling) / view.height) as f32)
 }

@@ -26,7 +26,7 @@ pub(super) struct Maker<W: Write + Seek> {
 /// [`Error::Input`] that says what is wrong.
 pub(super) fn check(shared: &Shared, path: &CameraPath, size: [u32; 2]) -> Result<()> {
     path.check(&shared.run.record())?;
-    super::draw::check_size(size)
+    path.views.iter().try_for_each(|view| super::draw::check_size(size, view.supersampling))
 }
 
 impl<W: Write + Seek> Maker<W> {

@@ -11,6 +11,7 @@ mod http;
 pub mod live;
 mod path;
 mod pick;
+pub mod pictures;
 pub mod record;
 mod server;
 mod session;

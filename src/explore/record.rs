@@ -221,15 +221,35 @@ impl Record {
     /// The first state at which strain (%) or time (ms) is that of `moment`; the first or the last one where it never is.
     pub fn state_at(&self, moment: f64) -> f64 {
         let abscissa = Abscissa::of_run(&self.info);
-        let at = |number: usize| abscissa.value(&self.snapshots[number].sample);
-        match (0..self.states()).find(|number| at(*number) >= moment) {
-            None => (self.states() - 1) as f64,
-            Some(0) => 0.0,
-            Some(after) => {
+        self.first_state(moment, |sample| abscissa.value(sample)).unwrap_or((self.states() - 1) as f64)
+    }
+
+    /// The first state at which a number of the rows is `value` or more; `None` where it never is.
+    pub fn first_state(&self, value: f64, of: impl Fn(&Sample) -> f64) -> Option<f64> {
+        let at = |number: usize| of(&self.snapshots[number].sample);
+        match (0..self.states()).find(|number| at(*number) >= value)? {
+            0 => Some(0.0),
+            after => {
                 let [low, high] = [at(after - 1), at(after)];
-                (after - 1) as f64 + (moment - low) / (high - low)
+                Some((after - 1) as f64 + (value - low) / (high - low))
             }
         }
+    }
+
+    /// The greatest that a number of the rows is at any state.
+    pub fn greatest(&self, of: impl Fn(&Sample) -> f64) -> f64 {
+        self.snapshots.iter().map(|snapshot| of(&snapshot.sample)).fold(f64::MIN, f64::max)
+    }
+
+    /// The first state at which rupture `index` has happened.
+    pub fn break_state(&self, index: usize) -> Option<f64> {
+        let step = self.ruptures.get(index)?.step;
+        self.snapshots.iter().position(|snapshot| snapshot.sample.step >= step).map(|state| state as f64)
+    }
+
+    /// Every rupture so far, in order.
+    pub fn ruptures(&self) -> &[Rupture] {
+        &self.ruptures
     }
 
     /// Ends of the run's own colour scale; `None` where colours are no numbers.
@@ -407,6 +427,7 @@ fn between(a: &Snapshot, b: &Snapshot, share: f64) -> Snapshot {
         plastic_strain: mix(&a.plastic_strain, &b.plastic_strain),
         utilisation: mix(&a.utilisation, &b.utilisation),
         contact_pressure: mix(&a.contact_pressure, &b.contact_pressure),
+        roll: mix(&a.roll, &b.roll),
     }
 }
 

@@ -7,6 +7,7 @@ use super::control::Pace;
 use super::draw::Picture;
 use super::film::{self, Maker};
 use super::path::Path as CameraPath;
+use super::pictures::entry;
 use super::shared::Shared;
 use super::view::View;
 use crate::base::error::{Error, Result};
@@ -62,6 +63,8 @@ enum Ask {
     Picture { size: [u32; 2], view: View },
     /// The command that makes the view.
     Command { size: [u32; 2], view: View },
+    /// The entry of a scene that makes it.
+    Entry { size: [u32; 2], view: View },
     /// Stress of a wire over the whole run.
     History(usize),
     /// The film of a camera path.
@@ -294,6 +297,10 @@ impl Session<'_> {
                 let words = self.shared.check(&view).and_then(|()| view.words());
                 let size = format!("{}x{}", size[0], size[1]);
                 self.answer(words.map(|words| json!({ "command": format!("--view '{words}' --size {size}") })))
+            }
+            Ask::Entry { size, view } => {
+                let entry = self.shared.check(&view).map(|()| entry(&self.shared.run.record(), &view, size));
+                self.answer(entry.map(|entry| json!({ "entry": entry })))
             }
             Ask::History(wire) => {
                 let record = self.shared.run.record();

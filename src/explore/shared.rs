@@ -77,7 +77,11 @@ impl Pane {
         self.artist.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn draw(&self, view: &View, size: [u32; 2]) -> Result<Picture> {
+    /// Draws a view that was checked.
+    ///
+    /// # Errors
+    /// As for [`Artist::draw`].
+    pub fn draw(&self, view: &View, size: [u32; 2]) -> Result<Picture> {
         let mut artist = self.artist();
         artist.draw(&self.record(), view, size)
     }

@@ -3,13 +3,10 @@
 use crate::base::error::{Error, Result};
 use crate::base::units::shortest;
 use crate::engine::view::RunInfo;
+use crate::scene::look::SUPERSAMPLING;
+use crate::scene::picture::{MOST_EXPLODED, WIDEST};
 use crate::scene::spec::{ColourBy, Theme};
 use serde::{Deserialize, Serialize};
-
-/// Furthest that wires are drawn apart (-).
-const MOST_EXPLODED: f64 = 4.0;
-/// Widest angle of a perspective (°).
-const WIDEST: f64 = 90.0;
 
 /// A view of a run. Lengths are in mm and angles in degrees, as the page and the command line write them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,6 +48,14 @@ pub struct View {
     pub cut: Option<f64>,
     /// Ground.
     pub theme: Theme,
+    /// How many times finer than its pixels the picture is drawn, in either direction.
+    #[serde(skip_serializing_if = "is_one")]
+    pub supersampling: u32,
+}
+
+/// The usual one is left unsaid.
+fn is_one(times: &u32) -> bool {
+    *times == 1
 }
 
 impl Default for View {
@@ -72,6 +77,7 @@ impl Default for View {
             explode: 0.0,
             cut: None,
             theme: Theme::Dark,
+            supersampling: 1,
         }
     }
 }
@@ -147,6 +153,12 @@ impl View {
                 "perspective",
                 shortest(self.perspective),
                 format!("an angle from 0° to {WIDEST}°"),
+            ),
+            (
+                SUPERSAMPLING.contains(&self.supersampling),
+                "supersampling",
+                self.supersampling.to_string(),
+                format!("a whole number from {} to {}", SUPERSAMPLING.start(), SUPERSAMPLING.end()),
             ),
             (
                 (0.0..=MOST_EXPLODED).contains(&self.explode),

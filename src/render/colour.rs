@@ -184,6 +184,11 @@ pub fn linear(byte: u8) -> f32 {
     LINEAR[usize::from(byte)]
 }
 
+/// Linear light to sRGB, neither rounded (-): the inverse of [`linear`].
+pub fn encoded(light: f32) -> f32 {
+    if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
+}
+
 /// Linear RGB of a colour, with alpha 1.
 pub fn linear4(colour: Rgb) -> [f32; 4] {
     [linear(colour[0]), linear(colour[1]), linear(colour[2]), 1.0]
@@ -229,5 +234,8 @@ mod tests {
         assert_eq!(linear(0), 0.0);
         assert!((linear(255) - 1.0).abs() < 1e-6);
         assert!((linear(188) - 0.5029).abs() < 1e-3, "{}", linear(188));
+        for byte in 0..=255 {
+            assert!((255.0 * encoded(linear(byte)) - f32::from(byte)).abs() < 1e-2, "{byte}");
+        }
     }
 }

@@ -79,7 +79,7 @@ impl Renderer {
             ));
         }
         let layout = layout(look.frame_size, &views);
-        let solid = Solid::open(&layout)?;
+        let solid = Solid::open(&layout, look.supersampling)?;
         let sheet = Sheet {
             style: look.theme.style(),
             scale: ColourScale::new(info, look.colour),
@@ -192,7 +192,7 @@ impl Sheet {
         let panels = self.layout.panels.iter();
         let shots: Vec<Shot> =
             panels.flat_map(|(view, area)| of(*view).panel.shots(&data, *area, self.layout.unit)).collect();
-        let (segments, drawings) = wires_of(&data, &shots);
+        let (segments, drawings) = wires_of(&data, &shots, self.look.supersampling as f32);
         Scene { focus, shots, segments, drawings, colours }
     }
 
@@ -206,8 +206,8 @@ impl Sheet {
     }
 }
 
-/// The segments of all shots and how they are drawn.
-fn wires_of(data: &Data, shots: &[Shot]) -> (Vec<Segment>, Vec<Drawing>) {
+/// The segments of all shots and how they are drawn, `times` finer than pixels.
+fn wires_of(data: &Data, shots: &[Shot], times: f32) -> (Vec<Segment>, Vec<Drawing>) {
     let whole = LazyCell::new(|| {
         let position = data.snapshot.position.clone();
         Looks::new(data.info, data.snapshot, position, data.colours, data.body.shade(), Vec::new())
@@ -220,7 +220,7 @@ fn wires_of(data: &Data, shots: &[Shot]) -> (Vec<Segment>, Vec<Drawing>) {
             own = Some((shot.view, of(shot.view).panel.looks(data, &shot.camera)));
         }
         let looks = own.as_ref().and_then(|(_, looks)| looks.as_ref()).unwrap_or_else(|| &whole);
-        let stride = wires::stride(spacing * shot.camera.scale);
+        let stride = wires::stride(spacing * shot.camera.scale * times);
         let sees = |a, b| shot.camera.sees(a, b);
         let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer, sees);
         drawings.push(Drawing::new(shot.camera, shot.fade, &segments, &mut all));
@@ -234,12 +234,12 @@ fn of(view: View) -> &'static Entry {
 }
 
 impl Solid {
-    fn open(layout: &Layout) -> Result<Option<Self>> {
+    fn open(layout: &Layout, times: u32) -> Result<Option<Self>> {
         let solid = layout.panels.iter().filter(|(view, _)| !of(*view).flat).map(|(_, area)| *area);
         let Some(area) = solid.reduce(around) else {
             return Ok(None);
         };
-        Ok(Some(Self { painter: Painter::open([area.w as u32, area.h as u32])?, area }))
+        Ok(Some(Self { painter: Painter::open([area.w as u32, area.h as u32], times)?, area }))
     }
 
     /// Waits for the adapter and copies the panels, and nothing between them, into the picture; returns when it was drawn.

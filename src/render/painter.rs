@@ -131,11 +131,11 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Opens the adapter for pictures of `size` (px), and compiles the shader.
-    pub fn open(size: [u32; 2]) -> Result<Self> {
+    /// Opens the adapter for pictures of `size` (px) that are drawn `times` finer, and compiles the shader.
+    pub fn open(size: [u32; 2], times: u32) -> Result<Self> {
         let gpu = Gpu::open()?;
-        check(&gpu, size)?;
-        let target = Target::new(&gpu, size);
+        check(&gpu, size, times)?;
+        let target = Target::new(&gpu, size, times);
         // Two scopes, because what a backend cannot translate is reported as an internal error, not a validation one.
         let internal = gpu.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -152,12 +152,12 @@ impl Painter {
         &self.gpu.name
     }
 
-    /// From now on draws pictures of `size` (px).
+    /// From now on draws pictures of `size` (px), `times` finer.
     #[cfg(feature = "explore")]
-    pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
-        if size != self.target.size {
-            check(&self.gpu, size)?;
-            self.target = Target::new(&self.gpu, size);
+    pub fn resize(&mut self, size: [u32; 2], times: u32) -> Result<()> {
+        if (size, times) != (self.target.size, self.target.times) {
+            check(&self.gpu, size, times)?;
+            self.target = Target::new(&self.gpu, size, times);
         }
         Ok(())
     }
@@ -174,12 +174,13 @@ impl Painter {
     pub fn draw(&self, origin: [f32; 2], style: &Style, segments: &[Segment], drawings: &[Drawing]) {
         // Where all is hidden there is only the ground.
         let nothing = segments.is_empty();
+        let times = self.target.times as f32;
         let segments = self.upload(segments);
         let views: Vec<_> = drawings.iter().map(|d| self.bind(d, style)).collect();
         self.target.draw(&self.gpu, super::colour::linear4(style.panel), |pass| {
             for (drawing, view) in drawings.iter().zip(&views).filter(|_| !nothing) {
                 let Rect { x, y, w, h } = drawing.camera.panel;
-                let (x, y) = (x - origin[0], y - origin[1]);
+                let [x, y, w, h] = [x - origin[0], y - origin[1], w, h].map(|pixels| pixels * times);
                 pass.set_viewport(x, y, w, h, 0.0, 1.0);
                 pass.set_scissor_rect(x as u32, y as u32, w as u32, h as u32);
                 pass.set_bind_group(0, view, &[]);
@@ -196,7 +197,8 @@ impl Painter {
                 }
             }
             // On the GL backend the last scissor also cuts what is resolved when the pass ends.
-            pass.set_scissor_rect(0, 0, self.target.size[0], self.target.size[1]);
+            let [width, height] = self.target.size.map(|side| side * self.target.times);
+            pass.set_scissor_rect(0, 0, width, height);
         });
     }
 
@@ -217,7 +219,7 @@ impl Painter {
                 2.0 * camera.scale / camera.panel.w,
                 2.0 * camera.scale / camera.panel.h,
                 camera.depth,
-                1.0 / camera.scale,
+                1.0 / (camera.scale * self.target.times as f32),
             ],
             rim: [r, g, b, style.edge],
             fade: [drawing.facets[1] as f32, drawing.fade, drawing.facets[0] as f32, drawing.steep],
@@ -237,10 +239,11 @@ impl Painter {
     }
 }
 
-fn check(gpu: &Gpu, [w, h]: [u32; 2]) -> Result<()> {
-    let limit = gpu.device.limits().max_texture_dimension_2d;
+fn check(gpu: &Gpu, [w, h]: [u32; 2], times: u32) -> Result<()> {
+    let limit = gpu.device.limits().max_texture_dimension_2d / times;
     if w == 0 || h == 0 || w > limit || h > limit {
-        let what = format!("the graphics adapter {} cannot draw {w} × {h} pixels", gpu.name);
+        let finer = if times > 1 { format!(", each {times} times finer") } else { String::new() };
+        let what = format!("the graphics adapter {} cannot draw {w} × {h} pixels{finer}", gpu.name);
         return Err(Error::input(what, format!("choose a size from 1 × 1 to {limit} × {limit} pixels")));
     }
     Ok(())

@@ -38,16 +38,15 @@ const fn entry(view: View, row: usize, width: f32, flat: bool, usual: Usual, pan
 }
 
 /// Every view, from left to right in its row. Left out of the usual ones is what would show nothing: layers of which
-/// there is one, the cut of a single wire, the
-/// surface of one that is not pulled.
+/// there is one, the cut of a single wire, the map of one that is not pulled.
 pub static PANELS: [Entry; View::ALL.len()] = [
     entry(View::Overview, 0, 1.0, SOLID, |_| true, &Overview),
-    entry(View::Midsection, 1, 1.0, SOLID, |info| info.is_pulled() || info.wires.len() > 1, &Midsection),
+    entry(View::Midsection, 1, 1.0, SOLID, |_| true, &Midsection),
     entry(View::Cutaway, 1, 0.8, SOLID, |_| false, &Cutaway),
     entry(View::Exploded, 1, 0.72, SOLID, |info| info.layers.len() > 1, &Exploded),
     entry(View::CrossSection, 1, 0.4, FLAT, |info| info.wires.len() > 1, &CrossSection),
     entry(View::Scene, 1, 1.0, SOLID, |_| false, &Everything),
-    entry(View::Unrolled, 2, 0.6, FLAT, |_| true, &Unrolled),
+    entry(View::Unrolled, 2, 0.6, FLAT, |info| info.is_pulled() || info.wires.len() > 1, &Unrolled),
     entry(View::Curve, 2, 0.4, FLAT, |_| true, &Curve),
 ];
 

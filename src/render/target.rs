@@ -1,6 +1,7 @@
 //! An off-screen picture on the adapter: four samples a pixel, read back into memory.
 
 use super::adapter::{Gpu, failure};
+use super::supersample::average;
 use crate::base::error::Result;
 
 /// Format of what is drawn: shaders write linear light, the adapter stores sRGB.
@@ -12,8 +13,10 @@ pub const SAMPLES: u32 = 4;
 
 /// The picture and what it takes to read it back.
 pub struct Target {
-    /// Width and height (px).
+    /// Width and height of the picture (px).
     pub size: [u32; 2],
+    /// How many times finer it is drawn.
+    pub times: u32,
     resolved: wgpu::Texture,
     samples: wgpu::TextureView,
     depth: wgpu::TextureView,
@@ -22,9 +25,9 @@ pub struct Target {
 }
 
 impl Target {
-    /// A target of `size` (px), at least one pixel.
-    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let [width, height] = size;
+    /// A target of `size` (px), at least one pixel, that is drawn `times` finer in either direction.
+    pub fn new(gpu: &Gpu, size: [u32; 2], times: u32) -> Self {
+        let [width, height] = size.map(|side| side * times);
         let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = |format, sample_count, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -50,7 +53,7 @@ impl Target {
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { size, resolved, samples, depth, staging, row_bytes }
+        Self { size, times, resolved, samples, depth, staging, row_bytes }
     }
 
     /// Clears to `background` (linear RGB), lets `draw` record, and has it drawn and copied back, without waiting for it.
@@ -86,7 +89,7 @@ impl Target {
                 layout: wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(self.row_bytes),
-                    rows_per_image: Some(self.size[1]),
+                    rows_per_image: Some(self.size[1] * self.times),
                 },
             },
             self.resolved.size(),
@@ -105,8 +108,18 @@ impl Target {
                 .slice(..)
                 .get_mapped_range()
                 .map_err(|e| failure(format!("cannot read the picture back from {}: {e}", gpu.name)))?;
-            for (y, padded) in bytes.chunks_exact(self.row_bytes as usize).enumerate() {
-                row(y as u32, &padded[..self.size[0] as usize * 4]);
+            let [width, times] = [self.size[0], self.times].map(|count| count as usize);
+            let rows: Vec<&[u8]> =
+                bytes.chunks_exact(self.row_bytes as usize).map(|row| &row[..width * times * 4]).collect();
+            let mut mean = vec![0; width * 4];
+            for (y, rows) in (0..).zip(rows.chunks_exact(times)) {
+                match rows {
+                    [one] => row(y, one),
+                    several => {
+                        average(several, times, y, &mut mean);
+                        row(y, &mean);
+                    }
+                }
             }
         }
         self.staging.unmap();

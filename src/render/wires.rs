@@ -2,6 +2,7 @@
 
 use super::colour::{desaturated, linear4, signal4};
 use super::occlusion::Occlusion;
+use super::stripe;
 use super::style::Rgb;
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use glam::Vec3;
@@ -116,6 +117,16 @@ impl Looks {
         Self { section, ..self }
     }
 
+    /// Centre of particle `i` as it is drawn (m), and direction of its wire.
+    pub fn place(&self, i: usize) -> (Vec3, Vec3) {
+        (self.position[i].into(), self.tangent[i])
+    }
+
+    /// What is hidden of the surroundings of particle `i`, see [`Occlusion`].
+    pub fn occlusion(&self, i: usize) -> [f32; 4] {
+        self.occlusion.at(i)
+    }
+
     /// Whether particle `i` is shown.
     pub fn shows(&self, i: usize) -> bool {
         !self.removed.get(i).copied().unwrap_or(false)
@@ -156,6 +167,9 @@ pub fn segments(
         let shade = looks.shade[number] * if ghost { -1.0 } else { 1.0 };
         let chain = Chain { info, snapshot, looks, wire, shade };
         chain.segments(stride, &sees, &mut all);
+        if !snapshot.roll.is_empty() {
+            stripe::add(snapshot, looks, wire, shade, &sees, &mut all);
+        }
         if let Some(z) = looks.section {
             chain.up_to_section(z, &sees, &mut all);
         }

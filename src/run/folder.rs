@@ -7,9 +7,11 @@ use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
 use crate::observe::files::write_whole;
+use crate::observe::origin::RUN_KEYWORD;
 use crate::observe::{partial, tables};
 use std::collections::HashSet;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Resolved scene.
@@ -30,6 +32,8 @@ pub const REPORT: &str = "report.html";
 pub const FRAMES: &str = "frames";
 /// Animation of them, where no other name is given.
 pub const ANIMATION: &str = "frames.gif";
+/// Folder of the pictures that the scene asks for by name.
+pub const PICTURES: &str = "pictures";
 /// What a folder of pictures holds until the last of them is drawn.
 const UNFINISHED: &str = "UNFINISHED.txt";
 /// Begins the line in it that says what is drawn.
@@ -40,6 +44,19 @@ const OUTPUTS: &str = "outputs: ";
 pub const ACCURACY_STUDY: &str = "accuracy.json";
 /// Its plot.
 pub const ACCURACY_PLOT: &str = "accuracy.svg";
+
+/// Pictures in a folder that say of which run they are: what a user has put there does not.
+fn own_pictures(folder: &Path) -> Vec<PathBuf> {
+    /// A picture of a run says so right after its signature and its header, which are 33 bytes.
+    const SOON: usize = 128;
+    let says = |path: &PathBuf| {
+        let mut begin = Vec::with_capacity(SOON);
+        let read = fs::File::open(path).and_then(|file| file.take(SOON as u64).read_to_end(&mut begin));
+        read.is_ok() && begin.windows(RUN_KEYWORD.len()).any(|word| word == RUN_KEYWORD.as_bytes())
+    };
+    let files = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    files.filter(|path| path.is_file() && path.extension().is_some_and(|end| end == "png") && says(path)).collect()
+}
 
 /// Folder of the study of a scene where no other is given.
 pub fn accuracy(scene: &str) -> PathBuf {
@@ -168,6 +185,9 @@ impl OutFolder {
             // Fails when something else is in it, which is right.
             let _ = fs::remove_dir(folder);
         }
+        let pictures = self.path.join(PICTURES);
+        own_pictures(&pictures).iter().try_for_each(|file| remove_if_there(file))?;
+        let _ = fs::remove_dir(pictures);
         let frames = self.path.join(FRAMES);
         clear_pictures(&frames, None)?;
         remove_if_there(&frames.join(UNFINISHED))?;

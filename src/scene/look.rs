@@ -9,6 +9,8 @@ use std::ops::RangeInclusive;
 pub const FRAME_SIDE: RangeInclusive<u32> = 120..=8192;
 /// Magnification, least and greatest (-).
 pub const ZOOM: RangeInclusive<f64> = 0.01..=1000.0;
+/// How many times finer than its pixels a picture is drawn, least and greatest.
+pub const SUPERSAMPLING: RangeInclusive<u32> = 1..=4;
 
 /// An enum whose values are words, each with its meaning, in the order in which they are listed to people.
 macro_rules! words {
@@ -67,6 +69,16 @@ words! {
 impl Default for Theme {
     fn default() -> Self {
         Self::Dark
+    }
+}
+
+words! {
+    /// A moment of a run.
+    Moment {
+        Start = "start", "Before the first step";
+        FirstBreak = "first-break", "The first snapshot with a broken bond";
+        LastBreak = "last-break", "The first snapshot with all that breaks in the run broken";
+        End = "end", "The last snapshot";
     }
 }
 

@@ -1,7 +1,7 @@
 //! A scene as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference
 //! of all keys, each with its unit, its default and its meaning, which `strandsnap scene keys` prints
 //! ([`super::keys`]); those of materials and bonds stand in `raw/materials.rs`, those of grips and holds in `raw/drive.rs`, those
-//! of outputs in `raw/output.rs`.
+//! of outputs in `raw/output.rs` and `raw/picture.rs`.
 //!
 //! A quantity is text with a unit, `"39 mm"`; any unit of the right kind will do. A ratio may be a plain number or
 //! per cent, `0.12` or `"12 %"`. Unknown keys are refused.
@@ -9,11 +9,13 @@
 mod drive;
 mod materials;
 mod output;
+mod picture;
 mod scalar;
 
 pub use drive::*;
 pub use materials::*;
 pub use output::*;
+pub use picture::*;
 pub use scalar::*;
 use schemars::JsonSchema;
 use serde::Deserialize;

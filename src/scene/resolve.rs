@@ -2,11 +2,11 @@
 //! key that is wrong.
 
 use super::at::{At, Range};
-use super::look::{FRAME_SIDE, ZOOM};
+use super::look::{FRAME_SIDE, SUPERSAMPLING, ZOOM};
 use super::raw::*;
 use super::resolve_materials::{self, GivenHardness, Materials};
 use super::spec::*;
-use super::{resolve_bodies, resolve_drive};
+use super::{resolve_bodies, resolve_drive, resolve_picture};
 use crate::base::error::{Error, Result};
 use crate::base::units::{Dimension, shortest};
 use crate::law::damping::{hertzian_fraction, ratio_of_restitution};
@@ -44,6 +44,16 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
     if wire_count > 1 {
         refuse_gaps(at, spacing, contact.as_ref())?;
     }
+    let mut output = output(&at.key("output"), &raw.output, breaks)?;
+    let mut layers: Vec<&str> =
+        strand.iter().flat_map(|strand| &strand.layers).map(|layer| layer.name.as_str()).collect();
+    for wire in &wires {
+        if !layers.contains(&wire.layer.as_str()) {
+            layers.push(&wire.layer);
+        }
+    }
+    let context = resolve_picture::Context { layers, wires: wire_count, pulled: raw.grip.is_some(), output: &output };
+    output.pictures = resolve_picture::pictures(&at.key("output").key("picture"), &raw.output.picture, &context)?;
     let grip = raw.grip.as_ref().map(|raw| resolve_drive::grip(&at.key("grip"), raw, extent)).transpose()?;
     Ok(Spec {
         name: scene_name(at, raw, name)?,
@@ -54,7 +64,7 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
         holds: resolve_drive::holds(&at.key("hold"), &raw.hold, bodies)?,
         time: time(&at.key("time"), &raw.time)?,
         stop: resolve_drive::stop(&at.key("stop"), &raw.stop, grip.as_ref(), breaks)?,
-        output: output(&at.key("output"), &raw.output, breaks)?,
+        output,
         plan: match raw.plan {
             None | Some(RawPlan::Auto) => PlanMode::Auto,
             Some(RawPlan::General) => PlanMode::General,
@@ -201,6 +211,17 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
         theme: raw.theme.unwrap_or(usual.theme),
         camera: camera(&at.key("camera"), &raw.camera)?,
         also: also(&at.key("also"), raw.also.as_deref().unwrap_or_default())?,
+        supersampling: supersampling(&at.key("supersampling"), raw.supersampling, usual.supersampling)?,
+        pictures: Vec::new(),
+    })
+}
+
+/// How many times finer than its pixels a picture is drawn.
+pub(super) fn supersampling(at: &At, raw: Option<i64>, usual: u32) -> Result<u32> {
+    let Some(times) = raw else { return Ok(usual) };
+    u32::try_from(times).ok().filter(|times| SUPERSAMPLING.contains(times)).ok_or_else(|| {
+        let (least, most) = (SUPERSAMPLING.start(), SUPERSAMPLING.end());
+        at.error(format!("`supersampling` is {times}, but must be from {least} to {most}"), "2 makes outlines smooth")
     })
 }
 

@@ -2,6 +2,7 @@
 
 /// Pictures are described by the words that people write.
 pub use super::look::{ColourBy, Format, Theme, View};
+pub use super::picture::PictureSpec;
 /// The hardening law is stated as it is computed.
 pub use crate::law::bond::hardening::Hardening as HardeningSpec;
 use glam::DVec3;
@@ -470,6 +471,10 @@ pub struct OutputSpec {
     pub camera: CameraSpec,
     /// Files for other programs that are made of a run when it has come to its end.
     pub also: Vec<Format>,
+    /// How many times finer than its pixels a picture is drawn, in either direction.
+    pub supersampling: u32,
+    /// Pictures that are drawn of a run when it has come to its end.
+    pub pictures: Vec<PictureSpec>,
 }
 
 impl Default for OutputSpec {
@@ -485,6 +490,8 @@ impl Default for OutputSpec {
             theme: Theme::default(),
             camera: CameraSpec::default(),
             also: Vec::new(),
+            supersampling: 1,
+            pictures: Vec::new(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! A resolved scene as TOML that reads back to an equal [`Spec`].
 
+use super::picture::When;
 use super::spec::*;
 use crate::base::units::{self, Dimension};
 use glam::DVec3;
@@ -47,6 +48,14 @@ impl Lines {
 
     fn quantity(&mut self, key: &str, value: f64, dimension: Dimension) {
         self.entry(key, quantity(value, dimension));
+    }
+
+    /// An array of one line, left out when it is empty.
+    fn list(&mut self, key: &str, values: impl Iterator<Item = String>) {
+        let values: Vec<String> = values.collect();
+        if !values.is_empty() {
+            self.entry(key, format!("[{}]", values.join(", ")));
+        }
     }
 
     /// A vector, left out when zero, which is its default.
@@ -392,14 +401,11 @@ fn output(out: &mut Lines, output: &OutputSpec) {
     let [width, height] = output.frame_size;
     out.entry("frame_size", format!("[{width}, {height}]"));
     out.entry("colour", text(output.colour.word()));
-    if !output.views.is_empty() {
-        let words: Vec<String> = output.views.iter().map(|view| text(view.word())).collect();
-        out.entry("views", format!("[{}]", words.join(", ")));
-    }
+    out.list("views", output.views.iter().map(|view| text(view.word())));
     out.entry("theme", text(output.theme.word()));
-    if !output.also.is_empty() {
-        let words: Vec<String> = output.also.iter().map(|format| text(format.word())).collect();
-        out.entry("also", format!("[{}]", words.join(", ")));
+    out.list("also", output.also.iter().map(|format| text(format.word())));
+    if output.supersampling != OutputSpec::default().supersampling {
+        out.entry("supersampling", output.supersampling.to_string());
     }
     out.table("[output.camera]");
     out.quantity("azimuth", output.camera.azimuth, Dimension::Angle);
@@ -408,4 +414,56 @@ fn output(out: &mut Lines, output: &OutputSpec) {
     if let Some(z) = output.camera.focus_z {
         out.quantity("focus_z", z, Dimension::Length);
     }
+    output.pictures.iter().for_each(|picture| self::picture(out, picture));
+}
+
+/// One picture as an entry of a scene.
+pub fn picture_to_toml(picture: &PictureSpec) -> String {
+    let mut out = Lines::default();
+    self::picture(&mut out, picture);
+    out.text.trim_start().into()
+}
+
+fn picture(out: &mut Lines, picture: &PictureSpec) {
+    out.table("[[output.picture]]");
+    out.entry("name", text(&picture.name));
+    match picture.when {
+        When::At(moment) => out.entry("at", text(moment.word())),
+        When::Strain(strain) => out.entry("strain", number(strain)),
+        When::Time(time) => out.quantity("time", time, Dimension::Time),
+    }
+    let [width, height] = picture.size;
+    out.entry("size", format!("[{width}, {height}]"));
+    out.quantity("azimuth", picture.azimuth, Dimension::Angle);
+    out.quantity("elevation", picture.elevation, Dimension::Angle);
+    if let Some(centre) = picture.centre {
+        out.entry("centre", vector(centre, Dimension::Length));
+    }
+    if let Some(height) = picture.height {
+        out.quantity("height", height, Dimension::Length);
+    }
+    if picture.perspective != 0.0 {
+        out.quantity("perspective", picture.perspective, Dimension::Angle);
+    }
+    if let Some(z) = picture.follow {
+        out.quantity("follow", z, Dimension::Length);
+    }
+    out.entry("colour", text(picture.colour.word()));
+    if let Some([low, high]) = picture.range {
+        out.entry("range", format!("[{}, {}]", number(low), number(high)));
+    }
+    out.list("hidden_layers", picture.hidden_layers.iter().map(|name| text(name)));
+    out.list("ghost_layers", picture.ghost_layers.iter().map(|name| text(name)));
+    out.list("hidden_wires", picture.hidden_wires.iter().map(|wire| (wire + 1).to_string()));
+    if let Some(wire) = picture.selected {
+        out.entry("selected", (wire + 1).to_string());
+    }
+    if picture.explode != 0.0 {
+        out.entry("explode", number(picture.explode));
+    }
+    if let Some(z) = picture.cut {
+        out.quantity("cut", z, Dimension::Length);
+    }
+    out.entry("theme", text(picture.theme.word()));
+    out.entry("supersampling", picture.supersampling.to_string());
 }

@@ -114,6 +114,16 @@ fn a_person_finds_what_broke_first() {
     assert!(command.as_str().unwrap().contains("hidden_layers = [2]"), "{command}");
     assert!(command.as_str().unwrap().contains("ghost_layers = [1]"), "{command}");
     assert!(command.as_str().unwrap().contains("perspective = 30"), "{command}");
+    // The entry of a scene that makes it, with finer outlines.
+    page.value("document.querySelector('#finer').click()");
+    page.value("document.querySelector('#entry').click()");
+    page.wait_for(
+        "String(document.querySelector('#command-text').textContent.startsWith('[[output.picture]]'))",
+        "true",
+    );
+    let entry = page.value("document.querySelector('#command-text').textContent");
+    assert!(entry.as_str().unwrap().contains("hidden_layers = [\"outer\"]"), "{entry}");
+    assert!(entry.as_str().unwrap().contains("supersampling = 2"), "{entry}");
     assert_eq!(page.complaints(), Vec::<Value>::new(), "the console has complaints");
 
     page.visit(&shown.0, "light");

@@ -38,19 +38,44 @@ pub fn skipped(test: &str, why: &str) {
 /// An address where a run is shown.
 pub struct At(pub String);
 
-/// A run that is being shown.
-pub struct Shown {
+/// A server that shows a run until it is dropped.
+pub struct Served {
     at: At,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
+}
+
+/// A run that was not simulated and is being shown.
+pub struct Shown {
+    served: Served,
     pub folder: TempDir,
+}
+
+impl Deref for Served {
+    type Target = At;
+
+    fn deref(&self) -> &At {
+        &self.at
+    }
 }
 
 impl Deref for Shown {
     type Target = At;
 
     fn deref(&self) -> &At {
-        &self.at
+        &self.served
+    }
+}
+
+impl Served {
+    pub fn of(run: &Path, with: Option<&Path>) -> Self {
+        let with = with.map(Path::to_owned);
+        let options = Options { command: "strandsnap render RUN".into(), with, ..Options::default() };
+        let server = Server::open(run, options).unwrap();
+        let (address, stop) = (server.address(), Arc::new(AtomicBool::new(false)));
+        let flag = stop.clone();
+        let thread = std::thread::spawn(move || server.serve(&flag).unwrap());
+        Self { at: At(address), stop, thread: Some(thread) }
     }
 }
 
@@ -67,13 +92,7 @@ impl Shown {
             return None;
         }
         let folder = folder(12);
-        let with = with.map(Path::to_owned);
-        let options = Options { command: "strandsnap render RUN".into(), with, ..Options::default() };
-        let server = Server::open(folder.path(), options).unwrap();
-        let (address, stop) = (server.address(), Arc::new(AtomicBool::new(false)));
-        let flag = stop.clone();
-        let thread = std::thread::spawn(move || server.serve(&flag).unwrap());
-        Some(Self { at: At(address), stop, thread: Some(thread), folder })
+        Some(Self { served: Served::of(folder.path(), with), folder })
     }
 }
 
@@ -133,7 +152,7 @@ impl At {
     }
 }
 
-impl Drop for Shown {
+impl Drop for Served {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         let ended = self.thread.take().map(JoinHandle::join);

@@ -14,7 +14,9 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use strandsnap::base::error::{Error, Result};
 use strandsnap::engine::view::{RunInfo, Sample};
-use strandsnap::export::{self, Format};
+#[cfg(feature = "frames")]
+use strandsnap::explore::pictures;
+use strandsnap::export;
 use strandsnap::observe::Observer;
 use strandsnap::observe::animation::Animation;
 use strandsnap::observe::column::{Column, Value};
@@ -22,7 +24,7 @@ use strandsnap::observe::planned::PlannedEnd;
 use strandsnap::observe::tables;
 use strandsnap::run::drawing::Undrawn;
 use strandsnap::run::{self, Resumable, RunOptions, RunSummary, cautions};
-use strandsnap::scene::spec::StopSpec;
+use strandsnap::scene::spec::{OutputSpec, Spec, StopSpec};
 
 /// Runs a scene and writes its results into the folder `out`; without it, into `out/NAME`.
 ///
@@ -71,18 +73,18 @@ pub fn py_run(
         live,
         ..RunOptions::tables(&out.unwrap_or_else(|| Path::new("out").join(&scene.spec.name)))
     };
-    if options.frames {
+    if options.frames || !scene.spec.output.pictures.is_empty() {
         py.import("strandsnap._mesa")?.call_method0("quiet")?;
     }
     let limit = seconds("time_limit", time_limit)?;
     let before = py.detach(|| cautions::of_run(scene, &run::assemble(scene)?)).or_raise(py)?;
     warn(py, &before)?;
     let calls = Calls::new(py, &scene.spec.name, progress, on_row)?;
-    let also = &scene.spec.output.also;
-    export::check_also(&options.out, also).or_raise(py)?;
+    let spec = &scene.spec;
+    check_more(&options.out, &spec.output).or_raise(py)?;
     let ended = watched(py, calls, limit, &scene.spec.stop, |watchers, stop| {
         let run = || run::run_watched(scene, &options, watchers.observers(), stop);
-        export_also(run::in_pool(options.threads, run)??, also, &options.out, stop)
+        make_more(run::in_pool(options.threads, run)??, spec, &options.out, stop)
     })?;
     finish(py, ended, &options.out)
 }
@@ -106,31 +108,50 @@ pub fn resume(
     if let Some(undrawn) = py.detach(|| Undrawn::find(&folder)).or_raise(py)? {
         py.import("strandsnap._mesa")?.call_method0("quiet")?;
         let calls = Calls::new(py, "pictures", None, None)?;
-        let also = undrawn.scene().spec.output.also.clone();
-        export::check_also(&folder, &also).or_raise(py)?;
+        let spec = undrawn.scene().spec.clone();
+        check_more(&folder, &spec.output).or_raise(py)?;
         let ended = watched(py, calls, limit, &StopSpec::default(), |_, stop| {
             let mut drawing = undrawn.begin()?;
             drawing.replay.show(&mut *drawing.writer, stop)?;
-            export_also(drawing.end()?, &also, &folder, stop)
+            make_more(drawing.end()?, &spec, &folder, stop)
         })?;
         return finish(py, ended, &folder);
     }
     let resumable = py.detach(|| Resumable::open(&folder, threads, device)).or_raise(py)?;
     let calls = Calls::new(py, &resumable.scene.spec.name, progress, on_row)?;
-    let (end, also) = (resumable.scene.spec.stop.clone(), resumable.scene.spec.output.also.clone());
-    export::check_also(&folder, &also).or_raise(py)?;
-    let ended = watched(py, calls, limit, &end, |watchers, stop| {
+    let spec = resumable.scene.spec.clone();
+    check_more(&folder, &spec.output).or_raise(py)?;
+    let ended = watched(py, calls, limit, &spec.stop, |watchers, stop| {
         // The notes say from which step it goes on, which the first row that is new tells.
         let run = || resumable.go_on(&|_| {}, watchers.observers(), stop);
-        export_also(run::in_pool(threads, run)??, &also, &folder, stop)
+        make_more(run::in_pool(threads, run)??, &spec, &folder, stop)
     })?;
     finish(py, ended, &folder)
 }
 
-/// Makes the files that `output.also` asks for; what `stop` leaves out is among the warnings.
-fn export_also(mut summary: RunSummary, also: &[Format], run: &Path, stop: &AtomicBool) -> Result<RunSummary> {
-    let also = export::also(run, &summary, also, stop)?;
-    summary.warnings.extend(also.left.iter().map(|command| format!("still to be made: {command}")));
+/// Checks, before the simulation, that what [`make_more`] makes after it can be made.
+fn check_more(run: &Path, output: &OutputSpec) -> Result<()> {
+    export::check_also(run, &output.also)?;
+    #[cfg(feature = "frames")]
+    pictures::check(run, output)?;
+    #[cfg(not(feature = "frames"))]
+    if !output.pictures.is_empty() {
+        return Err(run::outputs::built_without("pictures of a view", "frames", "leave out output.picture"));
+    }
+    Ok(())
+}
+
+/// Makes what `output.picture` and `output.also` ask for; what `stop` leaves out is among the warnings.
+fn make_more(mut summary: RunSummary, spec: &Spec, run: &Path, stop: &AtomicBool) -> Result<RunSummary> {
+    #[cfg(feature = "frames")]
+    let (left_out, left) = pictures::draw(run, &summary, spec, stop).map(|drawn| (drawn.left_out, drawn.left))?;
+    #[cfg(not(feature = "frames"))]
+    let (left_out, left) = (Vec::new(), Vec::new());
+    let also = export::also(run, &summary, &spec.output.also, stop)?;
+    summary.warnings.extend(left_out);
+    summary
+        .warnings
+        .extend(left.iter().chain(&also.left).map(|command: &String| format!("still to be made: {command}")));
     Ok(summary)
 }
 

@@ -1,5 +1,6 @@
 //! Outputs as they are written.
 
+use super::picture::RawPicture;
 use super::scalar::Scalar;
 use crate::scene::look::{ColourBy, Format, Theme, View};
 use schemars::JsonSchema;
@@ -43,6 +44,13 @@ pub struct RawOutput {
     /// ["parquet"].
     #[schemars(extend("x-otherwise" = "none"))]
     pub also: Option<Vec<Format>>,
+    /// How many times finer than its pixels a picture is drawn in either direction, from 1 to 4: finer outlines, for the
+    /// square of it in drawing time.
+    #[schemars(extend("x-default" = "1"))]
+    pub supersampling: Option<i64>,
+    /// `[[output.picture]]`: pictures from any side that are drawn when the run has come to its end.
+    #[serde(default)]
+    pub picture: Vec<RawPicture>,
 }
 
 /// `[output.camera]`: the viewpoint of the three-dimensional panels. The strand's axis z points right, y points up, the

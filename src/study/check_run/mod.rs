@@ -58,6 +58,7 @@ pub const INVARIANTS: &[Invariant] = &[
     page_words::WORDS,
     pictures::PICTURES,
     pictures::ANIMATION,
+    pictures::NAMED,
     // Breaks
     breaks::COUNTS,
     breaks::ROWS,

@@ -8,7 +8,7 @@ use crate::base::finding::StopReason;
 use crate::base::regular;
 use crate::observe::animation::{Animation, Format};
 use crate::observe::origin::{RUN_KEYWORD, STEP_KEYWORD};
-use crate::run::folder::{FRAMES, is_undrawn};
+use crate::run::folder::{FRAMES, PICTURES as FOLDER_OF_NAMED, is_undrawn};
 use crate::run::identity;
 use rayon::prelude::*;
 use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
@@ -29,6 +29,13 @@ pub const ANIMATION: Invariant = Invariant {
     name: "animation",
     about: "the animation that the run made is there and whole, and shows every frame",
     check: animation,
+};
+
+/// Those that were left out, because the run never came to what they were to show, are not there.
+pub const NAMED: Invariant = Invariant {
+    name: "pictures",
+    about: "pictures that the scene asks for are whole, as large as it says, and show a snapshot of this run",
+    check: named,
 };
 
 /// Where pictures of a run are drawn again.
@@ -136,6 +143,30 @@ fn pictures(run: &Folder) -> InvariantOutcome {
         }
     }
     search.end(0.0, "-", "the run drew no frames")
+}
+
+fn named(run: &Folder) -> InvariantOutcome {
+    let mut search = Search::new();
+    let id = run.trajectory.origin.run.to_string();
+    for wanted in &run.spec.output.pictures {
+        let file = run.path.join(FOLDER_OF_NAMED).join(format!("{}.png", wanted.name));
+        if !file.exists() {
+            continue;
+        }
+        let place = || format!("{FOLDER_OF_NAMED}, {}", wanted.name);
+        match picture(&file) {
+            Err(what) => search.add(f64::NAN, || format!("{}: {what}", place())),
+            Ok(seen) => {
+                search.same(seen.run.as_deref().unwrap_or("none"), &id, || format!("{}, id of its run", place()));
+                let [found, right] = [seen.size, wanted.size].map(|[w, h]| format!("{w} × {h}"));
+                search.same(found, right, || format!("{}, size in pixels", place()));
+                let step = seen.step.as_deref().unwrap_or("none");
+                let known = run.trajectory.snapshots.iter().any(|snapshot| snapshot.to_string() == step);
+                search.same(known, true, || format!("{} shows step {step}, that of a snapshot", place()));
+            }
+        }
+    }
+    search.end(0.0, "-", "the scene asks for no pictures, or none was drawn")
 }
 
 fn animation(run: &Folder) -> InvariantOutcome {
