@@ -467,6 +467,74 @@ fn a_browser_shows_runs_that_have_little_to_show() {
 }
 
 #[test]
+fn a_browser_turns_the_run_and_marks_a_wire_in_map_curve_and_table() {
+    let Some(mut browser) = browser("a_browser_turns_the_run_and_marks_a_wire_in_map_curve_and_table") else { return };
+    let run = Run::new(12);
+    shown(&mut browser, &folder_of(&run, 12), "light");
+    browser.size(1440, 900);
+    browser.wait_for("document.documentElement.dataset.solid", "yes");
+    // Particles lie where the run has them, to half a step of the box.
+    let last = run.snapshots().pop().unwrap();
+    for i in [0, 17, run.info.particles - 1] {
+        let place = browser.value(&format!("page.solid().state().place({i})"));
+        for k in 0..3 {
+            let off = place[k].as_f64().unwrap() - 1e3 * f64::from(last.position[i][k]);
+            assert!(off.abs() < 2e-3, "particle {i}, coordinate {k} is off by {off} mm");
+        }
+    }
+    // Something is drawn, something else from another side, and less without a layer.
+    let drawn = "(c => { const s = document.createElement('canvas'); [s.width, s.height] = [c.width, c.height]; \
+                 const x = s.getContext('2d'); x.drawImage(c, 0, 0); const d = x.getImageData(0, 0, s.width, s.height).data; \
+                 let n = 0; for (let i = 4; i < d.length; i += 4) n += d[i] !== d[0] || d[i + 1] !== d[1]; return n; })\
+                 (document.querySelector('#solid'))";
+    let frame = "new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => f(1))))";
+    let count = |browser: &mut Browser| {
+        browser.value(frame);
+        browser.value(drawn).as_f64().unwrap()
+    };
+    let whole = count(&mut browser);
+    assert!(whole > 1000.0, "{whole} pixels are drawn");
+    browser.value("document.querySelector('.solid [data-view=break]').click()");
+    let near = count(&mut browser);
+    assert!(near > 2.0 * whole, "{near} pixels close to the breaks, {whole} of the whole");
+    browser.value("document.querySelector('.solid [data-layer=\"2\"]').click()");
+    assert!(count(&mut browser) < near);
+    browser.screenshot(&kept("page-shape.png"));
+    browser.value("document.querySelector('.solid [data-layer=\"2\"]').click()");
+    // A click in the middle of the whole strand takes the wire that lies there, everywhere.
+    browser.value("document.querySelector('.solid [data-view=home]').click()");
+    count(&mut browser);
+    let click = "(c => { const b = c.getBoundingClientRect(), at = { clientX: b.left + b.width / 2, clientY: b.top + b.height / 2, \
+                 pointerId: 1, bubbles: true }; c.setPointerCapture = () => {}; \
+                 c.dispatchEvent(new PointerEvent('pointerdown', at)); c.dispatchEvent(new PointerEvent('pointerup', at)); \
+                 return page.solid().state().chosen; })(document.querySelector('#solid'))";
+    assert!(browser.value(click).as_i64().unwrap() >= 0, "a wire lies in the middle");
+    // One that broke.
+    browser.value("page.choose(23)");
+    browser.wait_for("String(document.querySelectorAll('tr.chosen').length)", "1");
+    assert_eq!(browser.value("document.querySelector('tr.chosen td:nth-child(2)').textContent"), "24");
+    let shapes = |id: &str| format!("document.querySelector('#{id}').layout.shapes.length");
+    let (map, curve) = (browser.value(&shapes("map")), browser.value(&shapes("curve-whole")));
+    assert!(map.as_u64() > Some(0) && curve == 1, "{map} in the map, {curve} in the curve");
+    let told = browser.value("document.querySelector('#solid-told').textContent");
+    assert!(told.as_str().unwrap().starts_with("wire 24, outer layer: broken: break 1"), "{told}");
+    // Slider, frame, shape and map are in sight together.
+    browser.value("document.querySelector('#states .controls').scrollIntoView()");
+    let bottom = "Math.max(...['#frame', '#solid', '#map'].map(id => document.querySelector(id).getBoundingClientRect().bottom))";
+    let below = browser.value(bottom).as_f64().unwrap();
+    assert!(below <= 900.0, "the lowest ends at {below} of 900 pixels");
+    browser.screenshot(&kept("page-shape-whole.png"));
+    // The words for those who do not see it follow the slider.
+    browser.value("document.querySelector('.jump').click()");
+    let told = browser.value("document.querySelector('#state').textContent");
+    for (element, words) in [("#frame", "alt"), ("#solid", "aria-label")] {
+        let said = browser.value(&format!("document.querySelector('{element}').getAttribute('{words}')"));
+        assert!(said.as_str().unwrap().ends_with(told.as_str().unwrap()), "{said} at {told}");
+    }
+    assert_eq!(browser.value("document.documentElement.dataset.troubles ?? null"), serde_json::Value::Null);
+}
+
+#[test]
 fn a_browser_finds_no_barrier_in_the_page() {
     const NAME: &str = "a_browser_finds_no_barrier_in_the_page";
     if std::env::var_os("AXE_FOR_TESTS").is_none() {

@@ -58,9 +58,27 @@
     return figure;
   }
 
+  // The chosen wire, from 0, or -1: its row of the map, its line and its breaks in the curves.
+  let chosen = -1;
+  function marked(id, figure) {
+    const broke = marks ? marks.wire.flatMap((wire, k) => (wire === chosen ? [k] : [])) : [];
+    const line = { type: "line", layer: "above", line: { color: colour("signal"), width: 2 } };
+    const shapes = figure.layout.shapes ?? [];
+    if (id === "map" && marks) {
+      const y = marks.row[chosen];
+      shapes.push({ ...line, type: "rect", xref: "paper", x0: 0, x1: 1, y0: y - 0.5, y1: y + 0.5 });
+    } else if (/^(curve|wires)-/.test(id)) {
+      for (const k of broke) shapes.push({ ...line, yref: "paper", x0: marks.at[k], x1: marks.at[k], y0: 0, y1: 1 });
+    }
+    if (/^wires-/.test(id)) figure.data[chosen] = { ...figure.data[chosen], opacity: 1, line: { color: colour("signal"), width: 3 } };
+    figure.layout.shapes = shapes;
+    return figure;
+  }
+
   function draw({ id, text }) {
     let figure = JSON.parse(text, themed);
     if (id === "map") figure = atState(figure);
+    if (chosen >= 0) figure = marked(id, figure);
     if (printing) figure.layout.width = PRINTED;
     return Plotly.react(byId(id), figure.data, figure.layout, config);
   }
@@ -77,6 +95,7 @@
     byId("theme").textContent = isDark() ? "Light" : "Dark";
     byId("theme").setAttribute("aria-pressed", String(isDark()));
     byId("theme").setAttribute("aria-label", isDark() ? "Change to light" : "Change to dark");
+    solid?.soon();
     return drawAll();
   }
   byId("theme").addEventListener("click", () => {
@@ -87,6 +106,45 @@
   // Paper is light and narrow; charts do not follow it by themselves.
   addEventListener("beforeprint", () => { printing = true; root.dataset.print = "yes"; drawAll(); });
   addEventListener("afterprint", () => { printing = false; delete root.dataset.print; drawAll(); });
+
+  // The shape that can be turned.
+  let solid = null;
+  function choose(wire) {
+    chosen = wire;
+    solid?.choose(wire);
+    for (const row of document.querySelectorAll("tr[data-wire]")) row.classList.toggle("chosen", Number(row.dataset.wire) === wire);
+    tellChosen();
+    return drawAll();
+  }
+  function tellChosen(pointed = "") {
+    const place = byId("solid-told");
+    if (!place) return;
+    const orders = marks ? marks.order.slice(0, states[current].broken).filter((_, k) => marks.wire[k] === chosen) : [];
+    const fate = orders.length ? `broken: ${orders.length > 1 ? "breaks" : "break"} ${orders.join(", ")}` : "whole here";
+    place.textContent = pointed || (chosen < 0 ? place.dataset.help : `${solid.name(chosen)}: ${fate}. Click it again to let it go.`);
+  }
+  function makeSolid() {
+    const canvas = byId("solid"), facts = document.querySelector("script.solid");
+    if (!canvas || !facts) return;
+    byId("solid-told").dataset.help = byId("solid-told").textContent;
+    const hooks = { colour, told: tellChosen, picked: (wire) => { choose(wire).catch(tell); } };
+    solid = solidPicture(canvas, JSON.parse(facts.textContent), hooks);
+    if (!solid) {
+      canvas.closest(".solid").textContent = "This browser has no WebGL 2, so the run cannot be turned here; strandsnap explore draws it itself.";
+      return;
+    }
+    for (const button of document.querySelectorAll(".solid [data-view]")) {
+      button.addEventListener("click", () => solid.look(button.dataset.view));
+    }
+    for (const button of document.querySelectorAll(".solid [data-layer]")) {
+      button.addEventListener("click", () => {
+        const on = button.getAttribute("aria-pressed") !== "true";
+        button.setAttribute("aria-pressed", String(on));
+        solid.hide(Number(button.dataset.layer), !on);
+      });
+    }
+    solid.ready.then(() => { root.dataset.solid = "yes"; }).catch(tell);
+  }
 
   // Slider, buttons and arrow keys.
   const slider = byId("slider");
@@ -101,6 +159,12 @@
       // A state without a frame shows none, not that of another one.
       byId("frame").style.visibility = state.picture ? "visible" : "hidden";
       if (state.picture) byId("frame").src = state.picture;
+      byId("frame").alt = `Frame of the run at ${state.told}`;
+    }
+    if (solid) {
+      solid.show(current);
+      byId("solid").setAttribute("aria-label", `The run in three dimensions at ${state.told}`);
+      tellChosen();
     }
     if (map) await draw(map);
     root.dataset.state = current;
@@ -134,5 +198,8 @@
     });
   }
 
+  makeSolid();
+  // For tests.
+  globalThis.page = { choose, solid: () => solid };
   showTheme().catch(tell).finally(() => { root.dataset.ready = "yes"; });
 })();

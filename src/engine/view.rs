@@ -237,6 +237,15 @@ pub struct Snapshot {
     pub roll: Vec<f32>,
 }
 
+impl Snapshot {
+    /// Mean true axial stress of the bonds that hold (Pa); 0 where none does.
+    pub fn mean_stress(&self) -> f32 {
+        let bonds = self.bond_stress.iter().zip(&self.bond_state).filter(|(_, state)| state.holds());
+        let (sum, count) = bonds.fold((0.0, 0usize), |(sum, count), (stress, _)| (sum + f64::from(*stress), count + 1));
+        if count == 0 { 0.0 } else { (sum / count as f64) as f32 }
+    }
+}
+
 /// What an engine has seen of its own limits over a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Findings {

@@ -15,13 +15,13 @@ use maud::{Markup, html};
 /// Wires in the row of chips at most.
 const MOST_CHIPS: usize = 120;
 
-/// Warnings, the first rupture, strength and elongation, and how failure ran through the layers.
+/// The first rupture, strength and elongation, warnings, and how failure ran through the layers.
 pub fn section(source: &Source) -> Result<Section> {
     let body = html! {
-        (warnings(source))
         p.headline { (headline(source)) }
         @if let Some(draw) = source.summary.one_draw.filter(|_| !source.ruptures.is_empty()) { p.remark { (draw.sentence()) } }
         (facts(source))
+        (warnings(source))
         @if !source.cut_short() { p { "The run ended because: " (source.summary.stopped_because) "." } }
         @if !source.ruptures.is_empty() { (sequence(source)) (layers(source)) }
     };

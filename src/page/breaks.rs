@@ -51,7 +51,7 @@ fn table(source: &Source) -> Markup {
 
 fn row(source: &Source, r: &Rupture, pulled: bool) -> Markup {
     html! {
-        tr {
+        tr data-wire=(r.wire) {
             td.number { (r.order) } td.number { (wire_number(r.wire)) } td { (chip(r.layer, &layer_label(&source.info, r.layer))) }
             td.number { (format!("{:.2}", mm(r.rest_z))) } td.number { (format!("{:.2}", mm(r.position[2]))) }
             @if let Some(mid) = source.mid_length() { td.number { (label(mm(r.rest_z) - mid, 2)) } }

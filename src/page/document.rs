@@ -6,6 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("../../assets/page/page.css");
 const SCRIPT: &str = include_str!("../../assets/page/page.js");
+const SOLID: &str = include_str!("../../assets/page/solid.js");
 /// Charts; MIT licence, see `assets/page/plotly-LICENSE.txt`.
 const PLOTLY: &str = include_str!("../../assets/page/plotly-cartesian.min.js");
 
@@ -17,9 +18,12 @@ pub fn document(source: &Source, sections: &[Section]) -> Markup {
     let button = html! { button type="button" id="theme" aria-pressed="false" { "Dark" } };
     let trouble =
         html! { p.broken id="trouble" role="alert" hidden { "A part of this page could not be drawn: " span {} } };
-    let scripts = html! { script { (PreEscaped(PLOTLY)) } script { (PreEscaped(SCRIPT)) } };
+    let scripts =
+        html! { script { (PreEscaped(PLOTLY)) } script { (PreEscaped(SOLID)) } script { (PreEscaped(SCRIPT)) } };
     let charts = "Charts by plotly.js (MIT licence), which is part of this file; the page loads nothing from anywhere.";
-    html! { (DOCTYPE) html lang="en" {
+    // The page begins in the light of its frames, which are drawn once.
+    let theme = source.spec.as_ref().filter(|_| source.pictures_shown() > 0).map(|spec| spec.output.theme.word());
+    html! { (DOCTYPE) html lang="en" data-theme=[theme] {
         (head(&source.info.name))
         body {
             (header(&source.info.name, &source.info.about, sections, &button, &trouble))

@@ -17,6 +17,7 @@ mod quasi_static;
 mod scene;
 mod section;
 mod select;
+mod solid;
 mod source;
 mod states;
 mod study;

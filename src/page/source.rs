@@ -2,6 +2,7 @@
 
 use super::picture::Pictures;
 use super::select;
+use super::solid;
 use super::study::Study;
 use crate::base::error::{Error, Result};
 use crate::base::finding::StopReason;
@@ -56,6 +57,10 @@ pub struct State {
     pub sample: Sample,
     /// True axial stress of each bond slot (Pa); NaN where no bond holds.
     pub stress: Vec<f32>,
+    /// Centres (m), and radii (m); empty where all of them are too much for a page.
+    pub position: Vec<[f32; 3]>,
+    /// See `position`.
+    pub radius: Vec<f32>,
     /// What is special about it.
     pub label: Option<&'static str>,
     /// Its frame.
@@ -231,7 +236,13 @@ fn second_pass(trajectory: Trajectory, chosen: &[select::SelectedSnapshot], pict
     for (number, snapshot) in snapshots.enumerate() {
         if let Some(one) = wanted.next_if(|one| one.number == number) {
             let picture = pictures.of(number);
-            states.push(State { stress: held(&snapshot), sample: snapshot.sample, label: one.label, picture });
+            let stress = held(&snapshot);
+            let (position, radius) = if solid::fits(stress.len(), chosen.len()) {
+                (snapshot.position, snapshot.radius)
+            } else {
+                Default::default()
+            };
+            states.push(State { stress, position, radius, sample: snapshot.sample, label: one.label, picture });
         }
     }
     Ok(states)

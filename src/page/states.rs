@@ -4,6 +4,7 @@ use super::abscissa::Abscissa;
 use super::figure::data;
 use super::picture::{self, Embedded};
 use super::section::Section;
+use super::solid;
 use super::source::Source;
 use super::source::State;
 use super::unrolled::Map;
@@ -23,8 +24,10 @@ pub fn section(source: &Source) -> Result<Section> {
         Some(last) if map.is_some() || pictures.iter().any(Option::is_some) => html! {
             p.key { (counts(source)) }
             (controls(source, last))
-            (frame(source, &pictures))
-            @if let Some(map) = &map { (map.figure().markup()) } @else { p { "There is no map: this scene has no wires." } }
+            div.sight {
+                div { (frame(source, &pictures)) (solid::picture(source)?) }
+                div { @if let Some(map) = &map { (map.figure().markup()) } @else { p { "There is no map: this scene has no wires." } } }
+            }
             (data(&states(source, &pictures, map.as_ref()), "states", "states"))
         },
         _ => {
@@ -78,7 +81,7 @@ fn frame(source: &Source, pictures: &[Option<Embedded>]) -> Markup {
     match pictures.iter().rev().flatten().next() {
         Some(shown) => html! {
             img.frame id="frame" src=(shown.address) width=(shown.size[0]) height=(shown.size[1])
-                alt="Frame of the run at the chosen snapshot";
+                alt="Frame of the run at the last snapshot";
         },
         None if source.pictures.found > 0 => {
             html! { p { "The run's frames do not belong to its snapshots. " (how_to_draw()) } }

@@ -1,5 +1,6 @@
 //! The unrolled map: a row per wire, layers apart, axial position before loading, coloured by true axial stress.
 
+use super::abscissa::Abscissa;
 use super::curve::told;
 use super::figure::{Figure, axis, layout, literal, merged, numbers, table};
 use super::source::Source;
@@ -55,14 +56,18 @@ impl<'a> Map<'a> {
         self.rows.iter().map(of).collect()
     }
 
-    /// Places and words of the breaks, in order.
+    /// Places, moments and words of the breaks, in order, and the row of each wire.
     pub fn marks(&self) -> Value {
+        let abscissa = Abscissa::of(self.source);
         let ruptures = &self.source.ruptures;
         json!({
             "x": ruptures.iter().map(|r| place(&self.source.info, r)).collect::<Vec<_>>(),
             "y": ruptures.iter().map(|r| height(&self.map, r.wire)).collect::<Vec<_>>(),
             "order": ruptures.iter().map(|r| r.order).collect::<Vec<_>>(),
             "text": ruptures.iter().map(|r| told(self.source, r)).collect::<Vec<_>>(),
+            "wire": ruptures.iter().map(|r| r.wire).collect::<Vec<_>>(),
+            "at": ruptures.iter().map(|r| abscissa.at(r)).collect::<Vec<_>>(),
+            "row": (0..self.source.info.wires.len()).map(|wire| height(&self.map, wire)).collect::<Vec<_>>(),
         })
     }
 

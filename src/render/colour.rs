@@ -36,6 +36,14 @@ fn table(map: colorous::Gradient) -> Table {
     })
 }
 
+/// For what lies on either side of a mean: both ends are dark enough to be seen on white, and none is near the colour of ruptures.
+static DIVERGING: LazyLock<Table> = LazyLock::new(|| {
+    std::array::from_fn(|k| {
+        let c = colorous::PURPLE_ORANGE.eval_continuous(0.9 - 0.8 * k as f64 / (STEPS - 1) as f64);
+        [c.r, c.g, c.b]
+    })
+});
+
 /// Linear light of every sRGB byte.
 static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
     std::array::from_fn(|byte| {
@@ -57,6 +65,7 @@ impl ColourScale {
     pub fn new(info: &RunInfo, by: ColourBy) -> Self {
         let map = match by {
             ColourBy::Stress | ColourBy::Utilisation => &*VIRIDIS,
+            ColourBy::Deviation => &*DIVERGING,
             _ => &*CIVIDIS,
         };
         let range = range(info, by);
@@ -77,6 +86,7 @@ impl ColourScale {
     pub fn title(&self) -> &'static str {
         match self.by {
             ColourBy::Stress => "true axial stress (MPa)",
+            ColourBy::Deviation => "true axial stress less its mean (MPa)",
             ColourBy::PlasticStrain => "equivalent plastic strain (%)",
             ColourBy::Utilisation => "utilisation to rupture (%)",
             ColourBy::ContactPressure => "contact pressure (MPa)",
@@ -98,6 +108,7 @@ impl ColourScale {
         match self.by {
             ColourBy::Stress => [self.range[0] >= 0.0, false],
             ColourBy::ContactPressure | ColourBy::Velocity => [false, true],
+            ColourBy::Deviation => [true, true],
             ColourBy::PlasticStrain | ColourBy::Utilisation => [false, false],
             ColourBy::Layer | ColourBy::Wire | ColourBy::Material => [false, false],
         }
@@ -124,11 +135,16 @@ impl ColourScale {
     /// One colour per particle.
     pub fn particles(&self, info: &RunInfo, snapshot: &Snapshot) -> Vec<Rgb> {
         let mut colours = vec![[150, 156, 166]; snapshot.position.len()];
+        let mean = if self.by == ColourBy::Deviation { snapshot.mean_stress() } else { 0.0 };
         for (number, wire) in info.wires.iter().enumerate() {
             for (k, colour) in colours[wire.particles()].iter_mut().enumerate() {
                 let i = wire.first + k;
                 *colour = match self.by {
                     ColourBy::Stress => self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i)),
+                    ColourBy::Deviation => match held(snapshot, wire.first, i) {
+                        true => self.of_value(beside(snapshot, &snapshot.bond_stress, wire.first, i) - mean),
+                        false => *colour,
+                    },
                     ColourBy::PlasticStrain => self.of_value(beside(snapshot, &snapshot.plastic_strain, wire.first, i)),
                     ColourBy::Utilisation => self.of_value(beside(snapshot, &snapshot.utilisation, wire.first, i)),
                     ColourBy::ContactPressure => self.of_value(snapshot.contact_pressure[i]),
@@ -147,7 +163,7 @@ impl ColourScale {
                 ColourBy::Material => *colour = Self::category(info.sphere_material[k]),
                 ColourBy::Wire | ColourBy::Layer => *colour = Self::category(info.wires.len() + k),
                 // Spheres carry no axial stress: told apart when there is nothing else, grey beside wires.
-                ColourBy::Stress | ColourBy::PlasticStrain | ColourBy::Utilisation => {
+                ColourBy::Stress | ColourBy::Deviation | ColourBy::PlasticStrain | ColourBy::Utilisation => {
                     if info.wires.is_empty() {
                         *colour = Self::category(k);
                     }
@@ -156,6 +172,11 @@ impl ColourScale {
         }
         colours
     }
+}
+
+/// Whether a bond holds particle `i` of a wire starting at `first`.
+fn held(snapshot: &Snapshot, first: usize, i: usize) -> bool {
+    snapshot.bond_state[i].holds() || (i > first && snapshot.bond_state[i - 1].holds())
 }
 
 /// Mean over the bonds that hold particle `i` of a wire starting at `first`; 0 when none does.

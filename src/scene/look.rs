@@ -96,6 +96,7 @@ words! {
     /// Quantity that colours the wires.
     ColourBy {
         Stress = "stress", "True axial stress";
+        Deviation = "stress-deviation", "True axial stress less its mean over all bonds that hold";
         PlasticStrain = "plastic-strain", "Equivalent plastic strain";
         Utilisation = "utilisation", "Share of the rupture limit";
         ContactPressure = "contact-pressure", "Contact pressure";

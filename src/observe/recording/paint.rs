@@ -3,8 +3,9 @@
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use crate::observe::colouring::{range, shown};
 use crate::scene::spec::ColourBy;
-use colorous::{CIVIDIS, Gradient, PLASMA, TABLEAU10, VIRIDIS};
+use colorous::{CIVIDIS, Gradient, PLASMA, PURPLE_ORANGE, TABLEAU10, VIRIDIS};
 use rerun::{Color, Points2D, Radius};
+use std::collections::HashMap;
 
 /// Particles at a broken bond (0xRRGGBBAA): none of the maps comes near this red.
 pub(super) const BROKEN: u32 = 0xFF2A4DFF;
@@ -30,6 +31,8 @@ pub(super) struct Palette {
     table: Vec<u32>,
     /// The bond that broke first.
     first: Option<usize>,
+    /// Mean stress of the snapshots to come, by step (Pa), where colours are told from it.
+    means: HashMap<u64, f32>,
 }
 
 /// A colour bar: colours (0xRRGGBBAA) from low to high, and what stands at its ends.
@@ -42,11 +45,25 @@ impl Palette {
     /// The palette of a run.
     pub fn new(by: ColourBy, info: &RunInfo) -> Self {
         let gradient = match by {
+            ColourBy::Deviation => {
+                // From low to high as frames have it.
+                let either_side =
+                    (0..256).map(|i| rgba(PURPLE_ORANGE.eval_continuous(0.9 - 0.8 * f64::from(i) / 255.0)));
+                let (table, means) = (either_side.collect(), HashMap::new());
+                return Self { by, range: range(info, by), table, first: None, means };
+            }
             ColourBy::PlasticStrain => PLASMA,
             ColourBy::ContactPressure | ColourBy::Velocity => CIVIDIS,
             _ => VIRIDIS,
         };
-        Self { by, range: range(info, by), table: table(gradient), first: None }
+        Self { by, range: range(info, by), table: table(gradient), first: None, means: HashMap::new() }
+    }
+
+    /// Takes note of a snapshot that is to be coloured.
+    pub fn expect(&mut self, snapshot: &Snapshot) {
+        if self.by == ColourBy::Deviation {
+            self.means.insert(snapshot.sample.step, snapshot.mean_stress());
+        }
     }
 
     /// Gives the ends of the bond that broke first a colour of their own.
@@ -68,6 +85,10 @@ impl Palette {
         }
         match self.by {
             ColourBy::Stress => self.value(snapshot.bond_stress[slot]),
+            ColourBy::Deviation => {
+                let mean = self.means.get(&snapshot.sample.step).copied().unwrap_or_default();
+                self.value(snapshot.bond_stress[slot] - mean)
+            }
             ColourBy::PlasticStrain => self.value(snapshot.plastic_strain[slot]),
             ColourBy::Utilisation => self.value(snapshot.utilisation[slot]),
             ColourBy::ContactPressure => self.value(snapshot.contact_pressure[wire.first + k]),
@@ -92,6 +113,7 @@ impl Palette {
         let [low, high] = self.range?.map(|value| shown(self.by, value));
         let ends = match self.by {
             ColourBy::Stress => [format!("true axial stress: {low:.0} MPa"), format!("{high:.0} MPa")],
+            ColourBy::Deviation => [format!("true axial stress less its mean: {low:.0} MPa"), format!("{high:.0} MPa")],
             ColourBy::PlasticStrain => [format!("plastic strain: {low:.0} %"), format!("{high:.0} %")],
             ColourBy::Utilisation => ["utilisation to rupture: 0 %".to_owned(), "100 %".to_owned()],
             ColourBy::ContactPressure => [format!("contact pressure: {low:.0} MPa"), format!("{high:.0} MPa")],

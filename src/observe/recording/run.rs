@@ -93,6 +93,7 @@ impl Run {
     pub fn snapshot(&mut self, snapshot: &Arc<Snapshot>) -> Result<()> {
         self.states.snapshot(&self.info, snapshot, curve::instant(&snapshot.sample));
         self.sections.snapshot(snapshot);
+        self.palette.expect(snapshot);
         if let Some(first) = &mut self.first {
             first.snapshot(snapshot);
         }
