@@ -4,6 +4,7 @@ pub mod animation;
 pub mod colouring;
 pub mod column;
 pub mod files;
+pub mod fracture;
 pub mod guard;
 pub mod limits;
 pub mod materials;

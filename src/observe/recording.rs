@@ -5,21 +5,25 @@
 //! | entity | contents |
 //! | --- | --- |
 //! | `/headline` | what happened: the first break, the result, notices |
-//! | `/strand/<layer>/wire_<NN>` | particles: positions (mm), mean radius (mm), colours; fields `Bond`: true axial stress (MPa), equivalent plastic strain (-), utilisation to rupture (-), contact pressure (MPa), state |
-//! | `/strand/<layer>/wire_<NN>/tube` | the same wire as a smooth tube, apart where it broke, with coloured tips; fields as above |
+//! | `/strand/<layer>/wire_<NN>` | particles: positions (mm), radii (mm), colours; fields `Bond`: true axial stress (MPa), equivalent plastic strain (-), utilisation to rupture (-), contact pressure (MPa), state; `Tube`: turn and length (mm) of the capsule at each particle; `Map`: places on the unrolled map |
 //! | `/strand/<layer>/wire_<NN>/ruptures` | labelled points at the places of rupture (mm), from their time on |
-//! | `/first_break`, `/focus` | mark and label of the first break; what the eye of the close view follows |
-//! | `/spheres`, `/grips` | free spheres; boxes around what the grips hold (mm) |
-//! | `/map/<layer>`, `/map/<layer>/wire_<NN>/ruptures` | unrolled map: a row per wire, coloured like the particles; ruptures and their order |
+//! | `/first_break`, `/focus` | mark and label of the first break; what the eye of the close view follows: the main fracture |
+//! | `/spheres`, `/grips` | free spheres; cylinders around what the grips hold (mm) |
+//! | `/map/<layer>/wire_<NN>/ruptures` | ruptures on the unrolled map, and their order |
 //! | `/chart` | nominal stress over strain, drawn with axes in % and MPa |
 //! | `/states/<layer>/wire_<NN>` | lane of the wire's state: whole, yielding, broken |
+//! | `/strain` | strain of the body (%) |
 //! | `/stress/body`, `/stress/layers`, `/stress/wires/<layer>` | nominal stress (MPa); over `microstrain` the first is the stress–strain curve |
 //! | `/broken`, `/energy` | wires and bonds broken; energy ledger (J) |
 //! | `/ruptures` | log, a line per rupture, and notices as warnings |
 //! | `/about`, properties | what the run is |
 //!
-//! A viewer plays a run in twenty seconds, over strain, or over time where nothing is pulled; the stretch around the
-//! ruptures is selected, so that its button for loops repeats it.
+//! Nothing is recorded twice: a wire as particles, as a tube and as a row of the map is one entity, and the layout tells each
+//! view by which of the viewer's visualizers to draw it, and from which components. States, radii, turns and lengths are
+//! recorded where they change: what was recorded last holds until then.
+//!
+//! A viewer opens on the stretch around the ruptures and plays it again and again; a run in which nothing broke plays in
+//! twenty seconds, over strain, or over time where nothing is pulled.
 //!
 //! Everything is on three timelines: `step`, `sim_time` and `microstrain` (whole µm/m: 10,000 is 1 %). Snapshots go
 //! out in batches of fixed size, everything as columns without clock times, so that the same run gives the same
@@ -31,6 +35,7 @@ mod first_break;
 mod grips;
 mod headline;
 mod layout;
+mod look;
 mod map;
 mod marks;
 pub mod names;

@@ -5,17 +5,13 @@ use super::body::Body;
 use super::camera::Camera;
 use crate::base::units::mm;
 use crate::engine::view::{RunInfo, Rupture};
+use crate::observe::fracture::{Fracture, LENGTH, MAIN, densest};
 use crate::scene::spec::CameraSpec;
 use glam::Vec3;
-use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// Length before loading that one fracture takes up at most, over the body's radius (-): what a close-up shows.
-const LENGTH: f32 = 4.0;
 /// How many times more wires must have broken elsewhere, or on the other side, before the eye goes there (-).
 const LEAD: f64 = 1.25;
-/// Wires that make a fracture more than the first break.
-const MAIN: usize = 3;
 /// Shift of a fracture's middle, over the body's radius, that the eye does not follow (-).
 const STILL: f32 = 0.5;
 /// Frames that a move takes.
@@ -167,15 +163,6 @@ struct Sight<'a> {
     breaks: Vec<Break>,
 }
 
-/// Breaks near one another.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Fracture {
-    /// Wires that broke there.
-    wires: usize,
-    /// Middle of the breaks, z before loading (m).
-    z: f32,
-}
-
 impl Sight<'_> {
     /// Where to look, from where the eye looks or goes to now.
     fn wanted(&self, now: Option<Place>) -> Place {
@@ -186,9 +173,9 @@ impl Sight<'_> {
         let Some(first) = self.breaks.first() else { return middle(self.info, self.body) };
         let on_breaks = |p: &Place| matches!(p.subject, Subject::FirstBreak | Subject::MainFracture);
         let held = now.filter(on_breaks).map_or(first.z, |place| place.z);
-        let mut fracture = self.densest();
-        let apart = (fracture.z - held).abs();
         let length = LENGTH * self.body.radius;
+        let mut fracture = densest(self.breaks.iter().map(|b| (b.z, b.wire)), length);
+        let apart = (fracture.z - held).abs();
         let here = self.wires_within(held - 0.5 * length, held + 0.5 * length);
         if apart > length && fracture.wires as f64 <= LEAD * here as f64 {
             fracture = Fracture { wires: here, z: held };
@@ -200,35 +187,6 @@ impl Sight<'_> {
             return Place { subject: Subject::FirstBreak, z: first.z, turn: side(first.z) };
         }
         Place { subject: Subject::MainFracture, z: fracture.z, turn: side(fracture.z) }
-    }
-
-    /// The length within which most wires broke; of several, the one with the lowest z.
-    fn densest(&self) -> Fracture {
-        let mut sorted = self.breaks.clone();
-        sorted.sort_by(|a, b| a.z.total_cmp(&b.z));
-        let length = LENGTH * self.body.radius;
-        let mut best = Fracture { wires: 0, z: 0.0 };
-        // How often each wire broke between `low` and `high`.
-        let mut count: HashMap<usize, usize> = HashMap::new();
-        let mut low = 0;
-        for high in &sorted {
-            *count.entry(high.wire).or_default() += 1;
-            while high.z - sorted[low].z > length {
-                let wire = sorted[low].wire;
-                let left = count.get_mut(&wire).map_or(0, |n| {
-                    *n -= 1;
-                    *n
-                });
-                if left == 0 {
-                    count.remove(&wire);
-                }
-                low += 1;
-            }
-            if count.len() > best.wires {
-                best = Fracture { wires: count.len(), z: 0.5 * (sorted[low].z + high.z) };
-            }
-        }
-        best
     }
 
     fn wires_within(&self, low: f32, high: f32) -> usize {

@@ -4,7 +4,7 @@ use super::names;
 use super::paint::distinct;
 use super::stream::{Instant, Stream};
 use crate::base::error::Result;
-use crate::base::units::mpa;
+use crate::base::units::{mpa, percent};
 use crate::engine::view::{RunInfo, Sample};
 use crate::observe::materials::Group;
 use crate::observe::wording::wire_number;
@@ -29,6 +29,9 @@ const ENERGY_NAMES: [&str; 10] = [
 pub(super) fn send_names(stream: &Stream, info: &RunInfo) -> Result<()> {
     let body = SeriesLines::new().with_names(["nominal stress [MPa]"]).with_colors([Color::from_rgb(255, 255, 255)]);
     stream.fixed(names::BODY_STRESS, &body.with_widths([2.5]))?;
+    if info.gauge.is_some() {
+        stream.fixed(names::BODY_STRAIN, &SeriesLines::new().with_names(["strain [%]"]))?;
+    }
     let layers = SeriesLines::new()
         .with_names(info.layers.iter().map(|name| format!("{name} layer [MPa]")))
         .with_colors((0..info.layers.len()).map(|i| Color::from_u32(distinct(i))))
@@ -61,6 +64,9 @@ pub(super) fn send(stream: &Stream, info: &RunInfo, samples: &[Sample]) -> Resul
         let array = Arc::new(Float64Array::from(rows.concat()));
         stream.rows(path, &instants, [(SerializedComponentBatch::new(array, Scalars::descriptor_scalars()), lengths)])
     };
+    if info.gauge.is_some() {
+        series(names::BODY_STRAIN.into(), &|s| vec![percent(s.strain)])?;
+    }
     series(names::BODY_STRESS.into(), &|s| vec![mpa(s.stress)])?;
     series(names::LAYER_STRESS.into(), &|s| s.layer_stress.iter().copied().map(mpa).collect())?;
     for layer in 0..info.layers.len() {

@@ -4,7 +4,6 @@ use super::sections::thickness;
 use super::stream::{Instant, Stream, in_mm, strips, vectors};
 use super::{curve, names, paint};
 use crate::base::error::Result;
-use crate::base::units::mm;
 use crate::engine::view::{RunInfo, Rupture, Snapshot};
 use crate::observe::unrolled::ends;
 use rerun::{Color, LineStrips3D, Points3D, Radius};
@@ -14,7 +13,7 @@ const NEAR: f32 = 0.7;
 /// Share of the way to the label after which its leader ends (-): the viewer writes a text below its point.
 const LEADER: f32 = 0.65;
 /// The same in the view of the whole strand, in its lengths (-).
-const FAR: f32 = 0.06;
+const FAR: f32 = 0.075;
 
 /// How the close view looks at the body: from `eye` (a unit vector across z) with `up` upwards and z to the right.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +41,7 @@ impl ViewDirection {
 
 /// The first break of a run.
 pub(super) struct FirstBreak {
-    pub rupture: Rupture,
+    rupture: Rupture,
     /// Middle between the two ends (mm), from the rupture on.
     places: Vec<(Instant, [f32; 3])>,
 }
@@ -58,16 +57,6 @@ impl FirstBreak {
         let [a, b] = [self.rupture.bond, self.rupture.bond + 1].map(|i| in_mm(snapshot.position[i]));
         let middle = std::array::from_fn(|axis| 0.5 * (a[axis] + b[axis]));
         self.places.push((curve::instant(&snapshot.sample), middle));
-    }
-
-    /// z of the place before loading (mm).
-    pub fn rest_z(&self) -> f32 {
-        mm(self.rupture.rest_z) as f32
-    }
-
-    /// Where it was last (mm).
-    pub fn last(&self) -> [f32; 3] {
-        self.places[self.places.len() - 1].1
     }
 
     /// Places known so far.

@@ -60,6 +60,7 @@ impl Headline {
     fn text(&self, info: &RunInfo, summary: Option<&RunSummary>) -> String {
         let mut text = match self.ruptures.first() {
             Some(first) => first_break(info, first, self.one_draw.is_some()),
+            None if info.wires.is_empty() => format!("# {}\n{}\n", info.name, info.about),
             None if summary.is_some() => "# No wire broke\n".to_owned(),
             None => "# No wire has broken yet\n".to_owned(),
         };

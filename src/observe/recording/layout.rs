@@ -5,16 +5,19 @@
 
 use super::chart::Chart;
 use super::first_break::ViewDirection;
-use super::map::Map;
+use super::look::Look;
+use super::map::{self, Map};
 use super::sections::thickness;
-use super::{names, stream};
+use super::stream::in_mm;
+use super::{names, stream, tubes};
 use crate::base::error::Result;
 use crate::engine::view::RunInfo;
 use crate::observe::unrolled::ends;
 use crate::observe::wording::layer_words;
+use rerun::blueprint::VisualizerComponentMapping;
 use rerun::blueprint::components::{
-    AbsoluteTimeRange, BackgroundKind, ContainerKind, Corner2D, Eye3DKind, Fps, IncludedContent, PanelState, PlayState,
-    PlaybackSpeed, RootContainer, VisualBounds2D,
+    self, AbsoluteTimeRange, BackgroundKind, ContainerKind, Corner2D, Eye3DKind, Fps, IncludedContent, LoopMode,
+    PanelState, PlayState, PlaybackSpeed, RootContainer, VisualBounds2D, VisualizerInstructionId,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
 use rerun::datatypes::{self, Range2D, TimeRange, TimeRangeBoundary, VisibleTimeRange};
@@ -22,7 +25,7 @@ use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes as blueprint;
 use rerun::external::uuid::Uuid;
 use rerun::log::LogMsg;
-use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
+use rerun::{EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Background of maps and charts: dark, so that bright stresses stand out.
@@ -31,8 +34,15 @@ const BACKGROUND: [u8; 3] = [17, 20, 26];
 const SPACE: [u8; 3] = [62, 68, 78];
 /// Width over height that the view of the whole strand has in a window of usual shape (-).
 const ASPECT: f32 = 6.5;
-/// How long the viewer takes to play a run (s).
+/// The same of the view of free spheres, which has the room of all others (-).
+const SPHERES_ASPECT: f32 = 1.2;
+/// Share of a view of everything that is left free about it (-).
+const ROOM: f32 = 1.08;
+/// How far below the middle of its view a strand lies, over half the height of the view (-).
+const LABEL: f32 = 0.25;
+/// How long the viewer takes to play a run (s), and at least to play the stretch around its ruptures.
 const LASTS: f64 = 20.0;
+const RUPTURES_LAST: f64 = 6.0;
 /// Rerun's vertical field of view (rad).
 const FIELD_OF_VIEW: f32 = 0.96;
 
@@ -41,11 +51,10 @@ pub(super) struct Scenery<'a> {
     pub info: &'a RunInfo,
     pub map: &'a Map,
     pub chart: Option<&'a Chart>,
-    /// How the close view looks at the body, about `target` (mm).
+    /// What the close view shows, and how it looks at the body, about `target` (mm).
+    pub look: &'a Look,
     pub direction: ViewDirection,
     pub target: [f32; 3],
-    /// Layer of the first break, when there was one.
-    pub broken_layer: Option<usize>,
     pub playback: Playback,
 }
 
@@ -54,9 +63,9 @@ pub(super) struct Scenery<'a> {
 pub(super) enum Playback {
     /// The timeline of simulated time, up to `end` (s): without strain nothing lies along the timeline of strain.
     Time { end: f64 },
-    /// The timeline of strain, up to `end` (µm/m). `selection` is the stretch around the ruptures, which the viewer's
-    /// button for loops repeats.
-    Strain { end: i64, selection: Option<[i64; 2]> },
+    /// The timeline of strain, up to `end` (µm/m). `ruptures` is the stretch around them, which is played again and
+    /// again: a viewer cannot be told where to put its cursor, but to stay within a stretch.
+    Strain { end: i64, ruptures: Option<[i64; 2]> },
 }
 
 /// Sends a layout with the recording under an id of its own. A viewer that is open takes it up at once when `active`;
@@ -109,12 +118,16 @@ struct Item {
 impl Layout {
     fn root(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
         let whole = self.whole_view(scenery)?;
-        let close = self.close_views(scenery)?;
-        let map = self.map_view(scenery.map)?;
-        let states = self.view("StateTimeline", "State of each wire", "states", &["/states/**"])?;
-        let lower = self.container(ContainerKind::Tabs, &[map, states], &[])?;
-        let left = self.container(ContainerKind::Vertical, &[whole, close, lower], &[0.8, 2.2, 3.6])?;
-
+        let left = if scenery.info.wires.is_empty() {
+            let scale = self.scale_view(scenery.map)?;
+            self.container(ContainerKind::Vertical, &[whole, scale], &[6.0, 1.0])?
+        } else {
+            let close = self.close_views(scenery)?;
+            let map = self.map_view(scenery)?;
+            let states = self.view("StateTimeline", "State of each wire", "states", &["/states/**"])?;
+            let lower = self.container(ContainerKind::Tabs, &[map, states], &[])?;
+            self.container(ContainerKind::Vertical, &[whole, close, lower], &[1.1, 2.2, 3.3])?
+        };
         let headline =
             self.view("TextDocument", "What happened", names::HEADLINE, &[&format!("/{}", names::HEADLINE)])?;
         let curves = self.curves(scenery)?;
@@ -131,33 +144,31 @@ impl Layout {
         if let Some(chart) = scenery.chart {
             tabs.push(self.chart_view(chart)?);
         }
-        tabs.push(self.plot("Nominal stress [MPa]", names::BODY_STRESS, Corner2D::RightBottom)?);
-        tabs.push(self.plot("Layers [MPa]", names::LAYER_STRESS, Corner2D::RightBottom)?);
-        tabs.push(self.plot("Wires [MPa]", names::WIRE_STRESS, Corner2D::RightTop)?);
-        tabs.push(self.plot("Broken", names::BROKEN, Corner2D::LeftTop)?);
+        if !scenery.info.wires.is_empty() {
+            tabs.push(self.plot("Nominal stress [MPa]", names::BODY_STRESS, Corner2D::RightBottom)?);
+            tabs.push(self.plot("Layers [MPa]", names::LAYER_STRESS, Corner2D::RightBottom)?);
+            tabs.push(self.plot("Wires [MPa]", names::WIRE_STRESS, Corner2D::RightTop)?);
+            tabs.push(self.plot("Broken", names::BROKEN, Corner2D::LeftTop)?);
+        }
         tabs.push(self.plot("Energy [J]", names::ENERGY, Corner2D::LeftTop)?);
         self.container(ContainerKind::Tabs, &tabs, &[])
     }
 
     fn whole_view(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
-        let mut contents = vec!["/strand/**".to_owned(), "/spheres/**".to_owned(), "/grips/**".to_owned()];
-        contents.push(format!("/{}", names::FIRST_BREAK_FAR));
-        // Particles are cheaper to draw, and as good at this scale.
-        contents
-            .extend(wires_of_all(scenery.info).map(|w| format!("- {}", names::tube(names::STRAND, scenery.info, w))));
-        let eye = whole_eye(scenery);
-        self.strand_view("Whole strand", &contents, &eye)
+        // As particles, which are cheaper to draw, and as good at this scale.
+        let contents = ["strand/**", "spheres/**", "grips/**", names::FIRST_BREAK_FAR].map(|what| format!("/{what}"));
+        let name = if scenery.info.wires.is_empty() { "Spheres" } else { "Whole strand" };
+        self.strand_view(name, &contents, &whole_eye(scenery))
     }
 
-    /// The place of the first break close up. A break below the outermost layer is shown without the layers over it
-    /// as well: nobody would see it otherwise.
+    /// The main fracture close up. A break below the outermost layer is shown without the layers over it as well: nobody
+    /// would see it otherwise.
     fn close_views(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
         let info = scenery.info;
         let outermost = info.layers.len().saturating_sub(1);
-        let place = if scenery.broken_layer.is_some() { "Where it first broke" } else { "Mid-section" };
-        let outside = self.close_view(place, scenery, outermost, Wires::Tubes)?;
+        let outside = self.close_view(&scenery.look.name(), scenery, outermost, Wires::Tubes)?;
         let mut shown = Vec::new();
-        if let Some(layer) = scenery.broken_layer.filter(|layer| *layer < outermost) {
+        if let Some(layer) = scenery.look.layer {
             let off: Vec<_> = (layer + 1..=outermost).map(|layer| layer_words(info, layer)).collect();
             let name = format!("The same without the {}", off.join(" and "));
             let inside = self.close_view(&name, scenery, layer, Wires::Tubes)?;
@@ -180,15 +191,13 @@ impl Layout {
         wires: Wires,
     ) -> RecordingStreamResult<Item> {
         let info = scenery.info;
-        let mut contents =
-            vec!["/spheres/**".to_owned(), format!("/{}", names::FIRST_BREAK), format!("/{}", names::FOCUS)];
-        for number in wires_of_all(info).filter(|number| info.wires[*number].layer <= outermost) {
-            let drawn = match wires {
-                Wires::Tubes => names::tube(names::STRAND, info, number),
-                Wires::Particles => names::wire(names::STRAND, info, number),
-            };
-            contents.extend([drawn, names::marks(names::STRAND, info, number)].map(|path| path.to_string()));
-        }
+        let shown: Vec<_> = wires_of_all(info).filter(|number| info.wires[*number].layer <= outermost).collect();
+        let wire = |number: &usize| names::wire(names::STRAND, info, *number);
+        let mut contents = vec!["/spheres/**".to_owned()];
+        contents.extend([names::FIRST_BREAK, names::FOCUS].map(|what| format!("/{what}")));
+        contents.extend(
+            shown.iter().flat_map(|n| [wire(n), names::marks(names::STRAND, info, *n)]).map(|path| path.to_string()),
+        );
         let ViewDirection { eye, up } = scenery.direction;
         let distance = 2.0 * thickness(info).max(1e-3);
         let controls = blueprint::EyeControls3D::new()
@@ -197,7 +206,29 @@ impl Layout {
             .with_look_target(scenery.target)
             .with_eye_up(up)
             .with_tracking_entity(format!("/{}", names::FOCUS));
-        self.strand_view(name, &contents, &controls)
+        let view = self.strand_view(name, &contents, &controls)?;
+        if wires == Wires::Tubes {
+            let mappings = tubes::mappings();
+            shown.iter().try_for_each(|n| self.drawn_by(tubes::visualizer(), &mappings, &view, &wire(n)))?;
+        }
+        Ok(view)
+    }
+
+    /// Makes a view draw an entity by one visualizer alone, from the components that `mappings` name.
+    fn drawn_by(
+        &mut self,
+        visualizer: &str,
+        mappings: &[VisualizerComponentMapping],
+        view: &Item,
+        entity: &EntityPath,
+    ) -> RecordingStreamResult<()> {
+        let path = blueprint::ViewContents::blueprint_base_visualizer_path_for_entity(view.id, entity);
+        let Item { id, .. } = self.item("visualizer");
+        let only = VisualizerInstructionId(id.into());
+        self.store.log(path.clone(), &blueprint::ActiveVisualizers::new([only]))?;
+        let mappings = mappings.iter().cloned().map(components::VisualizerComponentMapping);
+        let how = blueprint::VisualizerInstruction::new(visualizer).with_component_map(mappings);
+        self.store.log(path.join(&EntityPath::from_single_string(id.to_string())), &how)
     }
 
     fn strand_view(
@@ -214,9 +245,24 @@ impl Layout {
         Ok(view)
     }
 
-    fn map_view(&mut self, map: &Map) -> RecordingStreamResult<Item> {
-        let view = self.view("2D", "Unrolled: a row per wire; numbers: order of break", names::MAP, &["/map/**"])?;
-        self.bounds(&view, map.bounds())?;
+    fn map_view(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
+        let wires: Vec<_> = wires_of_all(scenery.info).map(|n| names::wire(names::STRAND, scenery.info, n)).collect();
+        let mut contents = vec![format!("/{}/**", names::MAP)];
+        contents.extend(wires.iter().map(EntityPath::to_string));
+        let contents: Vec<_> = contents.iter().map(String::as_str).collect();
+        let view = self.view("2D", "Unrolled: a row per wire; numbers: order of break", "/", &contents)?;
+        self.bounds(&view, scenery.map.bounds())?;
+        self.background(&view, BACKGROUND)?;
+        let mappings = map::mappings();
+        wires.iter().try_for_each(|wire| self.drawn_by(map::visualizer(), &mappings, &view, wire))?;
+        Ok(view)
+    }
+
+    /// The bar of colours alone, where there are no rows.
+    fn scale_view(&mut self, map: &Map) -> RecordingStreamResult<Item> {
+        let bar = format!("/{}/{}/**", names::MAP, names::COLOUR_BAR);
+        let view = self.view("2D", "Colours", names::MAP, &[&bar])?;
+        self.bounds(&view, map.bar_bounds())?;
         self.background(&view, BACKGROUND)?;
         Ok(view)
     }
@@ -307,15 +353,17 @@ impl Layout {
             Playback::Time { end } => {
                 time.with_timeline(stream::TIME).with_playback_speed(PlaybackSpeed((end / LASTS).into()))
             }
-            Playback::Strain { end, selection } => {
-                let time = time.with_timeline(stream::STRAIN).with_fps(Fps((end as f64 / LASTS).into()));
-                match selection {
-                    Some([min, max]) => {
-                        let range = datatypes::AbsoluteTimeRange { min: min.into(), max: max.into() };
-                        time.with_time_selection(AbsoluteTimeRange(range))
-                    }
-                    None => time,
-                }
+            Playback::Strain { end, ruptures: None } => {
+                time.with_timeline(stream::STRAIN).with_fps(Fps((end as f64 / LASTS).into()))
+            }
+            Playback::Strain { end, ruptures: Some([min, max]) } => {
+                let range = datatypes::AbsoluteTimeRange { min: min.into(), max: max.into() };
+                let speed = (end as f64 / LASTS).min((max - min) as f64 / RUPTURES_LAST);
+                time.with_timeline(stream::STRAIN)
+                    .with_fps(Fps(speed.into()))
+                    .with_time_selection(AbsoluteTimeRange(range))
+                    .with_loop_mode(LoopMode::Selection)
+                    .with_play_state(PlayState::Playing)
             }
         };
         self.store.log("time_panel", &time)
@@ -337,7 +385,7 @@ fn first_id(layout: &str) -> u128 {
 }
 
 /// How wires are drawn.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 enum Wires {
     Tubes,
     Particles,
@@ -347,18 +395,32 @@ fn wires_of_all(info: &RunInfo) -> std::ops::Range<usize> {
     0..info.wires.len()
 }
 
-/// The camera that sees the whole strand at its longest, its axis to the right.
+/// The camera that sees everything at its longest, the axis to the right and below the middle, so that there is room for
+/// a label.
 fn whole_eye(scenery: &Scenery) -> blueprint::EyeControls3D {
-    let [low, high] = ends(scenery.info).map(|z| z as f32);
-    let longest = (high - low) * (1.0 + scenery.info.strain_end.unwrap_or(0.0) as f32);
+    let info = scenery.info;
+    let [low, high] = ends(info).map(|z| z as f32);
+    let longest = (high - low) * (1.0 + info.strain_end.unwrap_or(0.0) as f32);
+    let aspect = if info.wires.is_empty() { SPHERES_ASPECT } else { ASPECT };
+    // Half of what is seen upwards: all of the length and all of the thickness are to be in it.
+    let half = (0.5 * ROOM * longest / aspect).max(ROOM * across(info));
     let middle = [0.0, 0.0, low + 0.5 * longest];
-    let distance = 0.5 * 1.04 * longest / ASPECT / (0.5 * FIELD_OF_VIEW).tan();
+    let distance = half / (0.5 * FIELD_OF_VIEW).tan();
     let ViewDirection { eye, up } = scenery.direction;
+    let label = if info.wires.is_empty() { 0.0 } else { LABEL * half };
+    let target = offset(middle, up, label);
     blueprint::EyeControls3D::new()
         .with_kind(Eye3DKind::Orbital)
-        .with_position(offset(offset(middle, eye, distance), up, 0.15 * distance))
-        .with_look_target(middle)
+        .with_position(offset(offset(target, eye, distance), up, 0.15 * distance))
+        .with_look_target(target)
         .with_eye_up(up)
+}
+
+/// Largest distance of anything from the z axis before loading (mm).
+fn across(info: &RunInfo) -> f32 {
+    let bodies = info.rest_position.iter().zip(&info.radius);
+    let [across] = in_mm([bodies.map(|([x, y, _], r)| x.hypot(*y) + r).fold(0.0, f32::max)]);
+    across
 }
 
 fn offset(from: [f32; 3], direction: [f32; 3], by: f32) -> [f32; 3] {

@@ -2,19 +2,23 @@
 //! each wire is loaded and where it broke. Places are those before loading, so that only colours change.
 
 use super::names;
+use super::names::{PLACE, PLACE_RADIUS, descriptor};
 use super::paint::{FIRST, NEUTRAL, Scale, labels};
-use super::stream::{Stream, in_mm};
+use super::stream::{Stream, in_mm, numbers, vectors};
 use crate::base::error::Result;
 use crate::base::ticks::{label, ticks};
 use crate::base::units::mm;
 use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::unrolled::Unrolled;
-use rerun::{Color, LineStrips2D, Points2D, Radius};
+use rerun::blueprint::VisualizerComponentMapping;
+use rerun::{Archetype as _, Color, ComponentDescriptor, LineStrips2D, Points2D, Points3D, Radius};
 
 /// Height of the map over its width (-): wires are far thinner than they are long.
 const ASPECT: f32 = 0.5;
 /// Colour of the layers' names.
 const NAMES: u32 = 0xC8CDD4FF;
+/// Rows that a map has room for at least: one row as high as the map would be no row.
+const LEAST_ROWS: f64 = 8.0;
 /// Gap between layers, in rows.
 const LAYER_GAP: f64 = 1.5;
 
@@ -22,6 +26,23 @@ const LAYER_GAP: f64 = 1.5;
 const ORDER_COLUMNS: usize = 3;
 /// Width of such a column over the length of the map (-).
 const ORDER_WIDTH: f32 = 0.07;
+
+/// Where the viewer finds what it draws a wire's row from: places that never change, and the colours in space.
+pub(super) fn mappings() -> Vec<VisualizerComponentMapping> {
+    let from = |target: ComponentDescriptor, source: &str| {
+        VisualizerComponentMapping::new_source_component(target.component.as_str(), source)
+    };
+    vec![
+        from(Points2D::descriptor_positions(), PLACE),
+        from(Points2D::descriptor_radii(), PLACE_RADIUS),
+        from(Points2D::descriptor_colors(), Points3D::descriptor_colors().component.as_str()),
+    ]
+}
+
+/// The viewer's name for what draws rows.
+pub(super) fn visualizer() -> &'static str {
+    Points2D::name().short_name()
+}
 
 /// Where a wire's place in the order of break is written, and the line that leads there.
 pub(super) struct Order {
@@ -45,8 +66,8 @@ impl Map {
     pub fn new(info: &RunInfo) -> Self {
         let map = Unrolled::new(info, LAYER_GAP, 0..info.layers.len());
         let z = map.ends.map(|z| z as f32);
-        let height = ASPECT * (z[1] - z[0]);
-        Self { row: height / map.rows.max(1.0) as f32, map, z, height }
+        let row = ASPECT * (z[1] - z[0]) / map.rows.max(LEAST_ROWS) as f32;
+        Self { height: row * map.rows as f32, row, map, z }
     }
 
     /// Height of a row, or between two.
@@ -56,13 +77,12 @@ impl Map {
 
     /// Sends what does not change: places of bonds, names of layers.
     pub fn send(&self, stream: &Stream, info: &RunInfo) -> Result<()> {
-        for layer in 0..info.layers.len() {
-            let places = info.wires_of(layer).flat_map(|(number, wire)| {
-                let y = self.y(self.map.row[number]);
-                info.rest_position[wire.particles()].iter().map(move |p| [in_mm(*p)[2], y])
-            });
-            let points = Points2D::new(places).with_radii([Radius::new_scene_units(0.4 * self.row)]);
-            stream.fixed(names::layer(names::MAP, info, layer), &points)?;
+        for (number, wire) in info.wires.iter().enumerate() {
+            let y = self.y(self.map.row[number]);
+            let places = info.rest_position[wire.particles()].iter().map(|p| [in_mm(*p)[2], y]);
+            let places = vectors(descriptor(PLACE), places);
+            let radius = numbers(descriptor(PLACE_RADIUS), std::iter::once(0.4 * self.row));
+            stream.fixed(names::wire(names::STRAND, info, number), &[places, radius])?;
         }
         self.send_names(stream, info)?;
         self.send_ticks(stream)
@@ -74,6 +94,17 @@ impl Map {
         let x = [self.z[0] - 0.13 * length, self.z[1] + (0.04 + ORDER_WIDTH * ORDER_COLUMNS as f32) * length];
         let y = [-4.0 * self.row, self.height + 6.0 * self.row];
         [x.map(f64::from), y.map(f64::from)]
+    }
+
+    /// x and y range that shows the bar of colours alone.
+    pub fn bar_bounds(&self) -> [[f64; 2]; 2] {
+        let y = self.bar();
+        [self.bounds()[0], [y - 2.0 * self.row, y + 2.0 * self.row].map(f64::from)]
+    }
+
+    /// Middle of the bar of colours.
+    fn bar(&self) -> f32 {
+        self.height + 4.0 * self.row
     }
 
     /// Where a rupture is on the map.
@@ -120,16 +151,17 @@ impl Map {
     /// Sends a bar of colours with the values at its ends, below the map.
     pub fn send_colour_bar(&self, stream: &Stream, scale: &Scale) -> Result<()> {
         let length = self.z[1] - self.z[0];
-        let y = self.height + 4.0 * self.row;
+        let y = self.bar();
         let at = |t: f32| self.z[0] + (0.3 + 0.4 * t) * length;
         let n = scale.colours.len();
         let place = |i: usize| at(i as f32 / (n - 1) as f32);
         let bar = LineStrips2D::new((0..n).map(|i| [[place(i), y], [place(i) + 0.4 * length / n as f32, y]]))
             .with_colors(scale.colours.iter().map(|c| Color::from_u32(*c)))
             .with_radii([Radius::new_scene_units(0.6 * self.row)]);
-        stream.fixed(format!("{}/colour_bar", names::MAP), &bar)?;
+        let path = format!("{}/{}", names::MAP, names::COLOUR_BAR);
+        stream.fixed(path.as_str(), &bar)?;
         let ends = [-0.3, 1.16].map(|t| [at(t), y - self.row]).into_iter().zip(scale.ends.clone());
-        stream.fixed(format!("{}/colour_bar/ends", names::MAP), &labels(ends, NEUTRAL))
+        stream.fixed(format!("{path}/ends"), &labels(ends, NEUTRAL))
     }
 
     fn send_names(&self, stream: &Stream, info: &RunInfo) -> Result<()> {

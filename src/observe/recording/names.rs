@@ -2,8 +2,9 @@
 
 use crate::engine::view::{RunInfo, Rupture};
 use crate::observe::wording::{self, layer_words, wire_number};
-use rerun::EntityPath;
+use rerun::components;
 use rerun::external::re_log_types::EntityPathPart;
+use rerun::{Component as _, ComponentDescriptor, ComponentType, EntityPath};
 
 /// Name under which the viewer files all recordings of this program.
 pub const APPLICATION: &str = "strandsnap";
@@ -13,6 +14,8 @@ pub const STRAND: &str = "strand";
 pub const SPHERES: &str = "spheres";
 /// Grips.
 pub const GRIPS: &str = "grips";
+/// Strain of the body (%).
+pub const BODY_STRAIN: &str = "strain";
 /// Nominal stress of the body (MPa).
 pub const BODY_STRESS: &str = "stress/body";
 /// Nominal stress of the layers (MPa).
@@ -29,8 +32,10 @@ pub const LAYER_FORCE: &str = "force/layers";
 pub const BROKEN: &str = "broken";
 /// Energy ledger (J).
 pub const ENERGY: &str = "energy";
-/// Unrolled map, by layer.
+/// Unrolled map: what is drawn beside the wires, and ruptures by layer and wire.
 pub const MAP: &str = "map";
+/// Bar of colours, below the map.
+pub const COLOUR_BAR: &str = "colour_bar";
 /// State of each wire over time.
 pub const STATES: &str = "states";
 /// Order of break of a wire on the map, below its marks.
@@ -63,6 +68,38 @@ pub const STATE: &str = "Bond:state";
 /// Field of a particle, recorded when speed gives the colour (m/s).
 pub const SPEED: &str = "Bond:speed_m_per_s";
 
+/// Turn of a particle's capsule from the z axis, a quaternion in half precision.
+pub const TURN: &str = "Tube:turn";
+/// Length of a particle's capsule (mm).
+pub const LENGTH: &str = "Tube:length";
+/// Place of a particle on the unrolled map (mm along it).
+pub const PLACE: &str = "Map:place";
+/// Radius of the particles on the unrolled map.
+pub const PLACE_RADIUS: &str = "Map:radius";
+
+/// The descriptor of a component of our own: archetype, name, and the type of its values, which is Rerun's where Rerun has
+/// one for such values.
+pub(super) fn descriptor(component: &'static str) -> ComponentDescriptor {
+    const BOND: &str = "strandsnap.Bond";
+    const TUBE: &str = "strandsnap.Tube";
+    const MAP: &str = "strandsnap.Map";
+    let (archetype, kind): (&'static str, ComponentType) = match component {
+        STRESS => (BOND, "strandsnap.components.TrueAxialStress".into()),
+        PLASTIC_STRAIN => (BOND, "strandsnap.components.EquivalentPlasticStrain".into()),
+        UTILISATION => (BOND, "strandsnap.components.Utilisation".into()),
+        CONTACT_PRESSURE => (BOND, "strandsnap.components.ContactPressure".into()),
+        SPEED => (BOND, "strandsnap.components.Speed".into()),
+        STATE => (BOND, components::ClassId::name()),
+        // Rerun's quaternions have single precision.
+        TURN => (TUBE, "strandsnap.components.Turn".into()),
+        LENGTH => (TUBE, components::Length::name()),
+        PLACE => (MAP, components::Position2D::name()),
+        PLACE_RADIUS => (MAP, components::Radius::name()),
+        other => unreachable!("{other} is no component of ours"),
+    };
+    ComponentDescriptor::partial(component).with_archetype(archetype.into()).with_component_type(kind)
+}
+
 /// The layer's name as a part of a path; a layer without a name is called by its number.
 fn layer_part(info: &RunInfo, layer: usize) -> String {
     match info.layers[layer].as_str() {
@@ -85,11 +122,6 @@ pub fn layer(root: &str, info: &RunInfo, layer: usize) -> EntityPath {
 pub fn wire(root: &str, info: &RunInfo, wire: usize) -> EntityPath {
     let part = EntityPathPart::new(format!("wire_{:02}", wire_number(wire)));
     layer(root, info, info.wires[wire].layer).join(&vec![part].into())
-}
-
-/// Entity of a wire's tube, below the wire so that it is hidden with it.
-pub fn tube(root: &str, info: &RunInfo, number: usize) -> EntityPath {
-    wire(root, info, number).join(&EntityPath::from("tube"))
 }
 
 /// Entity of a wire's rupture marks, below the wire so that they are hidden with it.

@@ -1,15 +1,16 @@
-//! Particles: a batch of snapshots becomes one chunk per wire.
+//! Particles: a batch of snapshots becomes one chunk per wire, with everything that there is to draw it in space and on the
+//! map, once.
 
-use super::names::{CONTACT_PRESSURE, PLASTIC_STRAIN, SPEED, STATE, STRESS, UTILISATION};
+use super::names::{CONTACT_PRESSURE, LENGTH, PLASTIC_STRAIN, SPEED, STATE, STRESS, TURN, UTILISATION, descriptor};
 use super::paint::{Palette, slot};
-use super::stream::{Instant, Stream, bond_field, classes, colours, in_mm, in_mpa, numbers, vectors};
+use super::stream::{Column, Instant, Stream, classes, colours, half_vectors, in_mm, in_mpa, numbers, vectors};
+use super::tubes::{Capsule, Drawn};
 use super::{names, tubes};
 use crate::base::error::Result;
-use crate::base::units::mm;
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use crate::scene::spec::ColourBy;
 use rerun::components::FillMode;
-use rerun::{Capsules3D, Points2D, Points3D, SerializedComponentBatch};
+use rerun::{Capsules3D, Points3D, SerializedComponentBatch};
 use std::sync::Arc;
 
 /// Names of the bond states, in the order of [`BondState`].
@@ -24,14 +25,10 @@ pub(super) struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// Sends wires, free spheres, grips and the colours of the map.
-    pub fn send(&self, stream: &Stream) -> Result<()> {
-        for number in 0..self.info.wires.len() {
-            stream.rows(names::wire(names::STRAND, self.info, number), self.instants, self.wire(number))?;
-            stream.rows(names::tube(names::STRAND, self.info, number), self.instants, self.tube(number))?;
-        }
-        for layer in 0..self.info.layers.len() {
-            stream.rows(names::layer(names::MAP, self.info, layer), self.instants, [self.map_colours(layer)])?;
+    /// Sends wires and free spheres; `drawn` is what was recorded of each wire so far.
+    pub fn send(&self, stream: &Stream, drawn: &mut [Drawn]) -> Result<()> {
+        for (number, drawn) in drawn.iter_mut().enumerate() {
+            stream.rows(names::wire(names::STRAND, self.info, number), self.instants, self.wire(number, drawn))?;
         }
         if self.info.particles > self.info.wire_particles {
             stream.rows(names::SPHERES, self.instants, self.spheres())?;
@@ -39,59 +36,70 @@ impl Batch<'_> {
         Ok(())
     }
 
-    fn wire(&self, number: usize) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
+    fn wire(&self, number: usize, drawn: &mut Drawn) -> Vec<Column> {
         let wire = &self.info.wires[number];
-        let each = vec![wire.len; self.snapshots.len()];
-        let once = vec![1; self.snapshots.len()];
+        let each = || vec![wire.len; self.snapshots.len()];
         let particles = || self.snapshots.iter().flat_map(|s| (0..wire.len).map(move |k| (s, k)));
         let positions = self.snapshots.iter().flat_map(|s| s.position[wire.particles()].iter().copied().map(in_mm));
         let paint = particles().map(|(s, k)| self.palette.particle(s, wire, number, k));
-        let field = |name, value: fn(&Snapshot, usize) -> f32| {
-            (numbers(bond_field(name), particles().map(|(s, k)| value(s, slot(wire, k)))), each.clone())
+        let field = |name, value: fn(&Snapshot, usize) -> f32| -> Column {
+            (numbers(descriptor(name), particles().map(|(s, k)| value(s, slot(wire, k)))), each()).into()
         };
         let pressure = particles().map(|(s, k)| in_mpa(s.contact_pressure[wire.first + k]));
-        let mut batches = vec![
-            (vectors(Points3D::descriptor_positions(), positions), each.clone()),
-            (colours(Points3D::descriptor_colors(), paint), each.clone()),
-            (numbers(Points3D::descriptor_radii(), self.snapshots.iter().map(|s| mean_radius(s, wire))), once),
+        let mut columns = vec![
+            (vectors(Points3D::descriptor_positions(), positions), each()).into(),
+            (colours(Points3D::descriptor_colors(), paint), each()).into(),
             field(STRESS, |s, slot| in_mpa(s.bond_stress[slot])),
             field(PLASTIC_STRAIN, |s, slot| s.plastic_strain[slot]),
             field(UTILISATION, |s, slot| s.utilisation[slot]),
-            (numbers(bond_field(CONTACT_PRESSURE), pressure), each.clone()),
-            (classes(STATE, particles().map(|(s, k)| s.bond_state[slot(wire, k)] as u16)), each.clone()),
+            (numbers(descriptor(CONTACT_PRESSURE), pressure), each()).into(),
         ];
         if self.palette.by() == ColourBy::Velocity {
-            batches.push((numbers(bond_field(SPEED), particles().map(|(s, k)| s.speed[wire.first + k])), each));
+            let speed = particles().map(|(s, k)| s.speed[wire.first + k]);
+            columns.push((numbers(descriptor(SPEED), speed), each()).into());
         }
-        batches
+        columns.extend(self.changes(wire, drawn));
+        columns
     }
 
-    fn tube(&self, number: usize) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
-        let wire = &self.info.wires[number];
-        tubes::batches(self.snapshots, self.palette, wire, number)
+    /// What is sent only in those snapshots in which it has changed.
+    fn changes(&self, wire: &WireInfo, drawn: &mut Drawn) -> [Column; 4] {
+        let (mut turns, mut lengths, mut radii, mut states) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let [mut turned, mut longer, mut thinned, mut became] = [const { Vec::new() }; 4];
+        for snapshot in self.snapshots {
+            let capsules = tubes::capsules(snapshot, wire);
+            let of = |anew: bool| anew.then_some(&capsules);
+            let turn = of(drawn.turns(&capsules));
+            turned.push(turn.map(Vec::len));
+            turns.extend(turn.into_iter().flatten().map(Capsule::turn));
+            let length = of(drawn.lengths(&capsules));
+            longer.push(length.map(Vec::len));
+            lengths.extend(length.into_iter().flatten().map(Capsule::length));
+            let thinner = drawn.radii(snapshot, wire);
+            thinned.push(thinner.map(<[_]>::len));
+            radii.extend(thinner.into_iter().flatten().map(|r| in_mm([*r])[0]));
+            let now = drawn.states((0..wire.len).map(|k| snapshot.bond_state[slot(wire, k)]).collect());
+            became.push(now.map(<[_]>::len));
+            states.extend(now.into_iter().flatten().map(|state| *state as u16));
+        }
+        [
+            Column::sparse(half_vectors(descriptor(TURN), turns.into_iter()), turned),
+            Column::sparse(numbers(descriptor(LENGTH), lengths.into_iter()), longer),
+            Column::sparse(numbers(Points3D::descriptor_radii(), radii.into_iter()), thinned),
+            Column::sparse(classes(descriptor(STATE), states.into_iter()), became),
+        ]
     }
 
-    fn map_colours(&self, layer: usize) -> (SerializedComponentBatch, Vec<usize>) {
-        let wires: Vec<_> = self.info.wires_of(layer).collect();
-        let count = wires.iter().map(|(_, wire)| wire.len).sum();
-        let paint = self.snapshots.iter().flat_map(|s| {
-            wires
-                .iter()
-                .flat_map(move |(number, wire)| (0..wire.len).map(move |k| self.palette.particle(s, wire, *number, k)))
-        });
-        (colours(Points2D::descriptor_colors(), paint), vec![count; self.snapshots.len()])
-    }
-
-    fn spheres(&self) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
+    fn spheres(&self) -> [(SerializedComponentBatch, Vec<usize>); 3] {
         let range = self.info.wire_particles..self.info.particles;
         let each = vec![range.len(); self.snapshots.len()];
         let positions = self.snapshots.iter().flat_map(|s| s.position[range.clone()].iter().copied().map(in_mm));
         let paint = self.snapshots.iter().flat_map(|s| range.clone().map(|i| self.palette.sphere(s, i)));
         let speed = self.snapshots.iter().flat_map(|s| s.speed[range.clone()].iter().copied());
-        vec![
+        [
             (vectors(Points3D::descriptor_positions(), positions), each.clone()),
             (colours(Points3D::descriptor_colors(), paint), each.clone()),
-            (numbers(bond_field(SPEED), speed), each),
+            (numbers(descriptor(SPEED), speed), each),
         ]
     }
 }
@@ -99,14 +107,7 @@ impl Batch<'_> {
 /// Sends the style of tubes.
 pub(super) fn send_styles(stream: &Stream, info: &RunInfo) -> Result<()> {
     let solid = Capsules3D::update_fields().with_fill_mode(FillMode::Solid);
-    (0..info.wires.len()).try_for_each(|w| stream.fixed(names::tube(names::STRAND, info, w), &solid))
-}
-
-/// Mean radius of a wire now (mm). One value per wire and snapshot: a wire thins as a whole, and a radius per
-/// particle would cost as much as its stress.
-fn mean_radius(snapshot: &Snapshot, wire: &WireInfo) -> f32 {
-    let radii = &snapshot.radius[wire.particles()];
-    (mm(radii.iter().map(|r| f64::from(*r)).sum::<f64>()) / radii.len().max(1) as f64) as f32
+    (0..info.wires.len()).try_for_each(|w| stream.fixed(names::wire(names::STRAND, info, w), &solid))
 }
 
 /// The worst state of a wire's bonds.

@@ -3,11 +3,12 @@
 use super::names::{CONTACT_PRESSURE, PLASTIC_STRAIN, STRESS, UTILISATION};
 use super::{names, stream};
 use crate::base::error::{Error, Result};
-use rerun::blueprint::components::AbsoluteTimeRange;
+use rerun::blueprint::components::{AbsoluteTimeRange, LoopMode, VisualizerComponentMapping};
+use rerun::external::arrow::array::Array as _;
 use rerun::external::re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
-use rerun::external::re_sdk_types::blueprint::archetypes::{TimePanelBlueprint, ViewBlueprint};
+use rerun::external::re_sdk_types::blueprint::archetypes::{TimePanelBlueprint, ViewBlueprint, VisualizerInstruction};
 use rerun::log::{Chunk, LogMsg};
-use rerun::{ComponentDescriptor, Points3D, Scalars, StoreKind, TextDocument, TextLog};
+use rerun::{ComponentDescriptor, ComponentIdentifier, Points3D, Scalars, StoreKind, TextDocument, TextLog};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -20,6 +21,11 @@ pub mod paths {
 
     fn root(name: &str) -> String {
         format!("/{name}")
+    }
+
+    /// Strain of the body.
+    pub fn body_strain() -> String {
+        root(names::BODY_STRAIN)
     }
 
     /// Nominal stress of the body.
@@ -72,8 +78,21 @@ pub struct Entity {
     pub static_rows: usize,
     /// Timelines of its rows.
     pub timelines: BTreeSet<String>,
-    /// Components, such as `Points3D:positions`.
-    pub components: BTreeSet<String>,
+    /// Components by name, such as `Points3D:positions`.
+    pub components: BTreeMap<String, Component>,
+}
+
+/// What an entity holds of one component.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Component {
+    /// Type of its values, such as `rerun.components.Position3D`.
+    pub kind: Option<String>,
+    /// Rows that say something of it.
+    pub rows: usize,
+    /// Values of all rows.
+    pub values: usize,
+    /// Bytes of those values, without offsets and padding.
+    pub bytes: usize,
 }
 
 /// What a layout says about views and time.
@@ -89,6 +108,10 @@ pub struct Layout {
     pub speed: Option<f64>,
     /// Selected stretch of that timeline.
     pub selection: Option<[i64; 2]>,
+    /// Whether it plays that stretch again and again.
+    pub repeats: bool,
+    /// What views draw in a way of their own: entity, and the component that it is drawn from.
+    pub sources: BTreeSet<(String, String)>,
 }
 
 impl Layout {
@@ -108,6 +131,16 @@ impl Layout {
             chunk.iter_component::<AbsoluteTimeRange>(TimePanelBlueprint::descriptor_time_selection().component);
         let ends = selection.flat_map(|range| range.as_slice().to_vec()).next();
         self.selection = ends.map(|range| [range.min.0, range.max.0]).or(self.selection);
+        let loops = chunk.iter_component::<LoopMode>(TimePanelBlueprint::descriptor_loop_mode().component);
+        self.repeats |= loops.flat_map(|mode| mode.as_slice().to_vec()).any(|mode| mode == LoopMode::Selection);
+        let path = chunk.entity_path().to_string();
+        let entity = path.split("/overrides").nth(1).and_then(|path| path.split("/visualizers").next());
+        let map = VisualizerInstruction::descriptor_component_map().component;
+        for mapping in chunk.iter_component::<VisualizerComponentMapping>(map).flat_map(|all| all.as_slice().to_vec()) {
+            if let (Some(entity), Some(source)) = (entity, &mapping.source_component) {
+                self.sources.insert((entity.to_owned(), source.to_string()));
+            }
+        }
     }
 }
 
@@ -208,7 +241,7 @@ impl RecordingContents {
             self.headline = text.iter().map(ToString::to_string).collect();
         }
         let positions = Points3D::descriptor_positions().component;
-        if let Some(last) = last_row(chunk, chunk.iter_slices::<[f32; 3]>(positions)) {
+        if let Some(last) = last_row(chunk, positions, chunk.iter_slices::<[f32; 3]>(positions)) {
             self.last_positions.insert(path, last.to_vec());
         }
     }
@@ -217,7 +250,14 @@ impl RecordingContents {
         let entity = self.entities.entry(path.to_owned()).or_default();
         *(if chunk.is_static() { &mut entity.static_rows } else { &mut entity.rows }) += chunk.num_rows();
         entity.timelines.extend(chunk.timelines().keys().map(ToString::to_string));
-        entity.components.extend(chunk.components_identifiers().map(|c| c.to_string()));
+        for column in chunk.components().values() {
+            let component = entity.components.entry(column.descriptor.component.to_string()).or_default();
+            component.kind = column.descriptor.component_type.map(|kind| kind.to_string());
+            component.rows += column.list_array.len() - column.list_array.null_count();
+            let values = column.list_array.values();
+            component.values += values.len();
+            component.bytes += values.to_data().get_slice_memory_size().unwrap_or(0);
+        }
     }
 
     fn add_log(&mut self, path: &str, chunk: &Chunk) {
@@ -232,7 +272,7 @@ impl RecordingContents {
 
     fn add_fields(&mut self, path: &str, chunk: &Chunk) {
         for field in [STRESS, PLASTIC_STRAIN, UTILISATION, CONTACT_PRESSURE] {
-            if let Some(last) = last_row(chunk, chunk.iter_slices::<f32>(field.into())) {
+            if let Some(last) = last_row(chunk, field.into(), chunk.iter_slices::<f32>(field.into())) {
                 self.last_fields.entry(path.to_owned()).or_default().insert(field.to_owned(), last.to_vec());
             }
         }
@@ -255,9 +295,10 @@ impl RecordingContents {
     }
 }
 
-/// Of some rows of a chunk that have a value each, that of the greatest step; the last of rows without steps.
-fn last_row<T>(chunk: &Chunk, values: impl Iterator<Item = T>) -> Option<T> {
-    let steps = chunk.iter_indices(&stream::STEP.into()).map(|(time, _)| time.as_i64());
+/// Of the rows of a chunk that say something of a component, what that of the greatest step says; the last of rows without
+/// steps.
+fn last_row<T>(chunk: &Chunk, component: ComponentIdentifier, values: impl Iterator<Item = T>) -> Option<T> {
+    let steps = chunk.iter_component_indices(stream::STEP.into(), component).map(|(time, _)| time.as_i64());
     steps.chain(std::iter::repeat(i64::MIN)).zip(values).max_by_key(|(step, _)| *step).map(|(_, value)| value)
 }
 

@@ -4,6 +4,7 @@ use super::chart::Chart;
 use super::first_break::{FirstBreak, ViewDirection};
 use super::headline::{Headline, about};
 use super::layout::{Playback, Scenery};
+use super::look::Look;
 use super::map::Map;
 use super::marks::Marks;
 use super::paint::Palette;
@@ -11,6 +12,7 @@ use super::sections::Sections;
 use super::sink::RERUN_VERSION;
 use super::states::States;
 use super::stream::{Instant, Stream, in_mm};
+use super::tubes::Drawn;
 use super::{curve, grips, layout, names, paint, particles};
 use crate::base::error::Result;
 use crate::base::finding::Notice;
@@ -37,7 +39,10 @@ pub(super) struct Run {
     states: States,
     marks: Marks,
     sections: Sections,
+    ruptures: Vec<Rupture>,
     first: Option<FirstBreak>,
+    /// What was recorded of each wire.
+    drawn: Vec<Drawn>,
     headline: Headline,
     summariser: Summariser,
     snapshots: Vec<Arc<Snapshot>>,
@@ -67,7 +72,9 @@ impl Run {
             states: States::new(info.wires.len()),
             marks: Marks::default(),
             sections: Sections::new(info),
+            ruptures: Vec::new(),
             first: None,
+            drawn: info.wires.iter().map(|_| Drawn::default()).collect(),
             headline: Headline::new(OneDraw::of(scene)),
             summariser,
             snapshots: Vec::new(),
@@ -108,6 +115,7 @@ impl Run {
         self.states.set(rupture.wire, BondState::Broken, Instant::from(rupture));
         self.marks.add(&self.info, rupture);
         self.headline.rupture(rupture);
+        self.ruptures.push(rupture.clone());
         if self.first.is_none() {
             self.first = Some(FirstBreak::new(rupture));
             self.palette.set_first(rupture.bond);
@@ -125,32 +133,34 @@ impl Run {
         self.summariser.notice(notice)
     }
 
-    /// Sends the rest, and what only the end knows: the result, and a layout whose close view looks at the place of
-    /// the first break from the side where it is.
+    /// Sends the rest, and what only the end knows: the result, and a layout whose close view looks at the main fracture
+    /// from the side where bonds broke.
     pub fn finish(&mut self, scene: &Spec, active: bool) -> Result<BlueprintActivationCommand> {
         self.send()?;
         // Bonds and cost are not shown.
         let summary = self.summariser.summary(scene, 0, Closing::default());
         self.headline.send_end(&self.stream, &self.info, &summary)?;
-        let mut direction = ViewDirection::START;
+        let look = self.look();
+        let direction = look.direction(|step| self.sections.before(step, look.rest_z).unwrap_or_default());
         if let Some(first) = &self.first {
-            let axis = self.sections.last(first.rest_z()).unwrap_or_default();
-            direction = ViewDirection::towards(first.last(), axis);
             first.send(&self.stream, &self.info, direction, 0)?;
-            self.sections.send_focus(&self.stream, &self.info, first.rest_z(), 0)?;
+            self.sections.send_focus(&self.stream, &self.info, look.rest_z, 0)?;
         }
-        layout::send(&self.stream, &format!("{}-layout-end", self.id), &self.scenery(direction), active)
+        layout::send(&self.stream, &format!("{}-layout-end", self.id), &self.scenery(&look, direction), active)
     }
 
-    fn scenery(&self, direction: ViewDirection) -> Scenery<'_> {
-        let rest_z = self.first.as_ref().map_or(self.sections.middle(), FirstBreak::rest_z);
+    fn look(&self) -> Look {
+        Look::new(&self.info, &self.ruptures, self.sections.middle())
+    }
+
+    fn scenery<'a>(&'a self, look: &'a Look, direction: ViewDirection) -> Scenery<'a> {
         Scenery {
             info: &self.info,
             map: &self.map,
             chart: self.chart.as_ref(),
+            look,
             direction,
-            target: self.sections.last(rest_z).unwrap_or([0.0, 0.0, rest_z]),
-            broken_layer: self.first.as_ref().map(|first| first.rupture.layer),
+            target: self.sections.last(look.rest_z).unwrap_or([0.0, 0.0, look.rest_z]),
             playback: self.playback(),
         }
     }
@@ -163,16 +173,16 @@ impl Run {
             return Playback::Time { end: self.last.map_or(20.0, |last| last.time) };
         }
         let end = self.last.map_or(self.info.strain_end.unwrap_or(1.0), |_| self.strain_most);
-        let selection = self.ruptured.map(|[from, to]| {
+        let ruptures = self.ruptured.map(|[from, to]| {
             let room = (0.05 * end).max(0.1 * (to - from));
             [micro((from - room).max(0.0)), micro((to + room).min(end))]
         });
-        Playback::Strain { end: micro(end).max(1), selection }
+        Playback::Strain { end: micro(end).max(1), ruptures }
     }
 
     fn send_fixed(&mut self) -> Result<()> {
         let (stream, info) = (&self.stream, &self.info);
-        layout::send(stream, &format!("{}-layout", self.id), &self.scenery(ViewDirection::START), true)?;
+        layout::send(stream, &format!("{}-layout", self.id), &self.scenery(&self.look(), ViewDirection::START), true)?;
         // Rerun hands on data before messages; without this the layout would come last, and a viewer that is still
         // loading would invent one.
         stream.checked(stream.rerun.flush_blocking())?;
@@ -225,7 +235,8 @@ impl Run {
         let instants: Vec<_> = self.snapshots.iter().map(|s| curve::instant(&s.sample)).collect();
         if !instants.is_empty() {
             let (info, palette, snapshots) = (&self.info, &self.palette, &self.snapshots);
-            particles::Batch { info, palette, instants: &instants, snapshots }.send(&self.stream)?;
+            let batch = particles::Batch { info, palette, instants: &instants, snapshots };
+            batch.send(&self.stream, &mut self.drawn)?;
             grips::send(&self.stream, &self.info, &instants, &self.snapshots)?;
         }
         if !self.samples.is_empty() {
@@ -251,8 +262,7 @@ impl Run {
         if let Some(first) = &self.first {
             first.send(&self.stream, &self.info, ViewDirection::START, placed)?;
         }
-        let rest_z = self.first.as_ref().map_or(self.sections.middle(), FirstBreak::rest_z);
-        self.sections.send_focus(&self.stream, &self.info, rest_z, focused)?;
+        self.sections.send_focus(&self.stream, &self.info, self.look().rest_z, focused)?;
         self.followed = [self.sections.len(), self.first.as_ref().map_or(0, FirstBreak::len)];
         Ok(())
     }

@@ -88,6 +88,12 @@ impl Sections {
         self.history.last().map(|(_, places)| self.at(places, rest_z))
     }
 
+    /// Where the section at `rest_z` was in the last snapshot up to `step` (mm).
+    pub fn before(&self, step: u64, rest_z: f32) -> Option<[f32; 3]> {
+        let (_, places) = self.history.iter().rev().find(|(instant, _)| instant.step <= step)?;
+        Some(self.at(places, rest_z))
+    }
+
     /// Linear between the centres of sections that have particles.
     fn at(&self, places: &[[f32; 3]], rest_z: f32) -> [f32; 3] {
         let n = places.len();

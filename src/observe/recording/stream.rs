@@ -4,11 +4,14 @@
 use crate::base::error::{Error, Result};
 use crate::base::units::{mm, mpa};
 use crate::engine::view::Rupture;
+use rerun::components::ClassId;
 use rerun::external::arrow::array::{
-    Array, ArrayRef, FixedSizeListArray, Float32Array, ListArray, StringArray, UInt16Array, UInt32Array,
+    Array, ArrayRef, ArrowPrimitiveType, FixedSizeListArray, Float16Array, Float32Array, ListArray, StringArray,
+    UInt16Array, UInt32Array,
 };
-use rerun::external::arrow::buffer::OffsetBuffer;
-use rerun::external::arrow::datatypes::{DataType, Field};
+use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer};
+use rerun::external::arrow::datatypes::{DataType, Field, Float16Type};
+use rerun::external::arrow::error::ArrowError;
 use rerun::{
     AsComponents, ComponentDescriptor, EntityPath, Loggable, RecordingStream, SerializationResult,
     SerializedComponentBatch, SerializedComponentColumn, TimeColumn,
@@ -84,7 +87,7 @@ impl Stream {
         self.checked(columns)
     }
 
-    /// Logs one row per instant; each batch is cut into rows of the given lengths.
+    /// Logs one row per instant.
     ///
     /// # Errors
     /// [`Error::Io`] when Rerun refuses the data.
@@ -92,10 +95,9 @@ impl Stream {
         &self,
         path: impl Into<EntityPath>,
         instants: &[Instant],
-        batches: impl IntoIterator<Item = (SerializedComponentBatch, Vec<usize>)>,
+        columns: impl IntoIterator<Item = impl Into<Column>>,
     ) -> Result<()> {
-        let columns: SerializationResult<Vec<_>> =
-            batches.into_iter().map(|(batch, lengths)| batch.partitioned(lengths)).collect();
+        let columns: std::result::Result<Vec<_>, _> = columns.into_iter().map(|column| column.into().cut()).collect();
         self.send(path.into(), time_columns(instants), self.checked(columns)?)
     }
 
@@ -106,6 +108,35 @@ impl Stream {
     /// Gives an error of Rerun the shape of this crate's.
     pub fn checked<T>(&self, result: Result<T, impl std::fmt::Display>) -> Result<T> {
         result.map_err(|e| Error::io("cannot record to", &self.file, std::io::Error::other(e.to_string())))
+    }
+}
+
+/// Values of a component, and how many of them each row has.
+pub(super) struct Column {
+    batch: SerializedComponentBatch,
+    /// `None` for a row that says nothing: what an earlier row said still holds.
+    lengths: Vec<Option<usize>>,
+}
+
+impl Column {
+    /// A column that says something in those rows alone that have a length.
+    pub fn sparse(batch: SerializedComponentBatch, lengths: Vec<Option<usize>>) -> Self {
+        Self { batch, lengths }
+    }
+
+    fn cut(self) -> std::result::Result<SerializedComponentColumn, ArrowError> {
+        let Self { batch: SerializedComponentBatch { array, descriptor }, lengths } = self;
+        let field = Arc::new(Field::new_list_field(array.data_type().clone(), true));
+        let offsets = OffsetBuffer::from_lengths(lengths.iter().map(|length| length.unwrap_or(0)));
+        let nulls = Some(NullBuffer::from_iter(lengths.iter().map(Option::is_some))).filter(|n| n.null_count() > 0);
+        let list = ListArray::try_new(field, offsets, array, nulls)?;
+        Ok(SerializedComponentColumn::new(list, descriptor))
+    }
+}
+
+impl From<(SerializedComponentBatch, Vec<usize>)> for Column {
+    fn from((batch, lengths): (SerializedComponentBatch, Vec<usize>)) -> Self {
+        Self::sparse(batch, lengths.into_iter().map(Some).collect())
     }
 }
 
@@ -122,10 +153,26 @@ pub(super) fn vectors<const N: usize>(
     descriptor: ComponentDescriptor,
     values: impl Iterator<Item = [f32; N]>,
 ) -> SerializedComponentBatch {
-    let flat: Vec<f32> = values.flatten().collect();
-    let field = Arc::new(Field::new("item", DataType::Float32, false));
-    let array = FixedSizeListArray::new(field, N as i32, Arc::new(Float32Array::from(flat)), None);
-    SerializedComponentBatch::new(Arc::new(array), descriptor)
+    SerializedComponentBatch::new(lists::<N>(Arc::new(flat(values))), descriptor)
+}
+
+/// Vectors in half precision (eleven digits of two): a layout may have the viewer widen them.
+pub(super) fn half_vectors<const N: usize>(
+    descriptor: ComponentDescriptor,
+    values: impl Iterator<Item = [f32; N]>,
+) -> SerializedComponentBatch {
+    let halves: Float16Array = flat(values).unary(<Float16Type as ArrowPrimitiveType>::Native::from_f32);
+    SerializedComponentBatch::new(lists::<N>(Arc::new(halves)), descriptor)
+}
+
+fn flat<const N: usize>(values: impl Iterator<Item = [f32; N]>) -> Float32Array {
+    Float32Array::from(values.flatten().collect::<Vec<f32>>())
+}
+
+/// Lists of `N` numbers each.
+fn lists<const N: usize>(numbers: ArrayRef) -> ArrayRef {
+    let field = Arc::new(Field::new("item", numbers.data_type().clone(), false));
+    Arc::new(FixedSizeListArray::new(field, N as i32, numbers, None))
 }
 
 /// A place (m) in the unit of recordings (mm).
@@ -167,14 +214,8 @@ pub(super) fn colours(descriptor: ComponentDescriptor, values: impl Iterator<Ite
 }
 
 /// Class numbers as Rerun stores them; the viewer shows the names that the annotation context gives them.
-pub(super) fn classes(field: &'static str, values: impl Iterator<Item = u16>) -> SerializedComponentBatch {
-    debug_assert_eq!(rerun::components::ClassId::arrow_datatype(), DataType::UInt16);
+pub(super) fn classes(descriptor: ComponentDescriptor, values: impl Iterator<Item = u16>) -> SerializedComponentBatch {
+    debug_assert_eq!(ClassId::arrow_datatype(), DataType::UInt16);
     let array: ArrayRef = Arc::new(UInt16Array::from_iter_values(values));
-    let descriptor = bond_field(field).with_component_type(<rerun::components::ClassId as rerun::Component>::name());
     SerializedComponentBatch::new(array, descriptor)
-}
-
-/// The descriptor of a field of our own, shown under `Bond` in the viewer.
-pub(super) fn bond_field(field: &'static str) -> ComponentDescriptor {
-    ComponentDescriptor { archetype: Some("strandsnap.Bond".into()), component: field.into(), component_type: None }
 }

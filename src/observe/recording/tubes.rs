@@ -1,92 +1,146 @@
-//! Wires as smooth tubes: capsules along each unbroken stretch.
+//! Wires as smooth tubes: at each particle a capsule along a bond.
 //!
-//! A capsule spans a few bonds: over three bonds of a stretched KA4 wire its axis departs from the helix by less than
-//! a twentieth of the wire's radius. Its radius is the mean over the particles that it spans, so that a wire that
-//! necks is seen to neck. At a broken bond a capsule spans one bond, so that the coloured tip is short.
+//! A capsule stands at its particle, whose position, radius and colour it shares, so that only its turn and its length
+//! are recorded: the layout tells the viewer where the rest is. They hardly change while a strand is stretched, so those
+//! of a wire are recorded anew only when one would be seen to be off, and in half precision where that is enough.
 
-use super::names::{PLASTIC_STRAIN, STRESS, UTILISATION};
-use super::paint::{Palette, at_broken_bond};
-use super::stream::{bond_field, colours, in_mm, in_mpa, numbers, vectors};
+use super::names::{LENGTH, TURN};
+use super::stream::in_mm;
 use crate::engine::view::{BondState, Snapshot, WireInfo};
 use glam::{Quat, Vec3};
-use rerun::{Capsules3D, SerializedComponentBatch};
-use std::ops::Range;
-use std::sync::Arc;
+use rerun::blueprint::VisualizerComponentMapping;
+use rerun::{Archetype as _, Capsules3D, ComponentDescriptor, Points3D};
 
-/// Bonds that one capsule spans.
-const SPAN: usize = 3;
+/// How far the end of a capsule may lie beside its particle, over the wire's radius (-): less than a pixel where a wire is
+/// fifty wide.
+const ASIDE: f32 = 0.03;
+/// How much too long or too short a capsule may be, over the wire's radius (-): its ends are round, and lie in those of
+/// its neighbours.
+const ALONG: f32 = 0.25;
+/// By how much a radius may differ from what is drawn, over itself (-).
+const THINNER: f32 = 0.02;
 
-/// Tubes of one wire in a batch of snapshots.
-pub(super) fn batches(
-    snapshots: &[Arc<Snapshot>],
-    palette: &Palette,
-    wire: &WireInfo,
-    number: usize,
-) -> Vec<(SerializedComponentBatch, Vec<usize>)> {
-    let pieces: Vec<Vec<Range<usize>>> = snapshots.iter().map(|s| pieces(s, wire)).collect();
-    let each: Vec<usize> = pieces.iter().map(Vec::len).collect();
-    let all = || snapshots.iter().zip(&pieces).flat_map(|(s, pieces)| pieces.iter().map(move |piece| (s, piece)));
-    let middle = |piece: &Range<usize>| (piece.start + piece.end) / 2;
-    let value = |field: &'static str, of: fn(&Snapshot, usize) -> f32| {
-        let values = all().map(|(s, piece)| of(s, wire.first + middle(piece)));
-        (numbers(bond_field(field), values), each.clone())
-    };
-    let axes: Vec<Vec3> = all().map(|(s, piece)| axis(s, wire, piece)).collect();
-    let starts = all().map(|(s, piece)| place(s, wire, piece.start));
-    let turns = axes.iter().map(|a| Quat::from_rotation_arc(Vec3::Z, a.normalize_or(Vec3::Z)).to_array());
-    let radii = all().map(|(s, piece)| radius(s, wire, piece));
-    let paint = all().map(|(s, piece)| {
-        let shown = [piece.start, piece.end].into_iter().find(|k| at_broken_bond(s, wire, *k));
-        palette.particle(s, wire, number, shown.unwrap_or(middle(piece)))
-    });
-    vec![
-        (vectors(Capsules3D::descriptor_translations(), starts), each.clone()),
-        (vectors(Capsules3D::descriptor_quaternions(), turns), each.clone()),
-        (numbers(Capsules3D::descriptor_lengths(), axes.iter().map(|a| a.length())), each.clone()),
-        (numbers(Capsules3D::descriptor_radii(), radii), each.clone()),
-        (colours(Capsules3D::descriptor_colors(), paint), each.clone()),
-        value(STRESS, |s, slot| in_mpa(s.bond_stress[slot])),
-        value(PLASTIC_STRAIN, |s, slot| s.plastic_strain[slot]),
-        value(UTILISATION, |s, slot| s.utilisation[slot]),
-    ]
+/// What of a wire was recorded last.
+#[derive(Default)]
+pub(super) struct Drawn {
+    turned: Vec<Capsule>,
+    long: Vec<Capsule>,
+    radii: Vec<f32>,
+    states: Vec<BondState>,
 }
 
-/// Where a wire's particle `k` is (mm).
-fn place(snapshot: &Snapshot, wire: &WireInfo, k: usize) -> [f32; 3] {
-    in_mm(snapshot.position[wire.first + k])
+/// A capsule: the particle that it leads to, counted along the wire, its axis and its radius (mm).
+#[derive(Clone, Copy)]
+pub(super) struct Capsule {
+    to: usize,
+    axis: Vec3,
+    radius: f32,
 }
 
-fn axis(snapshot: &Snapshot, wire: &WireInfo, piece: &Range<usize>) -> Vec3 {
-    let [a, b] = [piece.start, piece.end].map(|k| Vec3::from(place(snapshot, wire, k)));
-    b - a
-}
-
-fn radius(snapshot: &Snapshot, wire: &WireInfo, piece: &Range<usize>) -> f32 {
-    let radii = &snapshot.radius[wire.first + piece.start..=wire.first + piece.end];
-    let [mean] = in_mm([radii.iter().sum::<f32>() / radii.len() as f32]);
-    mean
-}
-
-/// Pieces from particle to particle, counted along the wire; none spans a broken bond.
-fn pieces(snapshot: &Snapshot, wire: &WireInfo) -> Vec<Range<usize>> {
-    let bonds = wire.len.saturating_sub(1);
-    let broken = |bond: usize| snapshot.bond_state[wire.first + bond] == BondState::Broken;
-    let mut pieces = Vec::new();
-    let mut start = 0;
-    for bond in 0..bonds {
-        if broken(bond) {
-            start = bond + 1;
-            continue;
-        }
-        let end = bond + 1;
-        let last = end == bonds || broken(end);
-        let tip = (start > 0 && broken(start - 1) && end - start == 1) || (end + 1 < bonds && broken(end + 1));
-        if last || tip || end - start == SPAN {
-            pieces.push(start..end);
-            start = end;
-        }
+impl Capsule {
+    /// Its turn from the z axis, as a quaternion.
+    pub fn turn(&self) -> [f32; 4] {
+        Quat::from_rotation_arc(Vec3::Z, self.axis.normalize_or(Vec3::Z)).to_array()
     }
-    pieces
+
+    /// Its length (mm).
+    pub fn length(&self) -> f32 {
+        self.axis.length()
+    }
+
+    /// Whether the turn of `drawn` is as good as its own.
+    fn turned_like(&self, drawn: &Self) -> bool {
+        self.to == drawn.to
+            && self.axis.reject_from_normalized(drawn.axis.normalize_or(Vec3::Z)).length() <= ASIDE * self.radius
+    }
+
+    /// Whether the length of `drawn` is as good as its own.
+    fn as_long_as(&self, drawn: &Self) -> bool {
+        self.to == drawn.to && (self.length() - drawn.length()).abs() <= ALONG * self.radius
+    }
+}
+
+/// The capsules of a wire.
+pub(super) fn capsules(snapshot: &Snapshot, wire: &WireInfo) -> Vec<Capsule> {
+    let holds = |bond: usize| bond + 1 < wire.len && snapshot.bond_state[wire.first + bond] != BondState::Broken;
+    let place = |k: usize| Vec3::from(in_mm(snapshot.position[wire.first + k]));
+    let capsule = |k: usize| {
+        let to = leads_to(holds, k);
+        let [radius] = in_mm([snapshot.radius[wire.first + k]]);
+        Capsule { to, axis: place(to) - place(k), radius }
+    };
+    (0..wire.len).map(capsule).collect()
+}
+
+/// Puts `now` in the place of what was `drawn` unless that is near enough; says whether it did.
+fn renew(drawn: &mut Vec<Capsule>, now: &[Capsule], near: impl Fn(&Capsule, &Capsule) -> bool) -> bool {
+    let off = drawn.len() != now.len() || !now.iter().zip(&*drawn).all(|(now, drawn)| near(now, drawn));
+    if off {
+        now.clone_into(drawn);
+    }
+    off
+}
+
+impl Drawn {
+    /// Whether the turns of a wire's capsules must be recorded anew.
+    pub fn turns(&mut self, now: &[Capsule]) -> bool {
+        renew(&mut self.turned, now, Capsule::turned_like)
+    }
+
+    /// Whether their lengths must be recorded anew.
+    pub fn lengths(&mut self, now: &[Capsule]) -> bool {
+        renew(&mut self.long, now, Capsule::as_long_as)
+    }
+
+    /// The radii of a wire's particles (m), when they must be recorded anew.
+    pub fn radii(&mut self, snapshot: &Snapshot, wire: &WireInfo) -> Option<&[f32]> {
+        let now = &snapshot.radius[wire.particles()];
+        let near = |(drawn, now): (&f32, &f32)| (drawn - now).abs() <= THINNER * drawn;
+        if self.radii.len() == now.len() && self.radii.iter().zip(now).all(near) {
+            return None;
+        }
+        self.radii = now.to_vec();
+        Some(&self.radii)
+    }
+
+    /// The states of the bonds that a wire's particles show, when one has changed.
+    pub fn states(&mut self, now: Vec<BondState>) -> Option<&[BondState]> {
+        if self.states == now {
+            return None;
+        }
+        self.states = now;
+        Some(&self.states)
+    }
+}
+
+/// Where the viewer finds what it draws a wire's capsules from.
+pub(super) fn mappings() -> Vec<VisualizerComponentMapping> {
+    let from = |target: ComponentDescriptor, source: &str| {
+        VisualizerComponentMapping::new_source_component(target.component.as_str(), source)
+    };
+    let shared = [
+        (Capsules3D::descriptor_translations(), Points3D::descriptor_positions()),
+        (Capsules3D::descriptor_radii(), Points3D::descriptor_radii()),
+        (Capsules3D::descriptor_colors(), Points3D::descriptor_colors()),
+    ];
+    let own = [(Capsules3D::descriptor_quaternions(), TURN), (Capsules3D::descriptor_lengths(), LENGTH)];
+    let shared = shared.into_iter().map(|(target, source)| from(target, source.component.as_str()));
+    shared.chain(own.into_iter().map(|(target, source)| from(target, source))).collect()
+}
+
+/// The viewer's name for what draws capsules.
+pub(super) fn visualizer() -> &'static str {
+    Capsules3D::name().short_name()
+}
+
+/// The particle that the capsule of particle `k` leads to: the next one; from the last one before a gap, whose colour
+/// is to be seen, the one before. That one then stays where it is, so that no bond is drawn twice.
+fn leads_to(holds: impl Fn(usize) -> bool, k: usize) -> usize {
+    match (k > 0 && holds(k - 1), holds(k), holds(k + 1)) {
+        (_, true, true) => k + 1,
+        (true, false, _) => k - 1,
+        _ => k,
+    }
 }
 
 #[cfg(test)]
@@ -94,20 +148,69 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_cover_every_bond_that_holds_and_no_other() {
+    fn every_bond_that_holds_is_drawn_once_and_no_other() {
         let len = 23;
-        let wire = WireInfo { layer: 0, material: 0, first: 0, len, diameter: 1.0 };
-        for broken in [vec![], vec![0], vec![21], vec![3, 4], vec![8, 9, 10, 17]] {
-            let mut bond_state = vec![BondState::Whole; len];
-            broken.iter().for_each(|b: &usize| bond_state[*b] = BondState::Broken);
-            let snapshot = Snapshot { bond_state, ..Snapshot::default() };
-            let covered: Vec<usize> = pieces(&snapshot, &wire).into_iter().flatten().collect();
-            let expected: Vec<usize> = (0..len - 1).filter(|b| !broken.contains(b)).collect();
-            assert_eq!(covered, expected, "{broken:?}");
-            for piece in pieces(&snapshot, &wire) {
-                let tip = at_broken_bond(&snapshot, &wire, piece.start) || at_broken_bond(&snapshot, &wire, piece.end);
-                assert!(piece.len() == 1 || !tip && piece.len() <= SPAN, "{piece:?} of {broken:?}");
-            }
+        for broken in [vec![], vec![0], vec![21], vec![3, 4], vec![1, 3, 20], vec![8, 9, 10, 17]] {
+            let holds = |bond: usize| bond + 1 < len && !broken.contains(&bond);
+            let drawn = (0..len).map(|k| (k, leads_to(holds, k))).filter(|(k, to)| k != to);
+            let mut drawn: Vec<usize> = drawn.map(|(k, to)| k.min(to)).collect();
+            drawn.sort_unstable();
+            let expected: Vec<usize> = (0..len - 1).filter(|bond| holds(*bond)).collect();
+            assert_eq!(drawn, expected, "{broken:?}");
         }
+    }
+
+    /// A straight wire along z, with a radius of 0.1 mm and a particle each 0.2 mm times `stretch`, the last one aside (m).
+    fn wire(stretch: f32, aside: f32) -> (Snapshot, WireInfo) {
+        let len = 9;
+        let mut position: Vec<[f32; 3]> = (0..len).map(|k| [0.0, 0.0, 2e-4 * stretch * k as f32]).collect();
+        position[len - 1][0] = aside;
+        let (radius, bond_state) = (vec![1e-4; len], vec![BondState::Whole; len]);
+        let snapshot = Snapshot { position, radius, bond_state, ..Snapshot::default() };
+        (snapshot, WireInfo { layer: 0, material: 0, first: 0, len, diameter: 2e-4 })
+    }
+
+    #[test]
+    fn turns_and_lengths_are_recorded_when_what_is_drawn_is_off() {
+        let first = |stretch: f32, aside: f32| {
+            let (snapshot, of) = wire(stretch, aside);
+            capsules(&snapshot, &of)
+        };
+        let drawn = || {
+            let mut drawn = Drawn::default();
+            let now = first(1.0, 0.0);
+            assert!(drawn.turns(&now) && drawn.lengths(&now), "nothing was drawn before");
+            drawn
+        };
+        for (stretch, aside, turns, lengths) in
+            [(1.0, 2.5e-6, false, false), (1.0, 3.5e-6, true, false), (1.1, 0.0, false, false), (1.2, 0.0, false, true)]
+        {
+            let (now, mut drawn) = (first(stretch, aside), drawn());
+            assert_eq!([drawn.turns(&now), drawn.lengths(&now)], [turns, lengths], "{stretch}, {aside}");
+        }
+        let (mut snapshot, of) = wire(1.0, 0.0);
+        snapshot.bond_state[4] = BondState::Broken;
+        let (now, mut drawn) = (capsules(&snapshot, &of), drawn());
+        assert!(drawn.turns(&now) && drawn.lengths(&now), "a bond broke");
+        assert_eq!([now[3].length(), now[4].axis.z], [0.0, -now[0].length()], "a gap after the fifth");
+    }
+
+    #[test]
+    fn a_turn_brings_the_z_axis_onto_the_axis() {
+        for axis in [Vec3::Z, Vec3::NEG_Z, Vec3::new(0.3, -0.2, 0.9), Vec3::X] {
+            let turned = Quat::from_array(Capsule { to: 1, axis, radius: 1.0 }.turn()) * Vec3::Z;
+            assert!((turned - axis.normalize()).length() < 1e-6, "{axis}: {turned}");
+        }
+    }
+
+    #[test]
+    fn radii_are_recorded_when_one_has_changed() {
+        let mut drawn = Drawn::default();
+        let (mut snapshot, of) = wire(1.0, 0.0);
+        assert!(drawn.radii(&snapshot, &of).is_some());
+        snapshot.radius[3] *= 0.99;
+        assert!(drawn.radii(&snapshot, &of).is_none());
+        snapshot.radius[3] *= 0.98;
+        assert!(drawn.radii(&snapshot, &of).is_some());
     }
 }

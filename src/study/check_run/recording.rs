@@ -32,6 +32,9 @@ fn series(run: &Folder, read: &RecordingContents, search: &mut Search) {
         (paths::broken(), Box::new(|s| vec![s.wires_broken as f64, s.bonds_broken as f64])),
         (paths::energy(), Box::new(energies)),
     ];
+    if info.gauge.is_some() {
+        entities.push((paths::body_strain(), Box::new(|s| vec![s.strain * 100.0])));
+    }
     for layer in 0..info.layers.len() {
         let wires: Vec<usize> = (0..info.wires.len()).filter(|w| info.wires[*w].layer == layer).collect();
         entities.push((
