@@ -99,6 +99,9 @@ impl Engine {
         if self.spec.has_several_materials() {
             return Err(refused("its bodies are of several materials"));
         }
+        if self.rigid.is_some() {
+            return Err(refused("rigid bodies ([[body]])"));
+        }
         let unrecordable = |reason: Unrecordable| refused(&reason.to_string());
         let mut pairs = None;
         if let Some(contacts) = &self.contacts {
