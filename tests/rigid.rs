@@ -7,7 +7,7 @@ use drive::*;
 use glam::DVec3;
 use strandsnap::base::error::Error;
 use strandsnap::engine::Engine;
-use strandsnap::engine::contact::rigid::BodyState;
+use strandsnap::engine::view::BodyState;
 use strandsnap::reference::hertz::{Pair, elliptical_factor};
 
 /// Copper on copper: E* = E/(2(1 − ν²)) (Pa).
@@ -311,4 +311,102 @@ fn a_body_that_goes_through_a_wire_stops_the_run() {
     assert!(words.contains("into rigid body \"knife\""), "{words}");
     assert!(engine.time() > 0.25e-3 && engine.time() < 0.31e-3, "{}", engine.time());
     assert!(engine.take_notices().iter().any(|notice| notice.to_string().contains("knife")));
+}
+
+/// An elastic sphere that a plane strikes at V leaves it at 2V, and has its energy from the plane.
+#[test]
+fn a_plane_that_strikes_a_sphere_gives_it_twice_its_speed() {
+    let text = format!(
+        r#"{CONTACT}
+        [[sphere]]
+        diameter = "2 mm"
+        position = ["0 mm", "1 mm", "0 mm"]
+        [time]
+        step = "20 ns"
+        [stop]
+        time = "30 us"
+        [[body]]
+        shape = "plane"
+        normal = [0, 5, 0]
+        position = ["3 mm", "-0.002 mm", "1 mm"]
+        velocity = ["0.4 m/s", "1 m/s", "0 m/s"]"#
+    );
+    let mut engine = engine(&text, &[]);
+    run_to(&mut engine, 30e-6);
+    let (mass, energy) = (engine.state().mass[0], engine.energy());
+    near(engine.state().v.y[0], 2.0, 1e-6);
+    assert_eq!(engine.state().v.x[0], 0.0, "nothing rubs");
+    near(energy.work, 0.5 * mass * 4.0, 1e-5);
+    near(energy.kinetic, energy.work, 1e-5);
+}
+
+/// What turns does work by friction: a sphere between two planes, of which one turns under it.
+#[test]
+fn a_table_that_turns_takes_a_sphere_along() {
+    let text = format!(
+        r#"{CONTACT}
+        [[sphere]]
+        diameter = "2 mm"
+        position = ["10 mm", "0.9999 mm", "0 mm"]
+        [[hold]]
+        body = 0
+        fix = ["y"]
+        [stop]
+        time = "2 ms"
+        [[body]]
+        shape = "plane"
+        normal = [0, 1, 0]
+        position = ["0 mm", "0 mm", "0 mm"]
+        spin = "100 rad/s"
+        ramp = "0.5 ms""#
+    );
+    let set = ["contact.tangential=mindlin", "contact.friction=0.3", "contact.damping=0.05"];
+    let mut engine = engine(&text, &set);
+    run_to(&mut engine, 2e-3);
+    let (state, energy) = (engine.state(), engine.energy());
+    // It rolls: its lowest point moves as the table, at ω × r = −z at x = 10 mm, and it has got 2/7 of that speed itself.
+    let low = state.v.get(0) + state.w.get(0).cross(DVec3::NEG_Y * (1e-3 - 0.5e-7));
+    near(-low.z, 1.0, 0.02);
+    near(-state.v.z[0], 2.0 / 7.0, 0.02);
+    assert!(energy.residual().abs() < 1e-3 * energy.work, "{energy:?}");
+}
+
+#[test]
+fn a_body_that_reaches_into_a_wire_is_refused() {
+    let text = format!(
+        r#"{CONTACT}
+        [[wire]]
+        diameter = "0.4 mm"
+        from = ["0 mm", "0 mm", "-2 mm"]
+        to = ["0 mm", "0 mm", "2 mm"]
+        [stop]
+        time = "1 ms"
+        [[body]]
+        name = "far"
+        shape = "plane"
+        normal = [0, 1, 0]
+        position = ["0 mm", "-0.2 mm", "0 mm"]
+        [[body]]
+        name = "knife"
+        shape = "cylinder"
+        axis = [1, 0, 0]
+        diameter = "0.2 mm"
+        position = ["0 mm", "0.25 mm", "0.31 mm"]"#
+    );
+    let error = strandsnap::strand::build(&spec(&text, &[])).expect_err("it overlaps");
+    assert_eq!(error.key, "body.1");
+    assert!(error.message.contains("\"knife\" reaches into wire 1 (layer \"wire\") by 0.05 mm, 12 %"), "{error}");
+    strandsnap::strand::build(&spec(&text, &[r#"body.1.position=["0 mm", "0.27 mm", "0.31 mm"]"#])).unwrap();
+}
+
+/// Contacts may be switched off for one run: bodies then do nothing, which is told.
+#[test]
+fn without_contacts_there_are_no_bodies() {
+    let scene = strandsnap::scene::load("bounce", &["contact.normal=none".into(), "contact.limiting_pressure=".into()]);
+    let scene = scene.unwrap_or_else(|error| panic!("{error:?}"));
+    assert!(scene.spec.rigids.is_empty() && !scene.plan.rigid);
+    let resolved = strandsnap::scene::write::to_toml(&scene.spec);
+    assert_eq!(spec(&resolved, &[]).spheres, scene.spec.spheres);
+    let told = strandsnap::scene::load("bounce", &["contact.tangential=none".into(), "body.0.friction=0.2".into()]);
+    assert!(told.unwrap_err().to_string().contains("leaves friction out"));
 }

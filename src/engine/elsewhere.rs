@@ -252,7 +252,7 @@ impl Engine {
             self.state.step += 1;
             self.state.time += block.dt;
             let mut axial = axial.iter().copied();
-            self.measures.take(strain, &self.holds.reaction, |_| axial.next().unwrap_or_default(), block.dt);
+            self.measures.take(strain, &self.holds.reaction, |_| axial.next().unwrap_or_default(), &[], block.dt);
         }
         for (name, numbers) in &outcome.numbers {
             self.set_numbers(name, numbers);

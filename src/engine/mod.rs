@@ -227,7 +227,8 @@ impl Engine {
         self.state.step += 1;
         self.state.time += self.state.dt;
         let axial = |slot| self.bonds.as_ref().map_or(0.0, |bonds| bonds.axial_force(slot));
-        self.measures.take(strain, &self.holds.reaction, axial, self.state.dt);
+        let bodies = self.rigid.as_ref().map_or_else(Vec::new, |rigid| rigid.bodies());
+        self.measures.take(strain, &self.holds.reaction, axial, &bodies, self.state.dt);
         self.timings.integrate += began.elapsed();
         self.state.travel += largest2.sqrt();
         let limit = RUNAWAY * self.least_radius;

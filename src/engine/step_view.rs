@@ -10,7 +10,7 @@ use super::neighbours::Neighbours;
 use super::state::State;
 use super::team::Team;
 use super::time_step::Bound;
-use super::view::{BondState, Energy, Sample, Snapshot};
+use super::view::{BodyState, BondState, Energy, Sample, Snapshot};
 use crate::base::finding::{Body, Instant, Member};
 use crate::scene::plan::Plan;
 use crate::scene::spec::Spec;
@@ -117,7 +117,14 @@ impl StepView<'_> {
             contacts: self.contacts.map_or(0, |c| c.active()) + self.rigid.map_or(0, |rigid| rigid.active()),
             time_step: self.time_step,
             energy: self.energy(),
+            bodies: self.bodies(),
         }
+    }
+
+    /// Rigid bodies, as means over the same time as the forces of the grips.
+    fn bodies(&self) -> Vec<BodyState> {
+        let Some(rigid) = self.rigid else { return Vec::new() };
+        self.measures.bodies().unwrap_or_else(|| rigid.bodies())
     }
 
     /// Nominal axial stress of a wire at mid-gauge (Pa): the mean over its bonds in the middle twentieth of the gauge, of

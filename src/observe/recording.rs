@@ -9,7 +9,7 @@
 //! | `/strand/<layer>/wire_<NN>/tube` | the same wire as a smooth tube, apart where it broke, with coloured tips; fields as above |
 //! | `/strand/<layer>/wire_<NN>/ruptures` | labelled points at the places of rupture (mm), from their time on |
 //! | `/first_break`, `/focus` | mark and label of the first break; what the eye of the close view follows |
-//! | `/spheres`, `/grips` | free spheres; boxes around what the grips hold (mm) |
+//! | `/spheres`, `/bodies`, `/grips` | free spheres; rigid bodies; boxes around what the grips hold (mm) |
 //! | `/map/<layer>`, `/map/<layer>/wire_<NN>/ruptures` | unrolled map: a row per wire, coloured like the particles; ruptures and their order |
 //! | `/chart` | nominal stress over strain, drawn with axes in % and MPa |
 //! | `/states/<layer>/wire_<NN>` | lane of the wire's state: whole, yielding, broken |
@@ -25,6 +25,7 @@
 //! out in batches of fixed size, everything as columns without clock times, so that the same run gives the same
 //! contents.
 
+mod bodies;
 mod chart;
 mod curve;
 mod first_break;

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 const MAGIC: [u8; 12] = *b"strandsnap\0T";
 /// Raised whenever what is written changes its meaning or order.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 /// No record is this long (bytes); a length above it is damage.
 const LONGEST_RECORD: u32 = 1 << 30;
 

@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 
 const MAGIC: [u8; 12] = *b"strandsnap\0C";
 /// Raised whenever what is written changes its meaning or order.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Share of the run's time that checkpoints may take where the scene does not say how often (-).
 const SHARE: f64 = 0.01;
 /// Least wall time between two of them there (s).

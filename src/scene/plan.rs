@@ -1,8 +1,8 @@
 //! `Plan`: what a scene needs, each component present or absent with its reason.
 
 use super::spec::{
-    BondLawSpec, BondSpec, DriveSpec, GripKind, NormalSpec, OneMaterial, PathSpec, PlanMode, RuptureSpec, Shape, Spec,
-    TangentialSpec,
+    BondLawSpec, BondSpec, ContactSpec, DriveSpec, GripKind, NormalSpec, OneMaterial, PathSpec, PlanMode, RuptureSpec,
+    Shape, Spec, TangentialSpec,
 };
 use std::fmt;
 
@@ -209,7 +209,8 @@ fn contacts(spec: &Spec, bodies: usize, rupture: bool, general: bool) -> (Contac
     } else if rupture {
         (ContactPlan::AfterRupture, "one straight wire; its pieces can touch once it has snapped".into())
     } else {
-        (ContactPlan::Absent, "one straight body that never breaks touches nothing".into())
+        let nothing = if spec.rigids.is_empty() { "nothing" } else { "nothing but rigid bodies" };
+        (ContactPlan::Absent, format!("one straight body that never breaks touches {nothing}"))
     }
 }
 
@@ -237,10 +238,13 @@ fn contact_component(spec: &Spec, contacts: &(ContactPlan, String)) -> Component
 
 fn tangential_component(spec: &Spec, contacts: ContactPlan) -> Component {
     let law = spec.contact.as_ref().and_then(|c| c.tangential);
-    let smooth = spec.contact.as_ref().is_some_and(|c| c.tangential.is_some() && c.is_smooth(spec.materials().len()));
-    let runs = contacts != ContactPlan::Absent && law.is_some() && !smooth;
+    let none = contacts == ContactPlan::Absent && spec.rigids.is_empty();
+    let rigids = spec.rigids.iter().any(|rigid| rigid.friction > 0.0);
+    let even = |c: &ContactSpec| contacts == ContactPlan::Absent || c.is_smooth(spec.materials().len());
+    let smooth = !rigids && spec.contact.as_ref().is_some_and(|c| c.tangential.is_some() && even(c));
+    let runs = !none && law.is_some() && !smooth;
     let reason: String = match law {
-        _ if contacts == ContactPlan::Absent => "no contacts".into(),
+        _ if none => "no contacts".into(),
         Some(_) if smooth => "the coefficient of friction is 0".into(),
         Some(TangentialSpec::Mindlin) => format!("mindlin{}", pairs(spec)),
         Some(TangentialSpec::MindlinDeresiewicz) => format!("mindlin-deresiewicz{}", pairs(spec)),

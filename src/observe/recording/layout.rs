@@ -142,6 +142,7 @@ impl Layout {
     fn whole_view(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
         let mut contents = vec!["/strand/**".to_owned(), "/spheres/**".to_owned(), "/grips/**".to_owned()];
         contents.push(format!("/{}", names::FIRST_BREAK_FAR));
+        contents.extend(bodies(scenery.info));
         // Particles are cheaper to draw, and as good at this scale.
         contents
             .extend(wires_of_all(scenery.info).map(|w| format!("- {}", names::tube(names::STRAND, scenery.info, w))));
@@ -182,6 +183,7 @@ impl Layout {
         let info = scenery.info;
         let mut contents =
             vec!["/spheres/**".to_owned(), format!("/{}", names::FIRST_BREAK), format!("/{}", names::FOCUS)];
+        contents.extend(bodies(info));
         for number in wires_of_all(info).filter(|number| info.wires[*number].layer <= outermost) {
             let drawn = match wires {
                 Wires::Tubes => names::tube(names::STRAND, info, number),
@@ -341,6 +343,11 @@ fn first_id(layout: &str) -> u128 {
 enum Wires {
     Tubes,
     Particles,
+}
+
+/// Rigid bodies, where there are any.
+fn bodies(info: &RunInfo) -> Option<String> {
+    (!info.bodies.is_empty()).then(|| format!("/{}/**", names::BODIES))
 }
 
 fn wires_of_all(info: &RunInfo) -> std::ops::Range<usize> {

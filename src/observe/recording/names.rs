@@ -11,6 +11,8 @@ pub const APPLICATION: &str = "strandsnap";
 pub const STRAND: &str = "strand";
 /// Free spheres.
 pub const SPHERES: &str = "spheres";
+/// Rigid bodies.
+pub const BODIES: &str = "bodies";
 /// Grips.
 pub const GRIPS: &str = "grips";
 /// Nominal stress of the body (MPa).

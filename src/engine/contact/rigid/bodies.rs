@@ -1,6 +1,6 @@
 //! All rigid bodies of a run, chunk of particles by chunk.
 
-use super::body::{Body, BodyState};
+use super::body::Body;
 use super::stage::{Outcome, RigidBodies};
 use super::touch::{self, Act, Meets, Near, Touch};
 use crate::engine::bytes::{Bytes, behind};
@@ -10,6 +10,7 @@ use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{CHUNK, ChunkSums, Deepest, State};
 use crate::engine::team::Team;
 use crate::engine::time_step::Element;
+use crate::engine::view::BodyState;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::line::LineStiffness;
 use crate::law::tangential::TangentialLaw;

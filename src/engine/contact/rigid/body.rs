@@ -2,6 +2,7 @@
 
 use crate::engine::contact::pair::Laws;
 use crate::engine::state::State;
+use crate::engine::view::BodyState;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::line::CELLS;
 use crate::law::tangential::TangentialLaw;
@@ -38,19 +39,6 @@ pub(super) struct Body<N, T> {
     way: f64,
     /// Force on it (N), and moment about its place (N m).
     pub load: [DVec3; 2],
-}
-
-/// A rigid body at one instant, for those who look on.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct BodyState {
-    /// Where it is (m): a point of a plane, the middle of a cylinder, the centre of a sphere.
-    pub position: [f64; 3],
-    /// By how much it has turned about its axis (rad).
-    pub angle: f64,
-    /// Force of all that touches it on it (N).
-    pub force: [f64; 3],
-    /// Moment of that about its position (N m).
-    pub moment: [f64; 3],
 }
 
 /// What a body remembers: offset, angle, way, load.

@@ -19,6 +19,5 @@ mod build;
 mod stage;
 mod touch;
 
-pub use body::BodyState;
 pub use build::build;
 pub use stage::{Outcome, RigidBodies};

@@ -1,11 +1,11 @@
 //! What the engine asks of rigid bodies.
 
-use super::body::BodyState;
 use crate::engine::bytes::Bytes;
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{ChunkSums, State};
 use crate::engine::team::Team;
 use crate::engine::time_step::Element;
+use crate::engine::view::BodyState;
 
 /// What the engine asks of rigid bodies, whatever their laws.
 pub trait RigidBodies: Send + Sync {
