@@ -45,7 +45,7 @@ fn told(scene: &Scene) -> Vec<String> {
 #[test]
 fn an_option_that_changes_nothing_is_refused() {
     // Scene, options of which the last one is to blame, and what the message says.
-    let cases: [(&str, &[&str], &str); 13] = [
+    let cases: [(&str, &[&str], &str); 15] = [
         ("strand-1x7", &["strand.pitch=20 mm"], "every layer that is laid around the axis has its own"),
         ("strand-1x7", &["strand.layer.0.pitch=20 mm"], "a wire on the axis is straight"),
         ("strand-1x7", &["strand.layer.0.phase=20 deg"], "a wire on the axis is straight"),
@@ -56,6 +56,8 @@ fn an_option_that_changes_nothing_is_refused() {
         ("single-wire", &["bond.rupture=", "stop.stress_fraction=", "output.rupture_density=3"], "can break"),
         ("two-spheres", &["bond.damping=0.1"], "has no wires"),
         ("two-spheres", &["spacing=0.5"], "has no wires"),
+        ("bounce", &["body.0.friction=0.3"], "leaves friction out"),
+        ("bounce", &["contact.normal=none", "body.0.name=wall"], "does nothing but touch"),
         ("ka4", &["time.step=10 ns", "time.contact_resolution=0.2"], "time.step fixes the step"),
         ("ka4", &["bond.hardening.saturation=0 MPa"], "no saturation"),
         (

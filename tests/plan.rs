@@ -43,7 +43,7 @@ fn state<'a>(plan: &'a Plan, name: &str) -> &'a str {
 
 /// Bonds, rotations, plastic state, rupture, scatter, contacts, friction, grips of each built-in scene: `+` runs,
 /// `-` left out, `r` from the first rupture on.
-const TABLE: [(&str, &str); 10] = [
+const TABLE: [(&str, &str); 12] = [
     ("ka4", "++++++++"),
     ("jaw-grip", "++++++++"),
     ("strand-1x7", "++++++++"),
@@ -54,6 +54,8 @@ const TABLE: [(&str, &str); 10] = [
     ("cantilever", "++-----+"),
     ("torsion", "+++----+"),
     ("two-spheres", "-----+--"),
+    ("bounce", "--------"),
+    ("bend3", "+++--++-"),
 ];
 const COMPONENTS: [&str; 8] =
     ["bonds", "rotations", "plastic state", "rupture", "scatter", "contacts", "friction", "grips"];

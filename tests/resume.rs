@@ -148,9 +148,13 @@ fn what_was_changed_or_is_not_there_is_refused() {
 /// A run that was killed after two checkpoints or more.
 fn killed(folder: &Path, out: &Path) {
     let scene = scene(folder, STRAND);
-    let arguments =
-        ["run", text(&scene), "--out", text(out), "--quiet", "--no-frames", "--no-recording", "--threads", "1"];
-    let mut child = program(&arguments).spawn().unwrap();
+    killed_run(&[text(&scene)], out);
+}
+
+/// The same of any scene, with options.
+fn killed_run(scene: &[&str], out: &Path) {
+    let lean = ["--out", text(out), "--quiet", "--no-frames", "--no-recording", "--threads", "1"];
+    let mut child = program(&[&["run"], scene, &lean[..]].concat()).spawn().unwrap();
     let second = || run::checkpoint::latest(out).is_ok_and(|(checkpoint, _)| checkpoint.number >= 3);
     while !second() {
         assert!(child.try_wait().unwrap().is_none(), "it ended before its third checkpoint");
@@ -384,4 +388,36 @@ fn an_engine_goes_on_to_the_bit_whatever_it_computes() {
     let second = STRAND.find("[[strand.layer]]\nwires = 5").unwrap();
     let grip = STRAND.find("[grip]").unwrap();
     goes_on_alike(&[&STRAND[..second], &STRAND[grip..]].concat(), 1300, 400);
+}
+
+/// Rigid bodies remember where they are and what they hold; their table is written again as well.
+#[test]
+fn a_run_with_rigid_bodies_goes_on_to_the_same_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, whole) = (folder.path().join("out"), folder.path().join("whole"));
+    let bend = ["bend3", "--set", "stop.time=1.5 ms", "--set", "output.checkpoint=1500"];
+    succeeds(&[&["run"], &bend[..], &["--out", text(&whole), "--quiet", "--no-frames", "--no-recording"]].concat());
+    killed_run(&bend, &out);
+    succeeds(&["resume", text(&out), "--quiet", "--threads", "2"]);
+    assert_same(&whole, &out, "bend3");
+    let table = fs::read_to_string(whole.join("bodies.csv")).unwrap();
+    let heads = "step,time_s,strain_percent,body,force_x_n,force_y_n,force_z_n,moment_x_n_mm,moment_y_n_mm,moment_z_n_mm,x_mm,y_mm,z_mm,angle_deg";
+    assert_eq!(table.lines().next(), Some(heads));
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let curve = fs::read_to_string(whole.join("curve.csv")).unwrap().lines().count() - 1;
+    assert_eq!(rows.len(), 3 * curve);
+    let number = |row: &[&str], column: usize| row[column].parse::<f64>().unwrap();
+    let [left, right, middle] = [&rows[rows.len() - 3], &rows[rows.len() - 2], &rows[rows.len() - 1]];
+    assert_eq!([left[3], right[3], middle[3]], ["left", "right", "middle"]);
+    // The wire hardly moves: the pins carry what the one between them presses with.
+    let [left, right, pressed] = [left, right, middle].map(|row| number(row, 5));
+    assert!(pressed > 0.5 && (left + right + pressed).abs() < 0.05 * pressed, "{left} {right} {pressed}");
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(whole.join("summary.json")).unwrap()).unwrap();
+    let greatest = rows.iter().filter(|row| row[3] == "middle").map(|row| {
+        let [x, y, z] = [4, 5, 6].map(|column| number(row, column));
+        (x * x + y * y + z * z).sqrt()
+    });
+    let told = summary["bodies"][2]["greatest_force_n"].as_f64().unwrap();
+    assert!((greatest.fold(0.0, f64::max) / told - 1.0).abs() < 1e-6, "{told}");
+    assert_eq!(summary["bodies"][2]["name"], "middle");
 }

@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// A wire or a free sphere, counted from 1 as in every table.
+/// A wire or a free sphere, counted from 1 as in every table, or a rigid body.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Body {
@@ -22,6 +22,11 @@ pub enum Body {
     Sphere {
         /// Number of the sphere among the free ones.
         sphere: usize,
+    },
+    /// A rigid body.
+    Rigid {
+        /// Its name.
+        body: String,
     },
 }
 
@@ -508,7 +513,7 @@ mod tests {
         let particle = Member { number: Some(5), body: body.clone() };
         let failure =
             Failure::PassedThrough { between: [particle.clone(), particle], z_m: 1e-3, relief: Relief::Clamp };
-        let between = [body.clone(), Body::Sphere { sphere: 1 }];
+        let between = [Body::Rigid { body: "pin".into() }, Body::Sphere { sphere: 1 }];
         for (kind, finding) in [
             ("step-shrunk", Finding::StepShrunk { from_s: 1e-7, to_s: 1e-8, limit }),
             ("failed", Finding::Failed { failure }),

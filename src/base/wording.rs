@@ -27,6 +27,7 @@ impl fmt::Display for Body {
         match self {
             Self::Wire { wire, layer } => write!(f, "wire {wire} ({layer} layer)"),
             Self::Sphere { sphere } => write!(f, "free sphere {sphere}"),
+            Self::Rigid { body } => write!(f, "rigid body {body:?}"),
         }
     }
 }
@@ -251,9 +252,10 @@ impl Stopped {
             Failure::UnstableMotion => "the motion turns round at every step: the time step is not stable".into(),
             Failure::LedgerOpen { missing_j, over_work } => ledger_open(*missing_j, *over_work),
             Failure::PassedThrough { between: [a, b], z_m, .. } => {
-                let how = match a.body {
-                    Body::Wire { .. } => ["", "through"],
-                    Body::Sphere { .. } => ["the centre of ", "into"],
+                let how = match [&a.body, &b.body] {
+                    [_, Body::Rigid { .. }] => ["the centre of ", "into"],
+                    [Body::Wire { .. }, _] => ["", "through"],
+                    [Body::Sphere { .. } | Body::Rigid { .. }, _] => ["the centre of ", "into"],
                 };
                 let [a, b] = [a, b].map(|one| member("bond", one));
                 format!("{}{a} has passed {} {b} at z = {:.1} mm, {at}", how[0], how[1], 1e3 * z_m)

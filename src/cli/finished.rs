@@ -35,7 +35,8 @@ pub fn print(summary: &RunSummary, options: &RunOptions, quiet: bool) {
     }
     if !quiet {
         say!("Results are in {}:", options.out.display());
-        say!("  summary.json, curve.csv, wires.csv, ruptures.csv, scene.toml");
+        let bodies = if summary.bodies.is_empty() { "" } else { "bodies.csv, " };
+        say!("  summary.json, curve.csv, wires.csv, ruptures.csv, {bodies}scene.toml");
         if options.frames {
             say!("  {}: one picture per snapshot", options.out.join(FRAMES).display());
         }

@@ -100,6 +100,9 @@ impl Engine {
         if self.spec.has_several_materials() {
             return Err(refused("its bodies are of several materials"));
         }
+        if self.rigid.is_some() {
+            return Err(refused("rigid bodies ([[body]])"));
+        }
         let unrecordable = |reason: Unrecordable| refused(&reason.to_string());
         let mut pairs = None;
         if let Some(contacts) = &self.contacts {
@@ -252,7 +255,7 @@ impl Engine {
             self.state.step += 1;
             self.state.time += block.dt;
             let mut axial = axial.iter().copied();
-            self.measures.take(strain, &self.holds.reaction, |_| axial.next().unwrap_or_default(), block.dt);
+            self.measures.take(strain, &self.holds.reaction, |_| axial.next().unwrap_or_default(), &[], block.dt);
         }
         for (name, numbers) in &outcome.numbers {
             self.set_numbers(name, numbers);

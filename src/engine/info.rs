@@ -1,14 +1,25 @@
 //! What those who draw and record must know before the first step: names, sizes, and ranges that a run will not leave.
 
 use super::estimates::{last_rupture_strain, negligible_energy, nominal_stress, rupture_strain_of, wave_passage};
-use super::view::{RunInfo, WireInfo};
+use super::view::{BodyInfo, BodyShape, RunInfo, WireInfo};
 use crate::reference::helix;
-use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, OneMaterial, Spec};
+use crate::scene::spec::{BondLawSpec, DriveSpec, GripKind, OneMaterial, RigidShape, RigidSpec, Spec};
 use crate::strand::assembly::{Assembly, Wire};
 
 /// What does not change during a run; `gauge` is z of the two grip faces before loading (m), alike when there are none.
 pub fn info(spec: &Spec, assembly: &Assembly, gauge: [f64; 2]) -> RunInfo {
     Body { spec, assembly, gauge }.info()
+}
+
+/// A rigid body for those who draw it.
+fn rigid(spec: &RigidSpec) -> BodyInfo {
+    let axis = spec.shape.axis().to_array();
+    let shape = match spec.shape {
+        RigidShape::Plane { .. } => BodyShape::Plane { normal: axis },
+        RigidShape::Cylinder { diameter, length, .. } => BodyShape::Cylinder { axis, radius: 0.5 * diameter, length },
+        RigidShape::Sphere { diameter, .. } => BodyShape::Sphere { radius: 0.5 * diameter },
+    };
+    BodyInfo { name: spec.name.clone(), shape }
 }
 
 /// A body before loading.
@@ -42,6 +53,7 @@ impl Body<'_> {
                 .collect(),
             wire_particles: a.wire_particles,
             particles: a.len(),
+            bodies: self.spec.rigids.iter().map(rigid).collect(),
             radius: a.radius.iter().map(|r| *r as f32).collect(),
             rest_position: a.position.iter().map(|x| x.as_vec3().to_array()).collect(),
             gauge: (gauge[1] > gauge[0]).then_some(gauge),

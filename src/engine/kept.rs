@@ -21,6 +21,9 @@ impl Engine {
             contacts.neighbours.save(&mut out);
             contacts.stage.save(&mut out);
         }
+        if let Some(rigid) = &self.rigid {
+            rigid.save(&mut out);
+        }
         out.into_bytes()
     }
 
@@ -59,6 +62,9 @@ impl Engine {
             }
             (None, None) => {}
             _ => return Err(Unfit("it has no contacts, which this scene needs".into())),
+        }
+        if let Some(rigid) = &mut self.rigid {
+            rigid.restore(&mut from, &self.state)?;
         }
         from.end()
     }

@@ -3,6 +3,7 @@
 use super::estimates::wave_passage;
 use super::grips::{Holds, Reaction};
 use super::saved::{Reader, Unfit, Writer};
+use super::view::BodyState;
 use crate::scene::spec::Spec;
 use crate::strand::assembly::Assembly;
 use serde::{Deserialize, Serialize};
@@ -34,6 +35,8 @@ pub struct Measures {
     /// Those of each wire among them.
     of_wire: Vec<Range<usize>>,
     broken: Vec<bool>,
+    /// Number of rigid bodies.
+    bodies: usize,
 }
 
 /// What was measured at one step, times its length.
@@ -41,7 +44,8 @@ pub struct Measures {
 struct Step {
     /// (s)
     length: f64,
-    /// Strain (-), force of the lower and upper grip (N), torque (N m), axial force of each middle bond (N); each times s.
+    /// Strain (-), force of the lower and upper grip (N), torque (N m), axial force of each middle bond (N), the numbers
+    /// of each rigid body; each times s.
     values: Vec<f64>,
 }
 
@@ -87,10 +91,11 @@ impl Measures {
             window: WINDOW * wave_passage(spec, assembly),
             area: assembly.area,
             steps: VecDeque::new(),
-            sum: Step { length: 0.0, values: vec![0.0; BONDS + slots.len()] },
+            sum: Step { length: 0.0, values: vec![0.0; BONDS + slots.len() + BodyState::NUMBERS * spec.rigids.len()] },
             middle: slots,
             of_wire,
             broken: vec![false; assembly.wires.len()],
+            bodies: spec.rigids.len(),
         }
     }
 
@@ -100,8 +105,15 @@ impl Measures {
     }
 
     /// Takes in a step of `dt` (s): the grips' reactions, the strain (-) and the axial forces of [`Self::bonds`] (N), asked
-    /// for in order, all at one instant.
-    pub fn take(&mut self, strain: f64, now: &Reaction, axial_force: impl FnMut(usize) -> f64, dt: f64) {
+    /// for in order, and the rigid bodies, all at one instant.
+    pub fn take(
+        &mut self,
+        strain: f64,
+        now: &Reaction,
+        axial_force: impl FnMut(usize) -> f64,
+        bodies: &[BodyState],
+        dt: f64,
+    ) {
         let mut step = Step::default();
         while self.steps.front().is_some_and(|first| self.sum.length + dt - first.length >= self.window) {
             step = self.steps.pop_front().unwrap_or_default();
@@ -117,6 +129,7 @@ impl Measures {
         step.values.clear();
         step.values.extend([strain, now.force[0], now.force[1], now.torque].map(|value| value * dt));
         step.values.extend(self.middle.iter().copied().map(axial_force).map(|force| force * dt));
+        step.values.extend(bodies.iter().flat_map(BodyState::numbers).map(|value| value * dt));
         self.sum.length += dt;
         self.sum.values.iter_mut().zip(&step.values).for_each(|(sum, value)| *sum += value);
         self.steps.push_back(step);
@@ -141,6 +154,13 @@ impl Measures {
     /// Torque about z on the upper grip (N m).
     pub fn torque(&self) -> f64 {
         self.mean(TORQUE)
+    }
+
+    /// Rigid bodies; `None` before the first step.
+    pub fn bodies(&self) -> Option<Vec<BodyState>> {
+        let first = |body: usize| BONDS + self.middle.len() + BodyState::NUMBERS * body;
+        let one = |body: usize| BodyState::of(|number| self.mean(first(body) + number));
+        (self.sum.length > 0.0).then(|| (0..self.bodies).map(one).collect())
     }
 
     /// Wires broken so far.

@@ -54,6 +54,7 @@ impl StageBytes {
         bonds.kept += behind(&state.bond.data) + behind(&state.whole);
         let mut contacts = view.contacts.map_or(Bytes::default(), |c| c.bytes(state.len()));
         contacts.kept += behind_all(&state.contact_force) + behind_all(&state.contact_torque);
+        contacts.kept += view.rigid.map_or(0, |rigid| rigid.bytes().kept);
         Self {
             assembly: Bytes { kept: assembly, moved: 0 },
             integrate: Bytes { kept: motion(state), moved: state.len() * moved_per_particle(view) },

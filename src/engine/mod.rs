@@ -41,6 +41,7 @@ use crate::scene::spec::{BondLawSpec, Spec};
 use crate::strand::assembly::Assembly;
 use bonds::Bonds;
 use contact::Contacts;
+use contact::rigid::{self, RigidBodies};
 use grips::Holds;
 use loading_rate::Ahead;
 use measure::Measures;
@@ -80,6 +81,7 @@ pub struct Engine {
     state: State,
     bonds: Option<Box<dyn Bonds>>,
     contacts: Option<ContactPart>,
+    rigid: Option<Box<dyn RigidBodies>>,
     holds: Holds,
     stiffness: Stiffness,
     bound: Bound,
@@ -143,6 +145,7 @@ impl Engine {
             state,
             bonds,
             contacts: None,
+            rigid: if plan.rigid { rigid::build(spec, &assembly) } else { None },
             stiffness: Stiffness::default(),
             bound: Bound::default(),
             next_dt: 0.0,
@@ -229,7 +232,8 @@ impl Engine {
         self.state.step += 1;
         self.state.time += self.state.dt;
         let axial = |slot| self.bonds.as_ref().map_or(0.0, |bonds| bonds.axial_force(slot));
-        self.measures.take(strain, &self.holds.reaction, axial, self.state.dt);
+        let bodies = self.rigid.as_ref().map_or_else(Vec::new, |rigid| rigid.bodies());
+        self.measures.take(strain, &self.holds.reaction, axial, &bodies, self.state.dt);
         self.timings.integrate += began.elapsed();
         self.state.travel += largest2.sqrt();
         let limit = RUNAWAY * self.least_radius;
@@ -305,7 +309,22 @@ impl Engine {
         };
         integrate::gather(&mut self.state, parts, self.arch, &self.team);
         self.timings.integrate += before_gather.elapsed();
-        Ok(())
+        self.meet_rigid_bodies()
+    }
+
+    /// Lets rigid bodies act on what has been gathered, and books it.
+    fn meet_rigid_bodies(&mut self) -> Result<()> {
+        let Some(rigid) = &mut self.rigid else { return Ok(()) };
+        let began = Instant::now();
+        let outcome = rigid.compute(&mut self.state, &self.team);
+        self.timings.contacts += began.elapsed();
+        self.holds.work += outcome.work;
+        self.energy.released += outcome.sums.released;
+        self.book_contacts(&outcome.sums);
+        match outcome.passed {
+            Some(passed) => Err(self.failed(monitor::entered(&self.view(), passed))),
+            None => Ok(()),
+        }
     }
 
     /// Books what contacts have given off.
@@ -373,14 +392,18 @@ impl Engine {
         // The laws of contacts are asked once; what follows from their answers is cheap, and made twice.
         let stiffness = |chunk: usize| contacts.map_or_else(Vec::new, |c| c.stage.stiffness(state, chunk, horizon));
         let stiffness = self.team.map(0..chunks, |chunk, _| stiffness(chunk));
-        // All bonds come before all contacts.
-        let elements = |part: usize, each: &mut dyn FnMut(Element)| match (part.checked_sub(chunks), bonds, contacts) {
-            (None, Some(bonds), _) => bonds.elements(state, part, each),
-            (Some(chunk), _, Some(contacts)) => contacts.stage.elements(state, chunk, &stiffness[chunk], each),
-            _ => {}
+        // All bonds come before all contacts, and these before rigid bodies.
+        let rigid = self.rigid.as_deref();
+        let elements = |part: usize, each: &mut dyn FnMut(Element)| match (part / chunks, part % chunks) {
+            (0, chunk) => bonds.into_iter().for_each(|bonds| bonds.elements(state, chunk, each)),
+            (1, chunk) => {
+                contacts.into_iter().for_each(|c| c.stage.elements(state, chunk, &stiffness[chunk], each));
+            }
+            (_, chunk) => rigid.into_iter().for_each(|rigid| rigid.elements(state, chunk, horizon, each)),
         };
+        let parts = chunks * if rigid.is_some() { 3 } else { 2 };
         let (resolution, held) = (self.spec.time.contact_resolution, |p: usize| state.hold[p] != 0);
-        self.bound = self.stiffness.bound(2 * chunks, elements, state, resolution, held, &self.team);
+        self.bound = self.stiffness.bound(parts, elements, state, resolution, held, &self.team);
         self.timings.time_step += began.elapsed();
         self.next_dt = step_choice::choose(&self.view())?;
         self.show(|monitor, view| monitor.look_at_step(view));
@@ -425,6 +448,7 @@ impl Engine {
             bonds: self.bonds.as_deref(),
             contacts: self.contacts.as_ref().map(|c| &*c.stage),
             neighbours: self.contacts.as_ref().map(|c| &c.neighbours),
+            rigid: self.rigid.as_deref(),
             team: &self.team,
             holds: &self.holds,
             measures: &self.measures,

@@ -82,22 +82,28 @@ fn flight_step(view: &StepView) -> f64 {
     view.spec.stop.time.map_or(f64::INFINITY, |time| time / FLIGHT_STEPS)
 }
 
-/// The step in which the fastest particle moves by [`TRAVEL`] of the least radius (s); infinite at rest.
+/// The step in which the fastest particle or rigid body moves by [`TRAVEL`] of the least radius (s); infinite at rest.
 fn travel_step(view: &StepView) -> f64 {
-    TRAVEL * view.assembly.least_radius() / view.fastest()
+    TRAVEL * view.assembly.least_radius() / view.fastest().max(fastest_rigid(view))
+}
+
+/// Greatest speed of a rigid body from now on (m/s).
+fn fastest_rigid(view: &StepView) -> f64 {
+    view.rigid.map_or(0.0, |rigid| rigid.fastest(view.state.time))
 }
 
 /// A share of the shortest impact of a free sphere (s): nothing is stiff before two bodies meet, so the bound comes
 /// too late for them, and an impact of a few steps, though stable, has the wrong outcome.
 ///
 /// Contact time 2.868 (m*²/(R*E*²v))^(1/5) (Hertz), m* against an equal sphere, R* against a flat one, twice the
-/// greatest speed.
+/// greatest speed. That of a rigid body is no shorter: its m* is twice as great, and E* no more than that.
 fn impact_step(view: &StepView) -> f64 {
     let spheres = view.assembly.wire_particles..view.assembly.len();
-    if view.contacts.is_none() || spheres.is_empty() {
+    if view.contacts.is_none() && view.rigid.is_none() || spheres.is_empty() {
         return f64::INFINITY;
     }
-    let speed = 2.0 * view.fastest();
+    let fastest = view.fastest();
+    let speed = (2.0 * fastest).max(fastest + fastest_rigid(view));
     let impact = |p: usize| {
         let Material { young, poisson, .. } = *view.spec.material_at(view.assembly.material_of(p)).material;
         let modulus = effective_modulus(young, poisson, young, poisson);

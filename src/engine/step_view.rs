@@ -2,6 +2,7 @@
 
 use super::bonds::Bonds;
 use super::contact::Contacts;
+use super::contact::rigid::RigidBodies;
 use super::estimates::negligible_energy;
 use super::grips::Holds;
 use super::measure::Measures;
@@ -9,7 +10,7 @@ use super::neighbours::Neighbours;
 use super::state::State;
 use super::team::Team;
 use super::time_step::Bound;
-use super::view::{BondState, Energy, Sample, Snapshot};
+use super::view::{BodyState, BondState, Energy, Sample, Snapshot};
 use crate::base::finding::{Body, Instant, Member};
 use crate::scene::plan::Plan;
 use crate::scene::spec::Spec;
@@ -32,6 +33,8 @@ pub struct StepView<'a> {
     pub contacts: Option<&'a dyn Contacts>,
     /// Their candidates.
     pub neighbours: Option<&'a Neighbours>,
+    /// Rigid bodies, where there are any.
+    pub rigid: Option<&'a dyn RigidBodies>,
     /// The threads that work at it.
     pub team: &'a Team,
     /// Grips, holds and loads.
@@ -64,8 +67,11 @@ impl StepView<'_> {
         self.state.v.iter().map(|v| v.length()).fold(0.0, f64::max)
     }
 
-    /// The body of a particle.
+    /// The body of a particle; numbers from that of particles on are those of rigid bodies.
     pub fn body(&self, particle: usize) -> Body {
+        if let Some(rigid) = particle.checked_sub(self.state.len()) {
+            return Body::Rigid { body: self.spec.rigids[rigid].name.clone() };
+        }
         match self.assembly.wire_of[particle] {
             u32::MAX => Body::Sphere { sphere: particle - self.assembly.wire_particles + 1 },
             wire => {
@@ -108,10 +114,17 @@ impl StepView<'_> {
             wire_pull: self.wire_pull(),
             wires_broken: self.measures.wires_broken(),
             bonds_broken: self.ruptures,
-            contacts: self.contacts.map_or(0, |c| c.active()),
+            contacts: self.contacts.map_or(0, |c| c.active()) + self.rigid.map_or(0, |rigid| rigid.active()),
             time_step: self.time_step,
             energy: self.energy(),
+            bodies: self.bodies(),
         }
+    }
+
+    /// Rigid bodies, as means over the same time as the forces of the grips.
+    fn bodies(&self) -> Vec<BodyState> {
+        let Some(rigid) = self.rigid else { return Vec::new() };
+        self.measures.bodies().unwrap_or_else(|| rigid.bodies())
     }
 
     /// Nominal axial stress of a wire at mid-gauge (Pa): the mean over its bonds in the middle twentieth of the gauge, of
@@ -137,7 +150,8 @@ impl StepView<'_> {
             work: self.holds.work_now(self.state),
             kinetic: self.kinetic(),
             elastic_bonds: self.bonds.map_or(0.0, |b| b.elastic_energy(self.state)),
-            elastic_contacts: self.contacts.map_or(0.0, |c| c.elastic_energy(self.state)),
+            elastic_contacts: self.contacts.map_or(0.0, |c| c.elastic_energy(self.state))
+                + self.rigid.map_or(0.0, |rigid| rigid.elastic_energy()),
             ..*self.ledger
         }
     }
@@ -201,6 +215,9 @@ impl StepView<'_> {
         let mut force = vec![0.0; self.state.len()];
         if let Some(contacts) = self.contacts {
             contacts.add_normal_forces(&mut force);
+        }
+        if let Some(rigid) = self.rigid {
+            rigid.add_normal_forces(&mut force);
         }
         force.iter().enumerate().map(|(i, f)| (f / shown_area(self.assembly, i)) as f32).collect()
     }

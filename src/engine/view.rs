@@ -37,6 +37,8 @@ pub struct RunInfo {
     pub wire_particles: usize,
     /// Number of particles, free spheres included.
     pub particles: usize,
+    /// Rigid bodies.
+    pub bodies: Vec<BodyInfo>,
     /// Initial particle radius (m).
     pub radius: Vec<f32>,
     /// Initial centre of each particle (m).
@@ -61,6 +63,70 @@ pub struct RunInfo {
     pub negligible_energy: f64,
     /// Time in which an elastic wave runs along the body (s).
     pub wave_passage: f64,
+}
+
+/// A rigid body for those who draw or record it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BodyInfo {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub shape: BodyShape,
+}
+
+/// Shape of a rigid body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodyShape {
+    /// A half space.
+    Plane {
+        /// Unit normal out of it.
+        normal: [f64; 3],
+    },
+    /// A cylinder.
+    Cylinder {
+        /// Unit vector along its axis.
+        axis: [f64; 3],
+        /// Radius (m).
+        radius: f64,
+        /// Length between the hemispheres in which it ends (m); `None` where it is endless.
+        length: Option<f64>,
+    },
+    /// A sphere.
+    Sphere {
+        /// Radius (m).
+        radius: f64,
+    },
+}
+
+/// A rigid body at one instant, or its mean over a time.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct BodyState {
+    /// Where it is (m): a point of a plane, the middle of a cylinder, the centre of a sphere.
+    pub position: [f64; 3],
+    /// By how much it has turned about its axis, or normal (rad).
+    pub angle: f64,
+    /// Force of all that touches it on it (N).
+    pub force: [f64; 3],
+    /// Moment of that about its position (N m).
+    pub moment: [f64; 3],
+}
+
+impl BodyState {
+    /// Its numbers, in this order.
+    pub const NUMBERS: usize = 10;
+
+    /// The numbers.
+    pub fn numbers(&self) -> [f64; Self::NUMBERS] {
+        let Self { position: [x, y, z], angle, force: [fx, fy, fz], moment: [mx, my, mz] } = *self;
+        [x, y, z, angle, fx, fy, fz, mx, my, mz]
+    }
+
+    /// From the numbers.
+    pub fn of(number: impl Fn(usize) -> f64) -> Self {
+        let three = |first: usize| [number(first), number(first + 1), number(first + 2)];
+        Self { position: three(0), angle: number(3), force: three(4), moment: three(7) }
+    }
 }
 
 impl RunInfo {
@@ -161,6 +227,8 @@ pub struct Sample {
     pub time_step: f64,
     /// Energies (J).
     pub energy: Energy,
+    /// Rigid bodies; means over the same time as the forces of the grips.
+    pub bodies: Vec<BodyState>,
 }
 
 /// The energy ledger (J); every term is cumulative except `kinetic` and the two elastic ones.

@@ -6,6 +6,7 @@ use super::view::View;
 use crate::base::error::{Error, Result};
 use crate::base::units::mm;
 use crate::engine::view::{RunInfo, Snapshot};
+use crate::render::bodies;
 use crate::render::body::Body;
 use crate::render::camera::Camera;
 use crate::render::canvas::Rect;
@@ -186,7 +187,10 @@ impl Artist {
         let looks = looks.with_occlusion(Occlusion::known(occlusion.to_vec()));
         let ghosts = info.wires.iter().map(|wire| view.ghost_layers.contains(&wire.layer));
         let looks = looks.with_ghosts(ghosts.collect()).with_section(view.cut.map(|z| (z / mm(1.0)) as f32));
-        let segments = wires::segments(info, &snapshot, &looks, *stride, None, |_, _| true);
+        let mut segments = wires::segments(info, &snapshot, &looks, *stride, None, |_, _| true);
+        if view.explode == 0.0 {
+            segments.extend(bodies::segments(info, &snapshot));
+        }
         Ready { snapshot, position, segments, colours }
     }
 

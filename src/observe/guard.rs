@@ -121,6 +121,8 @@ pub struct Guard {
     /// Time in which an elastic wave runs along the body (s).
     passage: f64,
     gripped: bool,
+    /// Whether grips alone load the body, so that their forces are alike where loading is slow.
+    balanced: bool,
     strain_end: f64,
     ruptured: bool,
     /// Most work done so far (J).
@@ -141,6 +143,7 @@ impl Guard {
             passage: 0.0,
             seen: Seen::default(),
             gripped: false,
+            balanced: true,
             strain_end: f64::INFINITY,
             ruptured: false,
             work: 0.0,
@@ -156,6 +159,7 @@ impl Guard {
         self.negligible = info.negligible_energy;
         self.passage = info.wave_passage;
         self.gripped = info.is_pulled();
+        self.balanced = info.bodies.is_empty();
         self.strain_end = info.strain_end.unwrap_or(f64::INFINITY);
     }
 
@@ -237,7 +241,8 @@ impl Guard {
         }
         let Seen { internal, force, staged, all } = &self.seen;
         let least = LEAST_INTERNAL_SHARE * internal;
-        let mismatch = |rows: &Rows| rows.mismatch.filter(|_| *force > 0.0).map(|most| percent(most / force));
+        let compared = self.balanced && *force > 0.0;
+        let mismatch = |rows: &Rows| rows.mismatch.filter(|_| compared).map(|most| percent(most / force));
         QuasiStatic {
             kinetic_over_internal_max: staged.kinetic_ratio(least),
             kinetic_over_internal_overall: all.kinetic_ratio(least),

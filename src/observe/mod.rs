@@ -1,6 +1,7 @@
 //! Floor 5: observers of a run. Each gets what the engine lets out and writes one kind of output.
 
 pub mod animation;
+pub mod bodies;
 pub mod colouring;
 pub mod column;
 pub mod files;
@@ -15,6 +16,8 @@ pub mod planned;
 #[cfg(feature = "record")]
 pub mod recording;
 pub mod report;
+#[cfg(any(feature = "record", feature = "render"))]
+pub mod shapes;
 pub mod stiffness;
 pub mod stress_strain;
 pub mod summary;

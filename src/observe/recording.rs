@@ -8,7 +8,7 @@
 //! | `/strand/<layer>/wire_<NN>` | particles: positions (mm), radii (mm), colours; fields `Bond`: true axial stress (MPa), equivalent plastic strain (-), utilisation to rupture (-), contact pressure (MPa), state; `Tube`: turn and length (mm) of the capsule at each particle; `Map`: places on the unrolled map |
 //! | `/strand/<layer>/wire_<NN>/ruptures` | labelled points at the places of rupture (mm), from their time on |
 //! | `/first_break`, `/focus` | mark and label of the first break; what the eye of the close view follows: the main fracture |
-//! | `/spheres`, `/grips` | free spheres; cylinders around what the grips hold (mm) |
+//! | `/spheres`, `/bodies`, `/grips` | free spheres; rigid bodies; cylinders around what the grips hold (mm) |
 //! | `/map/<layer>/wire_<NN>/ruptures` | ruptures on the unrolled map, and their order |
 //! | `/chart` | nominal stress over strain, drawn with axes in % and MPa |
 //! | `/states/<layer>/wire_<NN>` | lane of the wire's state: whole, yielding, broken |
@@ -29,6 +29,7 @@
 //! out in batches of fixed size, everything as columns without clock times, so that the same run gives the same
 //! contents.
 
+mod bodies;
 mod chart;
 mod curve;
 mod first_break;

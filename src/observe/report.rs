@@ -42,6 +42,10 @@ pub fn report(summary: &RunSummary) -> String {
     if !layers.is_empty() {
         line("wires broken", layers.join(", "));
     }
+    for body in &summary.bodies {
+        let at = format!("at most {}, at t = {:.3e} s", newton(body.greatest_force_n), body.greatest_force_at_s);
+        line("force on", format!("rigid body {:?} {at}", body.name));
+    }
     if let Some(residual) = summary.energy_residual_percent {
         line("energy residual", format!("{residual:.4} % of the work done"));
     }

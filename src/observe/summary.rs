@@ -1,6 +1,7 @@
 //! `RunSummary`: what a run found, as written to `summary.json`.
 
 use super::Observer;
+use super::bodies::{BodyLoads, Gathered};
 use super::guard::QuasiStatic;
 use super::limits::Limits;
 use super::materials::{GreatestForce, Shares, of_wire};
@@ -70,6 +71,9 @@ pub struct RunSummary {
     /// where wires are of one material.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shares_at_greatest_stress: Option<Shares>,
+    /// Loads on rigid bodies, where there are any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodyLoads>,
     /// Energy ledger at the end (J).
     pub energy: Energy,
     /// What the ledger does not account for, over the work done (%); `None` when the work is negligible.
@@ -278,6 +282,8 @@ pub struct Summariser {
     /// Who carried how much in the row of the greatest force so far, and which that is.
     shares: Option<Shares>,
     greatest_force: GreatestForce,
+    /// Loads on rigid bodies.
+    bodies: Gathered,
     /// Rows that tell the initial stiffness.
     elastic: Rows,
     last: Sample,
@@ -333,6 +339,7 @@ impl Summariser {
             residual_stress_mpa: measured(Some(mpa(self.last.stress))),
             stiffness,
             shares_at_greatest_stress: self.shares.clone().filter(|_| tension.is_some()),
+            bodies: self.info.as_ref().map_or_else(Vec::new, |info| self.bodies.loads(info, &self.last)),
             energy,
             energy_residual_percent: (energy.work.abs() > negligible).then(|| percent(energy.residual() / energy.work)),
             quasi_static: closing.quasi_static,
@@ -446,6 +453,7 @@ impl Observer for Summariser {
     fn sample(&mut self, sample: &Sample) -> Result<()> {
         self.rows.see(sample.strain, sample.stress, sample.wire_stress.iter().copied());
         self.elastic.add(sample);
+        self.bodies.see(sample);
         let info = self.info.as_ref().filter(|info| info.has_several_materials());
         let greatest = &mut self.greatest_force;
         if let Some(info) = info.filter(|info| greatest.see(info, sample)) {

@@ -1,9 +1,10 @@
-//! `curve.csv`, `wires.csv` and `ruptures.csv`.
+//! `curve.csv`, `wires.csv` and `ruptures.csv`, and `bodies.csv` where there are rigid bodies.
 //!
 //! Wires and bonds are numbered from 1, layers by name; units stand in the column names. What the columns are is said once,
-//! in [`curve`], [`wires`] and [`ruptures`], from which other formats take them too.
+//! in [`curve`], [`wires`], [`ruptures`] and [`super::bodies::columns`], from which other formats take them too.
 
 use super::Observer;
+use super::bodies::{self, BODIES, BodyRow};
 use super::column::{Column, Value};
 use super::files::LiveTable;
 use super::materials::Group;
@@ -14,7 +15,7 @@ use crate::engine::view::{Energy, RunInfo, Rupture, RuptureCause, Sample, WireIn
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The three files that this observer writes.
+/// The three files that this observer writes of every run.
 pub const FILES: [&str; 3] = ["curve.csv", "wires.csv", "ruptures.csv"];
 
 /// Writes the three tables into a folder. Rows of the curve and ruptures appear as they come, in files that
@@ -27,6 +28,8 @@ pub struct Tables {
 struct Open {
     curve: (LiveTable, Vec<Column<'static, Sample>>),
     ruptures: (LiveTable, Vec<Column<'static, Rupture>>),
+    /// Where there are rigid bodies.
+    bodies: Option<(LiveTable, Vec<Column<'static, BodyRow>>)>,
     wires: Wires,
 }
 
@@ -100,13 +103,22 @@ impl Observer for Tables {
         self.open = Some(Open {
             curve: table(at(FILES[0]), curve(info))?,
             ruptures: table(at(FILES[2]), ruptures(info))?,
+            bodies: match info.bodies.is_empty() {
+                true => None,
+                false => Some(table(at(BODIES), bodies::columns())?),
+            },
             wires: Wires::new(info),
         });
         Ok(())
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<()> {
-        self.open.as_mut().map_or(Ok(()), |open| row(&mut open.curve, sample))
+        let Some(open) = &mut self.open else { return Ok(()) };
+        row(&mut open.curve, sample)?;
+        match &mut open.bodies {
+            Some(table) => bodies::rows(open.wires.info(), sample).try_for_each(|body| row(table, &body)),
+            None => Ok(()),
+        }
     }
 
     fn rupture(&mut self, rupture: &Rupture) -> Result<()> {
@@ -130,6 +142,7 @@ impl Observer for Tables {
         };
         let mut wires = table(self.folder.join(FILES[1]), wires(&open.wires.info))?;
         open.wires.rows().try_for_each(|wire| row(&mut wires, &wire))?;
+        open.bodies.map_or(Ok(()), |bodies| bodies.0.finish())?;
         open.curve.0.finish()?;
         wires.0.finish()?;
         open.ruptures.0.finish()

@@ -53,6 +53,15 @@ impl RoundBar {
         bending + force * self.length / shear_stiffness
     }
 
+    /// Deflection in the middle between two supports `span` L (m) apart, F L³/(48 E I) + F L/(4 κ G A) (m), for a force
+    /// `force` F (N) there.
+    ///
+    /// Source: Timoshenko & Gere, *Mechanics of Materials*, beams with shear deformation; κ of [`shear_coefficient`].
+    pub fn three_point_deflection(&self, span: f64, force: f64) -> f64 {
+        // Each half is a cantilever that is held in the middle and carries half of the force at its support.
+        Self { length: 0.5 * span, ..*self }.cantilever_tip(0.5 * force)
+    }
+
     /// Rotation of the end of a bar under torque `torque` T (N m), T L/(G J) (rad) (Saint-Venant).
     pub fn twist(&self, torque: f64) -> f64 {
         torque * self.length / (self.shear_modulus() * self.polar_moment())
@@ -99,6 +108,7 @@ mod tests {
             assert!((value / expected - 1.0).abs() < 1e-5, "{value} against {expected}");
         };
         near(rod.cantilever_tip(10.0), 2.122066e-3 + 4.670087e-7);
+        near(rod.three_point_deflection(1.0, 10.0), 1.326291e-4 + 1.167522e-7);
         near(rod.twist(5.0), 4.138029e-3);
         near(rod.axial_wave_speed(), 5063.697);
         near(rod.first_bending_frequency(), 3.516015 * 25.318483);

@@ -1,5 +1,6 @@
 //! One snapshot to one picture.
 
+use super::bodies;
 use super::body::Body;
 use super::canvas::{Canvas, Fonts, Rect};
 use super::close_up::Focus;
@@ -222,7 +223,11 @@ fn wires_of(data: &Data, shots: &[Shot], times: f32) -> (Vec<Segment>, Vec<Drawi
         let looks = own.as_ref().and_then(|(_, looks)| looks.as_ref()).unwrap_or_else(|| &whole);
         let stride = wires::stride(spacing * shot.camera.scale * times);
         let sees = |a, b| shot.camera.sees(a, b);
-        let segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer, sees);
+        let mut segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer, sees);
+        // Where wires are moved apart there is no place for them.
+        if shot.layer.is_none() && shot.view != View::Exploded {
+            segments.extend(bodies::segments(data.info, data.snapshot));
+        }
         drawings.push(Drawing::new(shot.camera, shot.fade, &segments, &mut all));
     }
     (all, drawings)

@@ -12,6 +12,7 @@
 
 pub mod adapter;
 pub mod animation;
+pub(crate) mod bodies;
 pub(crate) mod body;
 pub(crate) mod camera;
 pub(crate) mod canvas;

@@ -6,6 +6,7 @@ use super::options::Outputs;
 use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
+use crate::observe::bodies::BODIES;
 use crate::observe::files::write_whole;
 use crate::observe::origin::RUN_KEYWORD;
 use crate::observe::{partial, tables};
@@ -96,7 +97,7 @@ pub fn is_unfinished(run: &Path) -> bool {
 
 /// Every file that a run writes into its folder.
 fn files() -> impl Iterator<Item = &'static str> {
-    tables::FILES.into_iter().chain([SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT])
+    tables::FILES.into_iter().chain([BODIES, SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT])
 }
 
 /// An output folder that may be written.

@@ -7,6 +7,7 @@ use super::folder::{SCENE, SUMMARY, TRAJECTORY};
 use crate::base::digest::Digest;
 use crate::base::error::{Error, Result};
 use crate::base::regular;
+use crate::observe::bodies::BODIES;
 use crate::observe::origin::Origin;
 use crate::observe::trajectory::Trajectory;
 use crate::observe::{partial, tables};
@@ -55,7 +56,7 @@ impl fmt::Display for Doubt {
 /// # Errors
 /// [`Error::Io`] when a file cannot be read.
 pub fn seal(summary: &str, origin: Origin, run: &Path, more: &[&str]) -> Result<String> {
-    let names = tables::FILES.into_iter().chain([SCENE, TRAJECTORY]).chain(more.iter().copied());
+    let names = tables::FILES.into_iter().chain([BODIES, SCENE, TRAJECTORY]).chain(more.iter().copied());
     let files =
         names.filter(|name| run.join(name).exists()).map(|name| Ok((name.to_owned(), digest(&run.join(name))?)));
     let seal = Seal { origin, files: files.collect::<Result<_>>()?, summary: Digest::of(summary) };
@@ -130,7 +131,7 @@ pub fn doubts(run: &Path) -> Result<Vec<Doubt>> {
         doubts.push(Doubt::Foreign(SUMMARY));
         return Ok(doubts);
     }
-    for name in tables::FILES.into_iter().chain([TRAJECTORY]) {
+    for name in tables::FILES.into_iter().chain([BODIES, TRAJECTORY]) {
         let path = run.join(name);
         if path.is_file() && seal.files.get(name) != Some(&Digest::of_file(&path)?) {
             doubts.push(Doubt::Changed(name));

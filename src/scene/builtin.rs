@@ -21,7 +21,9 @@ const SCENES: &[(&str, &str)] = scenes![
     "single-wire",
     "cantilever",
     "torsion",
-    "two-spheres"
+    "two-spheres",
+    "bounce",
+    "bend3"
 ];
 
 /// Name and text of the scenes that `strandsnap verify` runs, in alphabetical order.
@@ -31,6 +33,7 @@ const VERIFICATION: &[(&str, &str)] = scenes![
     "verify/bond-twisted",
     "verify/buckling",
     "verify/capstan",
+    "verify/capstan-on-drum",
     "verify/chain",
     "verify/crossed-wires",
     "verify/crossing-wires",
@@ -47,14 +50,17 @@ const VERIFICATION: &[(&str, &str)] = scenes![
     "verify/pulled-bar",
     "verify/repeated",
     "verify/rolling",
+    "verify/rolling-on-plane",
     "verify/section",
     "verify/shared-load",
     "verify/snapped-wire",
+    "verify/sphere-on-plane",
     "verify/sphere-on-wire",
     "verify/spring",
     "verify/strand-elastic",
     "verify/tangential",
     "verify/thornton",
+    "verify/three-point-bending",
     "verify/tip-load",
     "verify/torque",
     "verify/unlike-spheres",

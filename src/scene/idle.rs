@@ -155,7 +155,9 @@ fn of_bonds(found: &mut Found, raw: &RawScene, spec: &Spec) {
 
 /// Materials that no body is of, and what they would say.
 fn of_materials(found: &mut Found, raw: &RawScene, spec: &Spec) {
-    let used = |name: Option<&str>| spec.materials().any(|one| one.name == name);
+    let rigid = |name: Option<&str>| spec.rigids.iter().any(|rigid| rigid.material_name.as_deref() == name);
+    let bonded = |name: Option<&str>| spec.materials().any(|one| one.name == name);
+    let used = |name: Option<&str>| bonded(name) || rigid(name);
     for name in raw.materials.keys().filter(|name| !used(Some(name))) {
         found.told(true, format!("materials.{name}"), "no body is of this material");
     }
@@ -173,14 +175,17 @@ fn of_materials(found: &mut Found, raw: &RawScene, spec: &Spec) {
     }
     let pairs = raw.contact.iter().flat_map(|contact| contact.pair.iter().enumerate());
     for (index, pair) in pairs {
-        let here = pair.materials.iter().flatten().all(|name| used(Some(name)));
-        found.told(!here, format!("contact.pair.{index}"), "no body is of one of the two materials");
+        let all = |of: &dyn Fn(Option<&str>) -> bool| pair.materials.iter().flatten().all(|name| of(Some(name)));
+        let key = format!("contact.pair.{index}");
+        found.told(!all(&used), &key, "no body is of one of the two materials");
+        let why = "of one of the two materials is a rigid body alone, which has its own `friction`";
+        found.told(all(&used) && !all(&bonded), key, why);
     }
-    if used(None) {
+    if bonded(None) {
         return;
     }
     let why = "every body names its material";
-    found.told(raw.material.is_some(), "material", why);
+    found.told(raw.material.is_some() && !rigid(None), "material", why);
     if let Some(bond) = &raw.bond {
         found.told(bond.law.is_some(), "bond.law", why);
         found.told(bond.hardening.is_some(), "bond.hardening", why);
@@ -216,9 +221,11 @@ fn of_contact(found: &mut Found, raw: &RawScene, plan: &Plan) {
             let why = "contact.normal = \"none\" leaves contacts out";
             found.add(given, format!("contact.{name}"), why, switch, AsOption::Refused);
         }
+        let why = "contact.normal = \"none\" leaves contacts out, and a rigid body does nothing but touch";
+        found.add(!raw.body.is_empty(), "body", why, switch, AsOption::Refused);
         return;
     }
-    if plan.contacts == ContactPlan::Absent {
+    if plan.contacts == ContactPlan::Absent && !plan.rigid {
         found.told(true, "contact", "one straight body that never breaks touches nothing");
         return;
     }
@@ -226,6 +233,9 @@ fn of_contact(found: &mut Found, raw: &RawScene, plan: &Plan) {
     let why = "contact.tangential = \"none\" leaves friction out";
     found.silent(frictionless && contact.friction.is_some(), "contact.friction", why);
     found.silent(frictionless && !contact.pair.is_empty(), "contact.pair", why);
+    for (index, _) in raw.body.iter().enumerate().filter(|(_, body)| body.friction.is_some()) {
+        found.silent(frictionless, format!("body.{index}.friction"), why);
+    }
 }
 
 fn of_grip(found: &mut Found, raw: &RawScene, spec: &Spec) {

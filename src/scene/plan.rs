@@ -1,8 +1,8 @@
 //! `Plan`: what a scene needs, each component present or absent with its reason.
 
 use super::spec::{
-    BondLawSpec, BondSpec, DriveSpec, GripKind, NormalSpec, OneMaterial, PathSpec, PlanMode, RuptureSpec, Shape, Spec,
-    TangentialSpec,
+    BondLawSpec, BondSpec, ContactSpec, DriveSpec, GripKind, NormalSpec, OneMaterial, PathSpec, PlanMode, RuptureSpec,
+    Shape, Spec, TangentialSpec,
 };
 use std::fmt;
 
@@ -37,6 +37,8 @@ pub struct Plan {
     pub rotations: bool,
     /// Contacts.
     pub contacts: ContactPlan,
+    /// Whether there are rigid bodies.
+    pub rigid: bool,
     /// Whether bonds can break.
     pub rupture: bool,
     /// Whether each bond has its own rupture value.
@@ -91,10 +93,14 @@ impl Plan {
             },
             Component { name: "energy ledger", state: on(true), reason: "the tables ask for it".into() },
         ];
+        let rigid = !spec.rigids.is_empty();
+        if rigid {
+            components.push(rigid_component(spec));
+        }
         if spec.has_several_materials() {
             components.insert(0, material_component(spec));
         }
-        Self { bonds, rotations: rotations.0, contacts: contacts.0, rupture, scatter, components }
+        Self { bonds, rotations: rotations.0, contacts: contacts.0, rigid, rupture, scatter, components }
     }
 }
 
@@ -126,6 +132,16 @@ fn material_component(spec: &Spec) -> Component {
     });
     let reason = words.collect::<Vec<_>>().join("; ");
     Component { name: "materials", state: spec.materials().len().to_string(), reason }
+}
+
+/// Which rigid bodies touch wires and spheres, and which of them move.
+fn rigid_component(spec: &Spec) -> Component {
+    let words = spec.rigids.iter().map(|rigid| {
+        let moves = if rigid.motion.moves() { "moves" } else { "stands still" };
+        format!("{} ({}) {moves}", rigid.name, rigid.shape.word())
+    });
+    let reason = words.collect::<Vec<_>>().join(", ");
+    Component { name: "rigid bodies", state: on(true), reason }
 }
 
 fn is_plastic(bond: &BondSpec) -> bool {
@@ -193,7 +209,8 @@ fn contacts(spec: &Spec, bodies: usize, rupture: bool, general: bool) -> (Contac
     } else if rupture {
         (ContactPlan::AfterRupture, "one straight wire; its pieces can touch once it has snapped".into())
     } else {
-        (ContactPlan::Absent, "one straight body that never breaks touches nothing".into())
+        let nothing = if spec.rigids.is_empty() { "nothing" } else { "nothing but rigid bodies" };
+        (ContactPlan::Absent, format!("one straight body that never breaks touches {nothing}"))
     }
 }
 
@@ -221,10 +238,13 @@ fn contact_component(spec: &Spec, contacts: &(ContactPlan, String)) -> Component
 
 fn tangential_component(spec: &Spec, contacts: ContactPlan) -> Component {
     let law = spec.contact.as_ref().and_then(|c| c.tangential);
-    let smooth = spec.contact.as_ref().is_some_and(|c| c.tangential.is_some() && c.is_smooth(spec.materials().len()));
-    let runs = contacts != ContactPlan::Absent && law.is_some() && !smooth;
+    let none = contacts == ContactPlan::Absent && spec.rigids.is_empty();
+    let rigids = spec.rigids.iter().any(|rigid| rigid.friction > 0.0);
+    let even = |c: &ContactSpec| contacts == ContactPlan::Absent || c.is_smooth(spec.materials().len());
+    let smooth = !rigids && spec.contact.as_ref().is_some_and(|c| c.tangential.is_some() && even(c));
+    let runs = !none && law.is_some() && !smooth;
     let reason: String = match law {
-        _ if contacts == ContactPlan::Absent => "no contacts".into(),
+        _ if none => "no contacts".into(),
         Some(_) if smooth => "the coefficient of friction is 0".into(),
         Some(TangentialSpec::Mindlin) => format!("mindlin{}", pairs(spec)),
         Some(TangentialSpec::MindlinDeresiewicz) => format!("mindlin-deresiewicz{}", pairs(spec)),
@@ -253,7 +273,17 @@ fn bends(spec: &Spec) -> bool {
         pushes || g.rotation_rate != 0.0 || g.free_rotation || matches!(g.kind, GripKind::Jaw { .. })
     });
     let wire = spec.wires.iter().any(|w| w.velocity.length() > 0.0 || w.spin.length() > 0.0);
-    grip || wire || !spec.holds.is_empty()
+    grip || wire || !spec.holds.is_empty() || touches_rigids(spec)
+}
+
+/// Whether there are wires beside rigid bodies.
+fn touches_rigids(spec: &Spec) -> bool {
+    !spec.rigids.is_empty() && (spec.strand.is_some() || !spec.wires.is_empty())
+}
+
+/// Whether there is a law of friction.
+fn is_rubbed(spec: &Spec) -> bool {
+    spec.contact.as_ref().is_some_and(|contact| contact.tangential.is_some())
 }
 
 fn rotations(spec: &Spec, contacts: ContactPlan, general: bool) -> (bool, String) {
@@ -269,8 +299,12 @@ fn rotations(spec: &Spec, contacts: ContactPlan, general: bool) -> (bool, String
         (true, "plan = \"general\"".into())
     } else if !straight {
         (true, "wires are curved: they bend and twist".into())
+    } else if touches_rigids(spec) {
+        (true, "rigid bodies can bend and turn wires".into())
     } else if bends(spec) {
         (true, "holds, loads or drives can bend or turn the bodies".into())
+    } else if spec.rigids.iter().any(|rigid| rigid.friction > 0.0) && is_rubbed(spec) {
+        (true, "friction on rigid bodies can turn spheres".into())
     } else if contacts == ContactPlan::Present && (friction || spec.breaks() || !spec.wires.is_empty()) {
         (true, "contacts can turn particles".into())
     } else if spins {

@@ -1,17 +1,19 @@
 //! A scene as it is written: serde tables, nothing checked but names and kinds of values. This is also the reference
 //! of all keys, each with its unit, its default and its meaning, which `strandsnap scene keys` prints
 //! ([`super::keys`]); those of materials and bonds stand in `raw/materials.rs`, those of grips and holds in `raw/drive.rs`, those
-//! of outputs in `raw/output.rs` and `raw/picture.rs`.
+//! of rigid bodies in `raw/body.rs`, those of outputs in `raw/output.rs` and `raw/picture.rs`.
 //!
 //! A quantity is text with a unit, `"39 mm"`; any unit of the right kind will do. A ratio may be a plain number or
 //! per cent, `0.12` or `"12 %"`. Unknown keys are refused.
 
+mod body;
 mod drive;
 mod materials;
 mod output;
 mod picture;
 mod scalar;
 
+pub use body::*;
 pub use drive::*;
 pub use materials::*;
 pub use output::*;
@@ -60,6 +62,9 @@ pub struct RawScene {
     #[schemars(extend("x-required-when" = "there is no other body: strand, wire or sphere"))]
     #[serde(default)]
     pub sphere: Vec<RawSphere>,
+    /// `[[body]]`: rigid bodies that stand still or move as they are told, and touch all wires and spheres.
+    #[serde(default)]
+    pub body: Vec<RawBody>,
     /// The two grips. Absent: free bodies.
     pub grip: Option<RawGrip>,
     /// `[[hold]]`: holds and loads on single bodies.

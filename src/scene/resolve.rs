@@ -6,7 +6,7 @@ use super::look::{FRAME_SIDE, SUPERSAMPLING, ZOOM};
 use super::raw::*;
 use super::resolve_materials::{self, GivenHardness, Materials};
 use super::spec::*;
-use super::{resolve_bodies, resolve_drive, resolve_picture};
+use super::{resolve_bodies, resolve_drive, resolve_picture, resolve_rigid};
 use crate::base::error::{Error, Result};
 use crate::base::units::{Dimension, shortest};
 use crate::law::damping::{hertzian_fraction, ratio_of_restitution};
@@ -31,13 +31,15 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
     let wires = resolve_bodies::wires(&at.key("wire"), &raw.wire, folder, &materials)?;
     let spheres = resolve_bodies::spheres(&at.key("sphere"), &raw.sphere, &materials)?;
     if strand.is_none() && wires.is_empty() && spheres.is_empty() {
-        return Err(at.error("the scene has no body", "add a [strand], a [[wire]] or a [[sphere]]"));
+        let what = if raw.body.is_empty() { "the scene has no body" } else { "the scene has rigid bodies alone" };
+        return Err(at.error(what, "add a [strand], a [[wire]] or a [[sphere]]"));
     }
     let bodies = resolve_bodies::count(strand.as_ref(), &wires, &spheres);
     let extent = resolve_bodies::extent(strand.as_ref(), &wires);
     let spacing = at.ratio_or("spacing", &raw.spacing, 1.0, Range::Positive)?;
     let mut used = materials.of_bodies();
     let contact = contact(&at.key("contact"), raw.contact.as_ref(), &materials, &mut used)?;
+    let rigids = rigids(at, raw, &materials, contact.as_ref())?;
     let (first, further) = resolve_materials::in_order(used);
     let breaks = first.bond.rupture.is_some() || further.iter().any(|further| further.bond.rupture.is_some());
     let wire_count = strand.as_ref().map_or(0, |s| s.layers.iter().map(|l| l.wires).sum()) + wires.len();
@@ -76,8 +78,21 @@ pub(super) fn resolve(at: &At, raw: &RawScene, name: &str, folder: &Path) -> Res
         strand,
         wires,
         spheres,
+        rigids,
         grip,
     })
+}
+
+/// Rigid bodies: none where `contact.normal = "none"` leaves contacts out.
+fn rigids(at: &At, raw: &RawScene, materials: &Materials, contact: Option<&ContactSpec>) -> Result<Vec<RigidSpec>> {
+    let here = at.key("body");
+    if raw.contact.is_none() && !raw.body.is_empty() {
+        let what = "a rigid body does nothing but touch, and the scene has no contacts";
+        return Err(here.element(0).error(what, "add [contact] with a law, for example normal = \"hertz\""));
+    }
+    let friction = contact.map_or(FRICTION, |contact| contact.friction);
+    let rigids = resolve_rigid::rigids(&here, &raw.body, materials, friction)?;
+    Ok(if contact.is_some() { rigids } else { Vec::new() })
 }
 
 /// Refuses chains of spheres with gaps that another wire passes through unseen.

@@ -199,6 +199,13 @@ impl<'a> Materials<'a> {
         })
     }
 
+    /// The elastic constants that a rigid body at `at` names, which makes no material that bonds are of.
+    pub fn elastic(&self, at: &At, name: Option<&String>) -> Result<(Option<String>, Material)> {
+        let place = name.map(|name| self.place(&at.key("material"), name)).transpose()?;
+        let spec = place.map_or(&self.unnamed, |k| &self.named[k].0);
+        Ok((spec.name.clone(), spec.material))
+    }
+
     /// The materials that bodies are of, by number.
     pub fn of_bodies(&self) -> Vec<MaterialSpec> {
         let one = |place: &Option<usize>| place.map_or(&self.unnamed, |k| &self.named[k].0).clone();

@@ -2,7 +2,11 @@
 
 /// Pictures are described by the words that people write.
 pub use super::look::{ColourBy, Format, Theme, View};
+/// Elastic constants are those of rigid bodies too.
+pub use super::material::Material;
 pub use super::picture::PictureSpec;
+/// Rigid bodies.
+pub use super::rigid::{RigidMotion, RigidShape, RigidSpec};
 /// The hardening law is stated as it is computed.
 pub use crate::law::bond::hardening::Hardening as HardeningSpec;
 use glam::DVec3;
@@ -33,6 +37,8 @@ pub struct Spec {
     pub wires: Vec<WireSpec>,
     /// Free spheres (each its own body, its own mass 4/3 π r³ ρ).
     pub spheres: Vec<SphereSpec>,
+    /// Rigid bodies; none where the scene has no contacts.
+    pub rigids: Vec<RigidSpec>,
     /// Particle spacing over wire diameter (-); 1 is touching spheres.
     pub spacing: f64,
     /// The two grips of a strand or of a set of wires along z; `None` for free bodies.
@@ -56,24 +62,6 @@ pub enum PlanMode {
     Auto,
     /// Everything, for comparison.
     General,
-}
-
-/// Isotropic elastic constants and density.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
-    /// Density (kg/m³).
-    pub density: f64,
-    /// Young's modulus (Pa).
-    pub young: f64,
-    /// Poisson's ratio (-).
-    pub poisson: f64,
-}
-
-impl Material {
-    /// Shear modulus E / (2 (1 + ν)) (Pa).
-    pub fn shear(&self) -> f64 {
-        self.young / (2.0 * (1.0 + self.poisson))
-    }
 }
 
 /// A material beside the first one of a scene.
@@ -385,7 +373,7 @@ pub enum DriveSpec {
 /// A hold or load on one end of, or on all of, one body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HoldSpec {
-    /// Body number from 0: strand wires first (inside out), then `wires`, then `spheres`.
+    /// Body number from 0: strand wires first (inside out), then `wires`, then `spheres`; `rigids` are not among them.
     pub body: usize,
     /// Which part.
     pub part: BodyPart,

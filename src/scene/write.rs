@@ -16,10 +16,12 @@ pub fn to_toml(spec: &Spec) -> String {
     out.entry("spacing", number(spec.spacing));
     out.entry("plan", text(plan_name(spec.plan)));
     materials(&mut out, spec);
+    materials_of_rigids(&mut out, spec);
     contact(&mut out, spec);
     strand(&mut out, spec);
     spec.wires.iter().for_each(|wire| self::wire(&mut out, spec, wire));
     spec.spheres.iter().for_each(|sphere| self::sphere(&mut out, spec, sphere));
+    spec.rigids.iter().for_each(|rigid| self::rigid(&mut out, rigid));
     grip(&mut out, spec.grip.as_ref());
     spec.holds.iter().for_each(|hold| self::hold(&mut out, hold));
     time(&mut out, &spec.time);
@@ -114,6 +116,20 @@ fn materials(out: &mut Lines, spec: &Spec) {
                 }
             }
         }
+    }
+}
+
+/// The materials of which there are rigid bodies alone.
+fn materials_of_rigids(out: &mut Lines, spec: &Spec) {
+    let mut written: Vec<Option<&str>> = spec.materials().map(|one| one.name).collect();
+    for rigid in &spec.rigids {
+        let name = rigid.material_name.as_deref();
+        if written.contains(&name) {
+            continue;
+        }
+        written.push(name);
+        out.table(&name.map_or("[material]".into(), |name| format!("[materials.{}]", key(name))));
+        material(out, &rigid.material);
     }
 }
 
@@ -305,6 +321,45 @@ fn sphere(out: &mut Lines, spec: &Spec, sphere: &SphereSpec) {
     out.entry("position", vector(sphere.position, Dimension::Length));
     out.vector("velocity", sphere.velocity, Dimension::Velocity);
     out.vector("spin", sphere.spin, Dimension::AngularVelocity);
+}
+
+fn rigid(out: &mut Lines, rigid: &RigidSpec) {
+    out.table("[[body]]");
+    out.entry("name", text(&rigid.name));
+    out.entry("shape", text(rigid.shape.word()));
+    if let Some(name) = &rigid.material_name {
+        out.entry("material", text(name));
+    }
+    out.entry("position", vector(rigid.position, Dimension::Length));
+    let direction = |v: DVec3| format!("[{}]", v.to_array().map(number).join(", "));
+    match rigid.shape {
+        RigidShape::Plane { normal } => out.entry("normal", direction(normal)),
+        RigidShape::Cylinder { axis, diameter, length } => {
+            out.entry("axis", direction(axis));
+            out.quantity("diameter", diameter, Dimension::Length);
+            if let Some(length) = length {
+                out.quantity("length", length, Dimension::Length);
+            }
+        }
+        RigidShape::Sphere { axis, diameter } => {
+            out.quantity("diameter", diameter, Dimension::Length);
+            if rigid.motion.spin != 0.0 {
+                out.entry("axis", direction(axis));
+            }
+        }
+    }
+    let RigidMotion { velocity, spin, ramp, duration } = rigid.motion;
+    out.vector("velocity", velocity, Dimension::Velocity);
+    if spin != 0.0 {
+        out.quantity("spin", spin, Dimension::AngularVelocity);
+    }
+    if rigid.motion.moves() {
+        out.quantity("ramp", ramp, Dimension::Time);
+    }
+    if let Some(duration) = duration {
+        out.quantity("duration", duration, Dimension::Time);
+    }
+    out.entry("friction", number(rigid.friction));
 }
 
 fn grip(out: &mut Lines, grip: Option<&GripSpec>) {

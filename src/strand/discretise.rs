@@ -8,6 +8,7 @@ use crate::strand::error::{BuildError, BuildErrorKind, mm};
 use crate::strand::held;
 use crate::strand::lay_radius::GREATEST_OVERLAP;
 use crate::strand::overlap::{self, Body};
+use crate::strand::surface::Surface;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -43,6 +44,7 @@ pub fn build(spec: &Spec) -> Result<Assembly, BuildError> {
         check_turns(w, wire)?;
     }
     check_overlaps(spec, &chains, &layers)?;
+    check_rigids(spec, &chains, &layers)?;
     let assembly = assemble(spec, layers, &chains);
     held::check_holds(spec, &assembly)?;
     held::check_stop(spec, &assembly)?;
@@ -84,21 +86,79 @@ fn check_turns(w: usize, wire: &WireChain) -> Result<(), BuildError> {
     })
 }
 
-/// Refuses bodies that overlap by more than [`GREATEST_OVERLAP`] of a diameter.
-fn check_overlaps(spec: &Spec, chains: &[WireChain], layers: &[Layer]) -> Result<(), BuildError> {
+/// All wires, then all spheres.
+fn bodies<'a>(spec: &'a Spec, chains: &'a [WireChain]) -> Vec<Body<'a>> {
     let wires = chains.iter().map(|wire| Body { points: &wire.chain.points, radius: 0.5 * wire.diameter });
     let spheres = spec
         .spheres
         .iter()
         .map(|sphere| Body { points: std::slice::from_ref(&sphere.position), radius: 0.5 * sphere.diameter });
-    let bodies: Vec<Body> = wires.chain(spheres).collect();
-    let Some(worst) = overlap::deepest(&bodies, GREATEST_OVERLAP) else {
-        return Ok(());
-    };
-    let name = |body: usize| match chains.get(body) {
+    wires.chain(spheres).collect()
+}
+
+/// Name of one of [`bodies`].
+fn name(body: usize, chains: &[WireChain], layers: &[Layer]) -> String {
+    match chains.get(body) {
         Some(wire) => format!("wire {} (layer \"{}\")", body + 1, layers[wire.layer].name),
         None => format!("sphere {}", body - chains.len() + 1),
+    }
+}
+
+/// How deep and where two bodies overlap; `share` of the smaller diameter (-).
+fn depth_and_place(depth: f64, share: f64, place: DVec3) -> String {
+    format!(
+        "by {} mm, {:.0} % of the diameter, at ({}, {}, {}) mm",
+        mm(depth),
+        100.0 * share,
+        mm(place.x),
+        mm(place.y),
+        mm(place.z)
+    )
+}
+
+/// Refuses rigid bodies that reach into wires or spheres by more than [`GREATEST_OVERLAP`] of their diameter.
+fn check_rigids(spec: &Spec, chains: &[WireChain], layers: &[Layer]) -> Result<(), BuildError> {
+    let bodies = bodies(spec, chains);
+    for (index, rigid) in spec.rigids.iter().enumerate() {
+        let surface = Surface::of(rigid);
+        let mut worst = (0, DVec3::ZERO, GREATEST_OVERLAP);
+        for (number, body) in bodies.iter().enumerate() {
+            let segments = body.points.windows(2).map(|pair| [pair[0], pair[1]]);
+            let alone = (body.points.len() == 1).then(|| [body.points[0]; 2]);
+            for ends in segments.chain(alone).map(|ends| ends.map(|end| end - rigid.position)) {
+                let near = body.radius + ends[0].distance(ends[1]);
+                if surface.distance(ends[0]).value > near {
+                    continue;
+                }
+                let (place, distance) = surface.nearest(ends);
+                let share = (body.radius - distance) / (2.0 * body.radius);
+                if share > worst.2 {
+                    worst = (number, place + rigid.position, share);
+                }
+            }
+        }
+        let (number, place, share) = worst;
+        if share > GREATEST_OVERLAP {
+            let depth = depth_and_place(2.0 * bodies[number].radius * share, share, place);
+            let what = name(number, chains, layers);
+            return Err(BuildError {
+                kind: BuildErrorKind::Overlap,
+                layer: None,
+                message: format!("{:?} reaches into {what} {depth}", rigid.name),
+                help: format!("move it away: at most {:.0} % of the diameter is accepted", 100.0 * GREATEST_OVERLAP),
+                key: format!("body.{index}"),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses bodies that overlap by more than [`GREATEST_OVERLAP`] of a diameter.
+fn check_overlaps(spec: &Spec, chains: &[WireChain], layers: &[Layer]) -> Result<(), BuildError> {
+    let Some(worst) = overlap::deepest(&bodies(spec, chains), GREATEST_OVERLAP) else {
+        return Ok(());
     };
+    let name = |body: usize| name(body, chains, layers);
     let [first, second] = worst.bodies;
     let overlapping = if first == second {
         format!("{} overlaps itself", name(first))
@@ -113,14 +173,7 @@ fn check_overlaps(spec: &Spec, chains: &[WireChain], layers: &[Layer]) -> Result
     Err(BuildError {
         kind: BuildErrorKind::Overlap,
         layer,
-        message: format!(
-            "{overlapping} by {} mm, {:.0} % of the diameter, at ({}, {}, {}) mm",
-            mm(worst.depth),
-            100.0 * worst.share,
-            mm(worst.place.x),
-            mm(worst.place.y),
-            mm(worst.place.z)
-        ),
+        message: format!("{overlapping} {}", depth_and_place(worst.depth, worst.share, worst.place)),
         help: format!("move them apart: at most {:.0} % of the diameter is accepted", 100.0 * GREATEST_OVERLAP),
         key,
     })

@@ -12,6 +12,7 @@ pub mod lay_radius;
 pub mod overlap;
 pub mod resample;
 pub mod size;
+pub mod surface;
 #[cfg(test)]
 pub(crate) mod test_specs;
 pub mod theory;

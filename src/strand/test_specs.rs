@@ -31,6 +31,7 @@ pub(crate) fn empty() -> Spec {
         strand: None,
         wires: Vec::new(),
         spheres: Vec::new(),
+        rigids: Vec::new(),
         spacing: 1.0,
         grip: None,
         holds: Vec::new(),

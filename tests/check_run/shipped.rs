@@ -66,6 +66,8 @@ shipped! {
     cantilever "cantilever",
     torsion "torsion",
     two_spheres "two-spheres",
+    bounce "bounce",
+    bend3 "bend3",
 }
 
 #[test]

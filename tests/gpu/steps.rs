@@ -264,6 +264,7 @@ fn what_cannot_be_recorded_is_refused_with_the_reason() {
         ("single-wire", &[rupture], "fibre strain asks for angles between bonds"),
         ("torsion", &["grip.free_rotation=true", "grip.rotation_rate="], "a grip that turns freely"),
         ("strand-1x7", &["contact.tangential=mindlin-deresiewicz"], "the law of friction (contact.tangential)"),
+        ("bounce", &[], "rigid bodies ([[body]])"),
     ] {
         match Stepper::new(&device, &shipped(name, set)) {
             Err(Error::Missing { what, .. }) => assert!(what.contains(reason), "{name}: {what}"),

@@ -110,6 +110,7 @@ fn info() -> RunInfo {
         wires,
         wire_particles: particles,
         particles,
+        bodies: Vec::new(),
         radius: vec![(0.5 * DIAMETER) as f32; particles],
         rest_position,
         gauge: Some([10e-3, 110e-3]),

@@ -1,9 +1,10 @@
 //! Contacts: one folder per shape of bodies (`spheres`, `wires`), what a touching pair does ([`pair`]), and the one
-//! place where laws and shape are chosen.
+//! place where laws and shape are chosen; rigid bodies stand apart (`rigid`).
 
 pub mod formula;
 mod law_table;
 pub mod pair;
+pub mod rigid;
 pub(super) mod spheres;
 mod stage;
 mod wires;

@@ -14,7 +14,7 @@ use super::state::Deepest;
 use super::step_choice;
 use super::step_view::StepView;
 use super::view::{DeepestContact, Findings, StepAt};
-use crate::base::finding::{Failure, Finding, FindingKind, Instant, Notice, Relief};
+use crate::base::finding::{Failure, Finding, FindingKind, Instant, Member, Notice, Relief};
 use crate::base::worst::Worst;
 use crate::scene::plan::ContactPlan;
 use crate::scene::spec::{GripKind, Spec};
@@ -235,6 +235,16 @@ pub fn crossed(view: &StepView) -> Option<Failure> {
         z_m: found.position.z,
         relief: relief(view),
     })
+}
+
+/// A particle whose centre has come into a rigid body.
+pub fn entered(view: &StepView, [particle, body]: [usize; 2]) -> Failure {
+    let rigid = Member { number: None, body: view.body(view.state.len() + body) };
+    Failure::PassedThrough {
+        between: [view.member(particle), rigid],
+        z_m: view.state.x.z[particle],
+        relief: relief(view),
+    }
 }
 
 /// What the fastest particle did in the last step, further than `limit_over_radius` of the least radius (-).

@@ -56,6 +56,7 @@ impl Bench {
             bonds: None,
             contacts: None,
             neighbours: None,
+            rigid: None,
             holds: &self.holds,
             measures: &self.measures,
             ledger: &self.ledger,

@@ -156,7 +156,9 @@ impl Layout {
 
     fn whole_view(&mut self, scenery: &Scenery) -> RecordingStreamResult<Item> {
         // As particles, which are cheaper to draw, and as good at this scale.
-        let contents = ["strand/**", "spheres/**", "grips/**", names::FIRST_BREAK_FAR].map(|what| format!("/{what}"));
+        let mut contents =
+            ["strand/**", "spheres/**", "grips/**", names::FIRST_BREAK_FAR].map(|what| format!("/{what}")).to_vec();
+        contents.extend(bodies(scenery.info));
         let name = if scenery.info.wires.is_empty() { "Spheres" } else { "Whole strand" };
         self.strand_view(name, &contents, &whole_eye(scenery))
     }
@@ -195,6 +197,7 @@ impl Layout {
         let wire = |number: &usize| names::wire(names::STRAND, info, *number);
         let mut contents = vec!["/spheres/**".to_owned()];
         contents.extend([names::FIRST_BREAK, names::FOCUS].map(|what| format!("/{what}")));
+        contents.extend(bodies(info));
         contents.extend(
             shown.iter().flat_map(|n| [wire(n), names::marks(names::STRAND, info, *n)]).map(|path| path.to_string()),
         );
@@ -389,6 +392,11 @@ fn first_id(layout: &str) -> u128 {
 enum Wires {
     Tubes,
     Particles,
+}
+
+/// Rigid bodies, where there are any.
+fn bodies(info: &RunInfo) -> Option<String> {
+    (!info.bodies.is_empty()).then(|| format!("/{}/**", names::BODIES))
 }
 
 fn wires_of_all(info: &RunInfo) -> std::ops::Range<usize> {

@@ -12,6 +12,8 @@ pub const APPLICATION: &str = "strandsnap";
 pub const STRAND: &str = "strand";
 /// Free spheres.
 pub const SPHERES: &str = "spheres";
+/// Rigid bodies.
+pub const BODIES: &str = "bodies";
 /// Grips.
 pub const GRIPS: &str = "grips";
 /// Strain of the body (%).

@@ -13,7 +13,7 @@ use super::sink::RERUN_VERSION;
 use super::states::States;
 use super::stream::{Instant, Stream, in_mm};
 use super::tubes::Drawn;
-use super::{curve, grips, layout, names, paint, particles};
+use super::{bodies, curve, grips, layout, names, paint, particles};
 use crate::base::error::Result;
 use crate::base::finding::Notice;
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
@@ -198,6 +198,7 @@ impl Run {
             chart.send_fixed(stream, info)?;
         }
         grips::send_style(stream)?;
+        bodies::send_style(stream, info)?;
         particles::send_styles(stream, info)?;
         Sections::send_style(stream)?;
         States::send_style(stream, info)?;
@@ -238,6 +239,7 @@ impl Run {
             let batch = particles::Batch { info, palette, instants: &instants, snapshots };
             batch.send(&self.stream, &mut self.drawn)?;
             grips::send(&self.stream, &self.info, &instants, &self.snapshots)?;
+            bodies::send(&self.stream, &self.info, &instants, &self.snapshots)?;
         }
         if !self.samples.is_empty() {
             curve::send(&self.stream, &self.info, &self.samples)?;

@@ -14,6 +14,7 @@ fn info() -> Arc<RunInfo> {
         wires: vec![wire(0), wire(1), wire(1)],
         wire_particles: 6,
         particles: 6,
+        bodies: Vec::new(),
         radius: vec![0.2; 6],
         rest_position: vec![[0.0; 3]; 6],
         gauge: Some([10.0, 110.0]),

@@ -71,7 +71,7 @@ pub enum RawGripKind {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RawHold {
-    /// Body number from 0: strand wires inside out, then `[[wire]]`, then `[[sphere]]`. Results count wires, and free
+    /// Body number from 0: strand wires inside out, then `[[wire]]`, then `[[sphere]]`; a `[[body]]` is not among them. Results count wires, and free
     /// spheres among themselves, from 1.
     #[schemars(extend("x-required" = true))]
     pub body: Option<i64>,

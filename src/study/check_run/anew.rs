@@ -9,7 +9,7 @@ use serde_json::Value;
 
 pub const TABLES: Invariant = Invariant {
     name: "tables",
-    about: "curve.csv, wires.csv and ruptures.csv are those that the trajectory gives, cell by cell",
+    about: "curve.csv, wires.csv, ruptures.csv and bodies.csv are those that the trajectory gives, cell by cell",
     check: tables,
 };
 
@@ -34,7 +34,8 @@ const ROUNDING: f64 = 1e-9;
 
 fn tables(run: &Folder) -> InvariantOutcome {
     let mut search = Search::new();
-    for (found, right) in [&run.curve, &run.wires, &run.ruptures].into_iter().zip(&run.anew.tables) {
+    let found = [&run.curve, &run.wires, &run.ruptures].into_iter().chain(&run.bodies);
+    for (found, right) in found.zip(run.anew.tables.iter().chain(&run.anew.bodies)) {
         let name = found.name;
         search.same(found.heads.join(","), right.heads.join(","), || format!("columns of {name}"));
         search.same(found.rows.len(), right.rows.len(), || format!("rows of {name}"));

@@ -9,6 +9,7 @@ use crate::base::finding::Notice;
 use crate::base::regular;
 use crate::engine::Engine;
 use crate::engine::view::{BondState, RunInfo, Rupture, Sample, Snapshot};
+use crate::observe::bodies::BODIES;
 use crate::observe::origin::Origin;
 use crate::observe::trajectory::{Record, Trajectory};
 use crate::observe::{partial, tables};
@@ -121,6 +122,8 @@ pub struct Folder {
     pub wires: Table,
     /// `ruptures.csv`.
     pub ruptures: Table,
+    /// `bodies.csv`, where there are rigid bodies.
+    pub bodies: Option<Table>,
     /// What the trajectory holds besides snapshots.
     pub trajectory: History,
     /// What was looked for in each snapshot: they are too many to be kept.
@@ -202,6 +205,7 @@ impl Folder {
             curve: Table::read(run, curve, &CURVE)?,
             wires: Table::read(run, wires, &WIRES)?,
             ruptures: Table::read(run, ruptures, &RUPTURES)?,
+            bodies: (!spec.rigids.is_empty()).then(|| Table::read(run, BODIES, &[])).transpose()?,
             trajectory,
             snapshots,
             spec,

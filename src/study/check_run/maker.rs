@@ -4,6 +4,7 @@ use super::tables::Table;
 use crate::base::error::{Error, Result};
 use crate::engine::view::RunInfo;
 use crate::observe::Observer;
+use crate::observe::bodies::BODIES;
 use crate::observe::summary::{Closing, RunSummary, Summariser};
 use crate::observe::tables::{FILES, Tables};
 use crate::observe::trajectory::Record;
@@ -15,6 +16,8 @@ use std::sync::Arc;
 pub struct Remade {
     /// The tables, in the order of [`FILES`].
     pub tables: [Table; 3],
+    /// Table of rigid bodies, where there are any.
+    pub bodies: Option<Table>,
     /// `summary.json` without its seal.
     pub summary: Value,
 }
@@ -74,6 +77,12 @@ impl Maker {
         };
         let summary = self.summariser.summary(spec, bonds, closing);
         let [curve, wires, ruptures] = FILES.map(|name| Table::read(self.folder.path(), name, &[]));
-        Ok(Remade { tables: [curve?, wires?, ruptures?], summary: serde_json::to_value(summary).unwrap_or_default() })
+        let bodies = || Table::read(self.folder.path(), BODIES, &[]);
+        let bodies = (!spec.rigids.is_empty()).then(bodies).transpose()?;
+        Ok(Remade {
+            tables: [curve?, wires?, ruptures?],
+            bodies,
+            summary: serde_json::to_value(summary).unwrap_or_default(),
+        })
     }
 }

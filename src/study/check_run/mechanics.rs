@@ -136,6 +136,9 @@ fn work(run: &Folder) -> InvariantOutcome {
     if !run.spec.holds.is_empty() {
         return not("other holds and loads do work too");
     }
+    if !run.spec.rigids.is_empty() {
+        return not("rigid bodies do work too");
+    }
     let Some(free) = run.free_length else { return not("there is no gauge") };
     if let DriveSpec::Cyclic { frequency, .. } = grip.drive
         && (run.curve.rows.len() as f64)

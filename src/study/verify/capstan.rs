@@ -1,4 +1,4 @@
-//! A wire that slides round another.
+//! A wire that slides round another, and round a rigid cylinder.
 
 use super::case::VerificationCase;
 use super::comparison::{Comparison, Point, Spent};
@@ -17,6 +17,13 @@ pub const CAPSTAN: VerificationCase = VerificationCase {
     run: capstan,
 };
 
+pub const DRUM: VerificationCase = VerificationCase {
+    name: "capstan-on-drum",
+    about: "a thin wire slides round a rigid cylinder: growth of its tension",
+    source: CAPSTAN.source,
+    run: on_drum,
+};
+
 /// Share of the length at either end that does not count: the free ends bend off the drum there.
 const ENDS: f64 = 0.15;
 
@@ -32,25 +39,28 @@ struct Slide {
     spent: Spent,
 }
 
-fn slide(context: &Context, friction: f64, spacing: f64) -> Result<Slide> {
+fn slide(context: &Context, name: &str, friction: f64, spacing: f64) -> Result<Slide> {
     // A step in proportion to the spacing, as the bonds ask for.
     let options =
         [set("spacing", spacing), set("contact.friction", friction), set("time.step", format!("{} ns", 8.0 * spacing))];
-    let scene = scene::load("verify/capstan", &options)?;
+    let scene = scene::load(name, &options)?;
     let spec = &scene.spec;
     let strand = spec.strand.as_ref().expect("the scene has a winding");
     let (layer, height) = (&strand.layers[0], strand.length);
     let radius = layer.lay_radius.expect("the scene gives it");
     let helix = Helix { radius, pitch: layer.pitch, lay: layer.lay, phase: layer.phase };
     let wire = Wrapped { friction, curvature: helix.curvature(), radius: 0.5 * layer.wire_diameter };
-    // One bond of the drum, so that its own particles are out of reach.
-    let half = 0.5 * spacing * spec.wires[0].diameter;
     let axis = |z: f64| DVec3::Z * (0.5 * height + z);
     let end = spec.stop.time.expect("the scene says when it ends");
     let scene = scene.changed(|spec| {
-        spec.wires[0].path = PathSpec::Straight { from: axis(-half), to: axis(half) };
-        spec.holds[1].force = -helix.tangent(0.0) * spec.holds[1].force.length();
-        spec.holds[2].velocity = helix.tangent(height) * spec.holds[2].velocity.length();
+        if let Some(drum) = spec.wires.first_mut() {
+            // One bond of the drum, so that its own particles are out of reach.
+            let half = 0.5 * spacing * drum.diameter;
+            drum.path = PathSpec::Straight { from: axis(-half), to: axis(half) };
+        }
+        let [.., back, pulled] = &mut spec.holds[..] else { return };
+        back.force = -helix.tangent(0.0) * back.force.length();
+        pulled.velocity = helix.tangent(height) * pulled.velocity.length();
     });
     let mut simulation = context.simulation_of(scene)?;
     let bonds = simulation.bonds();
@@ -67,12 +77,20 @@ fn slide(context: &Context, friction: f64, spacing: f64) -> Result<Slide> {
 }
 
 fn capstan(context: &Context) -> Result<Vec<Comparison>> {
+    of_scene(context, "verify/capstan")
+}
+
+fn on_drum(context: &Context) -> Result<Vec<Comparison>> {
+    of_scene(context, "verify/capstan-on-drum")
+}
+
+fn of_scene(context: &Context, scene: &str) -> Result<Vec<Comparison>> {
     let mut found = Vec::new();
     for friction in context.pick(&[0.2][..], &[0.1, 0.2, 0.4]) {
         let mut points = Vec::new();
         let mut finest = None;
         for spacing in context.pick(&[5.0, 2.5][..], &[5.0, 2.5, 1.25]) {
-            let s = slide(context, *friction, *spacing)?;
+            let s = slide(context, scene, *friction, *spacing)?;
             let exact = (s.wire.rate() * s.length).exp();
             points.push(Point { resolution: s.corner, error: s.ratio.ln() / exact.ln() - 1.0, spent: s.spent });
             finest = Some((s, exact));

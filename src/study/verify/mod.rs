@@ -19,6 +19,7 @@ mod plasticity;
 pub mod plots;
 mod repeated;
 pub mod report;
+mod rigid;
 mod section;
 mod snapping;
 mod spring;
@@ -67,6 +68,11 @@ pub const CASES: &[VerificationCase] = &[
     contacts::TANGENTIAL,
     contacts::ROLLING,
     oblique::OBLIQUE,
+    // Rigid bodies
+    rigid::IMPACT,
+    rigid::ROLLING,
+    rigid::BENDING,
+    capstan::DRUM,
     // Contacts of wires
     wires::SLIDING_WIRES,
     wires::SPHERE_ON_WIRE,

@@ -21,9 +21,9 @@
 
 mod batch;
 mod beside;
-mod chains;
+pub(super) mod chains;
 mod chunk;
-mod curve;
+pub(super) mod curve;
 mod meeting;
 mod record;
 mod spread;
@@ -56,7 +56,7 @@ use store::{Candidate, Store};
 
 /// Movement of particles moves points of a centreline by up to this (-): the weights of a cubic, or of a quartic near an
 /// end of the wire.
-const SPREAD: f64 = 2.2;
+pub(super) const SPREAD: f64 = 2.2;
 
 /// Cells of a stretch beside another wire must be this much shorter than the patch in which wires touch that cross: the
 /// sine of the angle times the length of a stretch, over the sum of the radii (-). Below, a patch 1 % of the radius deep
