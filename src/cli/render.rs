@@ -26,6 +26,11 @@ pub struct Args {
     anyway: bool,
     /// Draw one view, as `strandsnap explore` writes it, to view.png in that folder; several of them and --animation
     /// make the film of a camera that goes from each to the next
+    ///
+    /// Its keys, separated by commas, are: state (number of the snapshot, from 0), azimuth, elevation (degrees), centre, height
+    /// (mm), perspective (angle that the height is seen under), follow (z of a section before loading, mm), colour, range,
+    /// hidden_layers, hidden_wires, ghost_layers, selected (numbers from 0), explode, cut (mm), theme, supersampling. For example
+    /// 'state = 40, azimuth = 30, height = 8'
     #[arg(long, value_name = "KEYS", conflicts_with_all = ["strain_range", "events", "every", "animation_width", "views",
         "colour", "theme", "supersampling", "azimuth", "elevation", "zoom", "focus_z"])]
     view: Vec<String>,

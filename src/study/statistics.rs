@@ -39,6 +39,18 @@ impl Statistics {
         format!("{:.decimals$}{half}", self.mean)
     }
 
+    /// As [`Self::with_deviation`]; where the interval leaves what the number can be, its ends are told in place of its half
+    /// width, and stop there: `50 (0 to 100)`.
+    pub fn within(&self, limits: Option<[f64; 2]>, decimals: usize) -> String {
+        match (limits, self.interval_95) {
+            (Some([least, most]), Some(half)) if self.mean - half < least || self.mean + half > most => {
+                let [low, high] = [(self.mean - half).max(least), (self.mean + half).min(most)];
+                format!("{:.decimals$} ({low:.decimals$} to {high:.decimals$})", self.mean)
+            }
+            _ => self.with_deviation(decimals),
+        }
+    }
+
     /// The same, with the standard deviation in brackets.
     pub fn with_deviation(&self, decimals: usize) -> String {
         let deviation = self.standard_deviation.map_or(String::new(), |deviation| format!(" ({deviation:.decimals$})"));
@@ -64,6 +76,16 @@ mod tests {
         assert_eq!(stat.standard_deviation, Some(1.0));
         // 4.303 is what tables of Student's t have for two degrees of freedom.
         assert!((stat.interval_95.unwrap() - 4.303 / 3f64.sqrt()).abs() < 3e-4);
+    }
+
+    #[test]
+    fn an_interval_ends_where_a_number_must() {
+        let two = Statistics::of(&[33.0, 67.0]).unwrap();
+        assert_eq!(two.within(Some([0.0, 100.0]), 0), "50 (0 to 100)");
+        assert_eq!(two.within(None, 0), "50 ± 216 (24)");
+        let many = Statistics::of(&[49.0, 50.0, 51.0, 50.0]).unwrap();
+        assert_eq!(many.within(Some([0.0, 100.0]), 0), many.with_deviation(0));
+        assert_eq!(Statistics::of(&[99.0, 100.0, 100.0, 98.0]).unwrap().within(Some([0.0, 100.0]), 1), "99.2 (97.7 to 100.0)");
     }
 
     #[test]

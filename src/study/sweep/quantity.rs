@@ -20,6 +20,11 @@ pub fn is_frequency(quantity: &Quantity) -> bool {
     quantity.unit == OF_RUNS
 }
 
+/// What a quantity cannot leave, whatever an interval of its mean says: shares of wires are from 0 to 100 %.
+pub fn limits(quantity: &Quantity) -> Option<[f64; 2]> {
+    ["outer-broken", "below-broken"].contains(&quantity.name).then_some([0.0, 100.0])
+}
+
 /// All quantities.
 pub static ALL: LazyLock<[Quantity; 9]> = LazyLock::new(|| {
     let alone = |run: &TensileResult| Some(share(outer_broken(run)? == 100.0 && below_broken(run)? < 100.0));

@@ -203,5 +203,5 @@ fn with_interval(stat: Option<Statistics>, quantity: &Quantity) -> String {
     if quantity::is_frequency(quantity) {
         return format!("{:.0} of {}", 0.01 * stat.mean * stat.count as f64, stat.count);
     }
-    stat.with_deviation(quantity.decimals)
+    stat.within(quantity::limits(quantity), quantity.decimals)
 }
