@@ -22,7 +22,7 @@ pub fn is_frequency(quantity: &Quantity) -> bool {
 
 /// What a quantity cannot leave, whatever an interval of its mean says: shares of wires are from 0 to 100 %.
 pub fn limits(quantity: &Quantity) -> Option<[f64; 2]> {
-    ["outer-broken", "below-broken"].contains(&quantity.name).then_some([0.0, 100.0])
+    ["outer-broken", "below-broken"].contains(&&*quantity.name).then_some([0.0, 100.0])
 }
 
 /// All quantities.
