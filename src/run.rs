@@ -39,6 +39,7 @@ use crate::base::finding::KeptResults;
 use crate::base::units::ms;
 use crate::engine::Engine;
 use crate::observe::Observer;
+use crate::observe::details::Details;
 use crate::observe::files::write_whole;
 use crate::observe::origin::Origin;
 use crate::observe::summary::{Closing, Cost, Summariser};
@@ -294,7 +295,8 @@ fn drive_and_summarise(
     let spec = &job.scene.spec;
     let mut summariser = Summariser::new();
     let mut tables = Tables::new(&job.options.out);
-    let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables];
+    let mut details = Details::new(&job.options.out, &spec.output.tables);
+    let mut observers: Vec<&mut dyn Observer> = vec![&mut summariser, &mut tables, &mut details];
     observers.extend(written.observers.iter_mut().map(|o| &mut **o as &mut dyn Observer));
     observers.extend(watchers.into_iter().map(|o| o as &mut dyn Observer));
     let (outcome, error) =

@@ -103,6 +103,9 @@ impl Engine {
         if self.rigid.is_some() {
             return Err(refused("rigid bodies ([[body]])"));
         }
+        if !self.spec.output.tables.is_empty() {
+            return Err(refused("tables at snapshots (output.tables)"));
+        }
         let unrecordable = |reason: Unrecordable| refused(&reason.to_string());
         let mut pairs = None;
         if let Some(contacts) = &self.contacts {

@@ -8,9 +8,10 @@ use super::neighbours::Stretch;
 use super::saved::{Reader, Unfit, Writer};
 use super::state::State;
 use super::straight::{StraightGrip, runs};
+use super::view::Load;
 use crate::base::error::{Error, Result};
 use crate::base::triple::Triple;
-use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec};
+use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec, Table};
 use crate::strand::assembly::Assembly;
 use crate::strand::held::Gripped;
 use glam::{DVec2, DVec3};
@@ -72,6 +73,10 @@ pub struct Holds {
     pub(super) loading_rate: Option<LoadingRate>,
     /// Reactions of the last step.
     pub reaction: Reaction,
+    /// By how much the upper grip has turned about z (rad).
+    pub angle: f64,
+    /// What each of the scene's holds did to its particles in the last step, where the scene asks for it; empty elsewhere.
+    reactions: Vec<[DVec3; 2]>,
     /// Work done so far (J).
     pub work: f64,
 }
@@ -91,6 +96,8 @@ impl Holds {
             spin: spec.grip.as_ref().map_or(0.0, |g| g.rotation_rate),
             loading_rate: None,
             reaction: Reaction::default(),
+            angle: 0.0,
+            reactions: Vec::new(),
             work: 0.0,
         };
         if let Some(grip) = &spec.grip {
@@ -108,6 +115,9 @@ impl Holds {
             let kind = Kind::Components(hold.clone());
             holds.groups.push(Group { runs: runs(&particles), particles, kind, driven: false });
         }
+        if spec.output.tables.contains(&Table::Holds) {
+            holds.reactions = vec![[DVec3::ZERO; 2]; spec.holds.len()];
+        }
         holds.mark(state);
         holds.start_velocities(state);
         let inertia = loading_rate::inertia(state, |z| holds.share(z));
@@ -118,7 +128,7 @@ impl Holds {
 
     /// Puts in how far the drive has come, and what it took.
     pub fn save(&self, out: &mut Writer) {
-        out.put(&(self.stretch, self.spin, self.reaction, self.work));
+        out.put(&(self.stretch, self.spin, self.reaction, self.angle, self.work));
         out.put(&self.loading_rate.as_ref().map(LoadingRate::now));
     }
 
@@ -128,7 +138,7 @@ impl Holds {
     /// [`Unfit`] when it is of another drive.
     pub fn restore(&mut self, from: &mut Reader) -> Result<(), Unfit> {
         let gauge = self.stretch.gauge;
-        (self.stretch, self.spin, self.reaction, self.work) = from.take()?;
+        (self.stretch, self.spin, self.reaction, self.angle, self.work) = from.take()?;
         let rate: Option<[f64; 4]> = from.take()?;
         if gauge != self.stretch.gauge || rate.is_some() != self.loading_rate.is_some() {
             return Err(Unfit("its grips are others".into()));
@@ -245,6 +255,7 @@ impl Holds {
         }
         self.reaction = Reaction::default();
         let groups = std::mem::take(&mut self.groups);
+        let mut number = 0;
         for group in &groups {
             match &group.kind {
                 Kind::Rigid if !self.turns(group) => self.straight(group, state, rise, kicked, arch),
@@ -253,7 +264,13 @@ impl Holds {
                     let on = smooth(state.time / CLAMP_RISE) * clamp;
                     self.rigid(group, state, rise, kicked, Some(on));
                 }
-                Kind::Components(hold) => self.components(group, hold, state, kicked),
+                Kind::Components(hold) => {
+                    let load = self.components(group, hold, state, kicked);
+                    if let Some(last) = self.reactions.get_mut(number) {
+                        *last = load;
+                    }
+                    number += 1;
+                }
             }
         }
         self.groups = groups;
@@ -261,6 +278,7 @@ impl Holds {
             self.change_speed(state, kicked);
         }
         self.stretch.displacement += rise;
+        self.angle += self.spin * state.dt;
     }
 
     /// Way of the upper grip along z in a step of `dt` (s) from `time` (s) on (m).
@@ -380,16 +398,30 @@ impl Holds {
         }
     }
 
-    /// Components held one by one, and loads.
-    fn components(&mut self, group: &Group, hold: &HoldSpec, state: &mut State, kicked: f64) {
+    /// Components held one by one, and loads. Returns the force and the moment about the middle of what is held that did it.
+    fn components(&mut self, group: &Group, hold: &HoldSpec, state: &mut State, kicked: f64) -> [DVec3; 2] {
         let load = Self::load(hold, group.particles.len(), state.time).map(Triple::from);
         let motion = [hold.velocity, hold.spin].map(Triple::from);
+        let middle =
+            group.particles.iter().map(|p| state.x.get(*p as usize)).sum::<DVec3>() / group.particles.len() as f64;
+        let (mut force, mut moment) = (DVec3::ZERO, DVec3::ZERO);
         for p in group.particles.iter().map(|p| *p as usize) {
             let held = self.kicked(state, p, kicked).components(&hold.fixed, motion, load);
             held.work.iter().for_each(|work| self.work += work);
-            state.v.set(p, held.v.into());
-            state.w.set(p, held.w.into());
+            let (v, w) = (DVec3::from(held.v), DVec3::from(held.w));
+            // What must have acted beside bonds and contacts.
+            let push = (v - state.v.get(p)) * (state.mass[p] / kicked);
+            force += push;
+            moment += (state.x.get(p) - middle).cross(push) + (w - state.w.get(p)) * (state.inertia[p] / kicked);
+            state.v.set(p, v);
+            state.w.set(p, w);
         }
+        [force, moment]
+    }
+
+    /// What each of the scene's holds did to its particles in the last step, about their middle; empty where nobody asks.
+    pub fn reactions(&self) -> Vec<Load> {
+        self.reactions.iter().map(|load| (*load).into()).collect()
     }
 
     /// Force (N) and moment (N m) that a hold applies to each of its particles at `time` (s).

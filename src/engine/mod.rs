@@ -7,6 +7,7 @@
 pub mod bonds;
 pub mod bytes;
 pub mod contact;
+mod detail;
 pub mod elsewhere;
 pub mod estimates;
 pub mod grips;

@@ -3,6 +3,7 @@
 use super::bonds::Bonds;
 use super::contact::Contacts;
 use super::contact::rigid::RigidBodies;
+use super::detail::detail;
 use super::estimates::negligible_energy;
 use super::grips::Holds;
 use super::measure::Measures;
@@ -195,6 +196,7 @@ impl StepView<'_> {
             utilisation,
             contact_pressure: self.contact_pressure(),
             roll: self.roll(),
+            detail: detail(self),
         }
     }
 

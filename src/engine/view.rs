@@ -303,6 +303,61 @@ pub struct Snapshot {
     /// By how much each particle has turned about its wire since the start (rad): the time integral of its spin, along the wire as
     /// it lies now. Empty where no grip turns.
     pub roll: Vec<f32>,
+    /// What the scene asks for besides (`output.tables`).
+    pub detail: Option<Box<Detail>>,
+}
+
+/// What a scene asks for beside the rest of a snapshot, in double precision; what it does not ask for is empty.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Detail {
+    /// Centres (m), one per particle.
+    pub position: Vec<[f64; 3]>,
+    /// Velocities half a step before (m/s), one per particle.
+    pub velocity: Vec<[f64; 3]>,
+    /// Spins half a step before (rad/s), one per particle.
+    pub spin: Vec<[f64; 3]>,
+    /// What each hold does to the particles that it holds, in the scene's order.
+    pub holds: Vec<Load>,
+    /// Pairs that touch.
+    pub contacts: Vec<Touch>,
+    /// The grips, where there are any.
+    pub grips: Option<GripState>,
+}
+
+/// A force and a moment.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Load {
+    /// Force (N).
+    pub force: [f64; 3],
+    /// Moment about the middle of what is held (N m).
+    pub moment: [f64; 3],
+}
+
+/// A contact at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Touch {
+    /// The particle, and the other one, or the first one of the piece of wire that it touches.
+    pub pair: [u32; 2],
+    /// Half-way between the two surfaces (m).
+    pub position: [f64; 3],
+    /// Normal force (N).
+    pub force: f64,
+    /// Overlap, at its deepest (m).
+    pub overlap: f64,
+    /// Normal force over the area πR*δ (Pa); NaN for a patch along two wires, which is no circle.
+    pub pressure: f64,
+}
+
+/// The grips at one instant.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct GripState {
+    /// By how much the upper grip has moved along z (m).
+    pub displacement: f64,
+    /// By how much it has turned about z (rad).
+    pub angle: f64,
+    /// Lay length and lay radius between the grips (m), means over the whole wires of each layer; `None` of one on the axis, or all
+    /// of whose wires are broken. A straight layer has an infinite lay length.
+    pub lay: Vec<Option<[f64; 2]>>,
 }
 
 impl Snapshot {

@@ -428,6 +428,7 @@ fn between(a: &Snapshot, b: &Snapshot, share: f64) -> Snapshot {
         utilisation: mix(&a.utilisation, &b.utilisation),
         contact_pressure: mix(&a.contact_pressure, &b.contact_pressure),
         roll: mix(&a.roll, &b.roll),
+        detail: None,
     }
 }
 

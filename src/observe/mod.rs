@@ -4,6 +4,7 @@ pub mod animation;
 pub mod bodies;
 pub mod colouring;
 pub mod column;
+pub mod details;
 pub mod files;
 pub mod fracture;
 pub mod guard;

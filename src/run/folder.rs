@@ -9,7 +9,7 @@ use crate::base::regular;
 use crate::observe::bodies::BODIES;
 use crate::observe::files::write_whole;
 use crate::observe::origin::RUN_KEYWORD;
-use crate::observe::{partial, tables};
+use crate::observe::{details, partial, tables};
 use std::collections::HashSet;
 use std::fs;
 use std::io::Read;
@@ -97,7 +97,10 @@ pub fn is_unfinished(run: &Path) -> bool {
 
 /// Every file that a run writes into its folder.
 fn files() -> impl Iterator<Item = &'static str> {
-    tables::FILES.into_iter().chain([BODIES, SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT])
+    tables::FILES
+        .into_iter()
+        .chain(details::FILES)
+        .chain([BODIES, SCENE, SUMMARY, RECORDING, TRAJECTORY, ANIMATION, REPORT])
 }
 
 /// An output folder that may be written.

@@ -10,7 +10,7 @@ use crate::base::regular;
 use crate::observe::bodies::BODIES;
 use crate::observe::origin::Origin;
 use crate::observe::trajectory::Trajectory;
-use crate::observe::{partial, tables};
+use crate::observe::{details, partial, tables};
 use crate::scene;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -56,7 +56,8 @@ impl fmt::Display for Doubt {
 /// # Errors
 /// [`Error::Io`] when a file cannot be read.
 pub fn seal(summary: &str, origin: Origin, run: &Path, more: &[&str]) -> Result<String> {
-    let names = tables::FILES.into_iter().chain([BODIES, SCENE, TRAJECTORY]).chain(more.iter().copied());
+    let names =
+        tables::FILES.into_iter().chain(details::FILES).chain([BODIES, SCENE, TRAJECTORY]).chain(more.iter().copied());
     let files =
         names.filter(|name| run.join(name).exists()).map(|name| Ok((name.to_owned(), digest(&run.join(name))?)));
     let seal = Seal { origin, files: files.collect::<Result<_>>()?, summary: Digest::of(summary) };
@@ -131,7 +132,7 @@ pub fn doubts(run: &Path) -> Result<Vec<Doubt>> {
         doubts.push(Doubt::Foreign(SUMMARY));
         return Ok(doubts);
     }
-    for name in tables::FILES.into_iter().chain([BODIES, TRAJECTORY]) {
+    for name in tables::FILES.into_iter().chain(details::FILES).chain([BODIES, TRAJECTORY]) {
         let path = run.join(name);
         if path.is_file() && seal.files.get(name) != Some(&Digest::of_file(&path)?) {
             doubts.push(Doubt::Changed(name));

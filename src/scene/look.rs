@@ -83,6 +83,18 @@ words! {
 }
 
 words! {
+    /// A table that a run writes at its snapshots where a scene asks for it.
+    Table {
+        Positions = "positions", "Centres of all particles";
+        Velocities = "velocities", "Their velocities, half a step before";
+        Spins = "spins", "Their spins, half a step before";
+        Holds = "holds", "Force and moment of each hold on what it holds";
+        Contacts = "contacts", "Pairs that touch: place, normal force, overlap, mean pressure";
+        Grips = "grips", "Displacement and angle of the upper grip; lay length and lay radius of each layer";
+    }
+}
+
+words! {
     /// Files for other programs.
     Format {
         Parquet = "parquet", "Tables and series per wire and per bond, for pandas, polars, DuckDB";

@@ -225,7 +225,8 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
         views: raw.views.clone().unwrap_or(usual.views),
         theme: raw.theme.unwrap_or(usual.theme),
         camera: camera(&at.key("camera"), &raw.camera)?,
-        also: also(&at.key("also"), raw.also.as_deref().unwrap_or_default())?,
+        also: once(&at.key("also"), &raw.also, Format::word)?,
+        tables: once(&at.key("tables"), &raw.tables, Table::word)?,
         supersampling: supersampling(&at.key("supersampling"), raw.supersampling, usual.supersampling)?,
         pictures: Vec::new(),
     })
@@ -240,11 +241,13 @@ pub(super) fn supersampling(at: &At, raw: Option<i64>, usual: u32) -> Result<u32
     })
 }
 
-fn also(at: &At, raw: &[Format]) -> Result<Vec<Format>> {
+/// Words of a list, each once.
+fn once<W: Copy + PartialEq>(at: &At, raw: &Option<Vec<W>>, word: fn(W) -> &'static str) -> Result<Vec<W>> {
+    let raw = raw.as_deref().unwrap_or_default();
     match (1..raw.len()).find(|index| raw[..*index].contains(&raw[*index])) {
         None => Ok(raw.into()),
         Some(twice) => {
-            let what = format!("`also` names \"{}\" twice", raw[twice].word());
+            let what = format!("`{}` names \"{}\" twice", at.name(), word(raw[twice]));
             Err(at.element(twice).error(what, "once is enough"))
         }
     }

@@ -1,7 +1,7 @@
 //! `Spec`: a scene after resolution, all SI, nothing left to guess. It is what every later floor reads.
 
 /// Pictures are described by the words that people write.
-pub use super::look::{ColourBy, Format, Theme, View};
+pub use super::look::{ColourBy, Format, Table, Theme, View};
 /// Elastic constants are those of rigid bodies too.
 pub use super::material::Material;
 pub use super::picture::PictureSpec;
@@ -459,6 +459,8 @@ pub struct OutputSpec {
     pub camera: CameraSpec,
     /// Files for other programs that are made of a run when it has come to its end.
     pub also: Vec<Format>,
+    /// Tables that are written at every snapshot.
+    pub tables: Vec<Table>,
     /// How many times finer than its pixels a picture is drawn, in either direction.
     pub supersampling: u32,
     /// Pictures that are drawn of a run when it has come to its end.
@@ -478,6 +480,7 @@ impl Default for OutputSpec {
             theme: Theme::default(),
             camera: CameraSpec::default(),
             also: Vec::new(),
+            tables: Vec::new(),
             supersampling: 1,
             pictures: Vec::new(),
         }

@@ -458,6 +458,7 @@ fn output(out: &mut Lines, output: &OutputSpec) {
     out.entry("colour", text(output.colour.word()));
     out.list("views", output.views.iter().map(|view| text(view.word())));
     out.entry("theme", text(output.theme.word()));
+    out.list("tables", output.tables.iter().map(|table| text(table.word())));
     out.list("also", output.also.iter().map(|format| text(format.word())));
     if output.supersampling != OutputSpec::default().supersampling {
         out.entry("supersampling", output.supersampling.to_string());

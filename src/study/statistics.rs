@@ -85,7 +85,10 @@ mod tests {
         assert_eq!(two.within(None, 0), "50 ± 216 (24)");
         let many = Statistics::of(&[49.0, 50.0, 51.0, 50.0]).unwrap();
         assert_eq!(many.within(Some([0.0, 100.0]), 0), many.with_deviation(0));
-        assert_eq!(Statistics::of(&[99.0, 100.0, 100.0, 98.0]).unwrap().within(Some([0.0, 100.0]), 1), "99.2 (97.7 to 100.0)");
+        assert_eq!(
+            Statistics::of(&[99.0, 100.0, 100.0, 98.0]).unwrap().within(Some([0.0, 100.0]), 1),
+            "99.2 (97.7 to 100.0)"
+        );
     }
 
     #[test]

@@ -180,6 +180,7 @@ fn snapshot(info: &RunInfo, sample: &Sample, broken: &[(usize, f64)]) -> Snapsho
         utilisation: (0..n).map(|i| stretch.ln() / 0.3 * (1.0 + 0.02 * noise(i, 6))).collect(),
         contact_pressure: (0..n).map(|i| 100e6 * (stretch - 1.0) * (1.0 + noise(i, 7))).collect(),
         roll: Vec::new(),
+        detail: None,
     };
     for wire in &info.wires {
         all.bond_state[wire.first + wire.len - 1] = BondState::Absent;

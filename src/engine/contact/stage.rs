@@ -8,6 +8,7 @@ use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{ChunkSums, State};
 use crate::engine::team::Team;
 use crate::engine::time_step::Element;
+use crate::engine::view::Touch;
 use crate::strand::assembly::Assembly;
 
 /// Contacts of a run.
@@ -23,6 +24,8 @@ pub trait Contacts: Send + Sync {
     fn elastic_energy(&self, state: &State) -> f64;
     /// Adds to each particle the normal forces of its contacts, without regard to direction (N).
     fn add_normal_forces(&self, onto: &mut [f64]);
+    /// Shows each touching pair, in the order of the pairs.
+    fn each_touch(&self, state: &State, each: &mut dyn FnMut(Touch));
     /// Number of touching pairs.
     fn active(&self) -> usize;
     /// Number of candidate pairs.

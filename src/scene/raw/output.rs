@@ -2,7 +2,7 @@
 
 use super::picture::RawPicture;
 use super::scalar::Scalar;
-use crate::scene::look::{ColourBy, Format, Theme, View};
+use crate::scene::look::{ColourBy, Format, Table, Theme, View};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -44,6 +44,9 @@ pub struct RawOutput {
     /// ["parquet"].
     #[schemars(extend("x-otherwise" = "none"))]
     pub also: Option<Vec<Format>>,
+    /// Tables that are written at every snapshot as CSV files of these names, such as ["holds", "contacts"].
+    #[schemars(extend("x-otherwise" = "none"))]
+    pub tables: Option<Vec<Table>>,
     /// How many times finer than its pixels a picture is drawn in either direction, from 1 to 4: finer outlines, for the
     /// square of it in drawing time.
     #[schemars(extend("x-default" = "1"))]

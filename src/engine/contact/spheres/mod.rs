@@ -19,6 +19,7 @@ mod store;
 use super::law_table::LawTable;
 use super::pair::{History, elastic_energy, foreseen_stiffness, leave};
 use super::stage::{Contacts, Elsewhere, closing};
+use super::touch;
 use crate::base::lanes::BLOCK;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::PairList;
@@ -27,6 +28,7 @@ use crate::engine::shared_rows::SharedRows;
 use crate::engine::state::{BondActions, CHUNK, ChunkSums, ContactSides, Deepest, RowChunks, State};
 use crate::engine::team::Team;
 use crate::engine::time_step::Element;
+use crate::engine::view::Touch;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::reduced_radius;
 use crate::law::damping::viscous_coefficient;
@@ -249,6 +251,15 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for SphereContacts<N, T> {
     fn add_normal_forces(&self, onto: &mut [f64]) {
         for (history, pair) in self.touching() {
             pair.into_iter().for_each(|p| onto[p] += history.normal_force);
+        }
+    }
+
+    fn each_touch(&self, state: &State, each: &mut dyn FnMut(Touch)) {
+        for touching in self.stores.iter().flat_map(|store| self.touching_in(store)) {
+            let history = Self::history(Some(touching.record), touching.lane, touching.reduced_radius);
+            let [i, j] = touching.pair;
+            let ends = [i, j].map(|p| (state.x.get(p), state.radius[p]));
+            each(touch([i as u32, j as u32], ends, history.normal_force, Some(touching.reduced_radius)));
         }
     }
 

@@ -33,12 +33,14 @@ use super::law_table::LawTable;
 use super::pair::{Laws, foreseen_stiffness, leave};
 use super::spheres::second::SecondSides;
 use super::stage::{Contacts, Elsewhere, closing};
+use super::touch;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::{PairList, apart};
 use crate::engine::saved::{Reader, Unfit, Writer};
 use crate::engine::state::{CHUNK, ChunkSums, Deepest, State};
 use crate::engine::team::Team;
 use crate::engine::time_step::Element;
+use crate::engine::view::Touch;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::reduced_radius;
 use crate::law::contact::line::{CELLS, LineStiffness, patch_length};
@@ -48,6 +50,7 @@ use crate::strand::assembly::Assembly;
 use chains::Chains;
 use chunk::Chunk;
 use curve::{Around, Place, Weights};
+use glam::DVec3;
 use meeting::Meets;
 use pulp::Arch;
 use record::{Contact, Kind, Mode};
@@ -291,6 +294,21 @@ impl<N: NormalLaw, T: TangentialLaw> Contacts for WireContacts<N, T> {
             for (node, share) in c.place.linear() {
                 onto[node] += c.history.normal_force * share;
             }
+        }
+    }
+
+    fn each_touch(&self, state: &State, each: &mut dyn FnMut(Touch)) {
+        for c in self.touching() {
+            let (near, far) = self.places(&c, state);
+            let ends = [
+                (near.mean(|p| state.x.get(p)), near.mean(|p| DVec3::X * state.radius[p]).x),
+                (far.mean(|p| state.x.get(p)), far.mean(|p| DVec3::X * state.radius[p]).x),
+            ];
+            let other = c.place.linear().into_iter().next().map_or(c.i, |(node, _)| node as u32);
+            let round = !matches!(c.kind, Kind::Stretch);
+            let seen = touch([c.i, other], ends, c.history.normal_force, round.then_some(c.history.reduced_radius));
+            let pressure = if round { seen.pressure * seen.overlap / c.overlap } else { f64::NAN };
+            each(Touch { overlap: c.overlap, pressure, ..seen });
         }
     }
 
