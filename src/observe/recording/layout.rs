@@ -363,7 +363,6 @@ impl Layout {
                     .with_fps(Fps(speed.into()))
                     .with_time_selection(AbsoluteTimeRange(range))
                     .with_loop_mode(LoopMode::Selection)
-                    .with_play_state(PlayState::Playing)
             }
         };
         self.store.log("time_panel", &time)
