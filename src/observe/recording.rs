@@ -22,8 +22,8 @@
 //! view by which of the viewer's visualizers to draw it, and from which components. States, radii, turns and lengths are
 //! recorded where they change: what was recorded last holds until then.
 //!
-//! A viewer opens on the stretch around the ruptures and plays it again and again; a run in which nothing broke plays in
-//! twenty seconds, over strain, or over time where nothing is pulled.
+//! A viewer opens at the last state and plays a run in twenty seconds, over strain, or over time where nothing is pulled;
+//! the stretch around the ruptures is selected, so that its button for loops repeats it.
 //!
 //! Everything is on three timelines: `step`, `sim_time` and `microstrain` (whole µm/m: 10,000 is 1 %). Snapshots go
 //! out in batches of fixed size, everything as columns without clock times, so that the same run gives the same

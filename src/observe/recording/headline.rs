@@ -157,8 +157,8 @@ pub(super) fn about(info: &RunInfo) -> String {
     format!(
         "# {}\n\n{}\n\n{wires}\n{}; positions in mm, stress in MPa. \
          The timeline `{}` counts strain in µm/m: 10,000 is 1 %.\n\n\
-         Values of a place: click it, and open the selection panel (the right one of the three buttons at the top); \
-         the tabs of particles show every bond.\n\n\
+         Values of a bond: click it, in space or on the map, and open the selection panel (the right one of the three \
+         buttons at the top). The button for loops, at the lower left, repeats the ruptures.\n\n\
          Colours: from {:.0} to {:.0} MPa of true axial stress where stress colours; grey where next to nothing is \
          carried; red at broken bonds.\n\n\
          strandsnap {}, Rerun {RERUN_VERSION}\n",

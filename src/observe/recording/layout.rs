@@ -16,8 +16,8 @@ use crate::observe::unrolled::ends;
 use crate::observe::wording::layer_words;
 use rerun::blueprint::VisualizerComponentMapping;
 use rerun::blueprint::components::{
-    self, AbsoluteTimeRange, BackgroundKind, ContainerKind, Corner2D, Eye3DKind, Fps, IncludedContent, LoopMode,
-    PanelState, PlayState, PlaybackSpeed, RootContainer, VisualBounds2D, VisualizerInstructionId,
+    self, AbsoluteTimeRange, BackgroundKind, ContainerKind, Corner2D, Eye3DKind, Fps, IncludedContent, PanelState,
+    PlayState, PlaybackSpeed, RootContainer, VisualBounds2D, VisualizerInstructionId,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
 use rerun::datatypes::{self, Range2D, TimeRange, TimeRangeBoundary, VisibleTimeRange};
@@ -40,9 +40,8 @@ const SPHERES_ASPECT: f32 = 1.2;
 const ROOM: f32 = 1.08;
 /// How far below the middle of its view a strand lies, over half the height of the view (-).
 const LABEL: f32 = 0.25;
-/// How long the viewer takes to play a run (s), and at least to play the stretch around its ruptures.
+/// How long the viewer takes to play a run (s).
 const LASTS: f64 = 20.0;
-const RUPTURES_LAST: f64 = 6.0;
 /// Rerun's vertical field of view (rad).
 const FIELD_OF_VIEW: f32 = 0.96;
 
@@ -63,9 +62,9 @@ pub(super) struct Scenery<'a> {
 pub(super) enum Playback {
     /// The timeline of simulated time, up to `end` (s): without strain nothing lies along the timeline of strain.
     Time { end: f64 },
-    /// The timeline of strain, up to `end` (µm/m). `ruptures` is the stretch around them, which is played again and
-    /// again: a viewer cannot be told where to put its cursor, but to stay within a stretch.
-    Strain { end: i64, ruptures: Option<[i64; 2]> },
+    /// The timeline of strain, up to `end` (µm/m). `selection` is the stretch around the ruptures, which the viewer's
+    /// button for loops repeats.
+    Strain { end: i64, selection: Option<[i64; 2]> },
 }
 
 /// Sends a layout with the recording under an id of its own. A viewer that is open takes it up at once when `active`;
@@ -356,17 +355,15 @@ impl Layout {
             Playback::Time { end } => {
                 time.with_timeline(stream::TIME).with_playback_speed(PlaybackSpeed((end / LASTS).into()))
             }
-            Playback::Strain { end, ruptures: None } => {
-                time.with_timeline(stream::STRAIN).with_fps(Fps((end as f64 / LASTS).into()))
-            }
-            Playback::Strain { end, ruptures: Some([min, max]) } => {
-                let range = datatypes::AbsoluteTimeRange { min: min.into(), max: max.into() };
-                let speed = (end as f64 / LASTS).min((max - min) as f64 / RUPTURES_LAST);
-                time.with_timeline(stream::STRAIN)
-                    .with_fps(Fps(speed.into()))
-                    .with_time_selection(AbsoluteTimeRange(range))
-                    .with_loop_mode(LoopMode::Selection)
-                    .with_play_state(PlayState::Playing)
+            Playback::Strain { end, selection } => {
+                let time = time.with_timeline(stream::STRAIN).with_fps(Fps((end as f64 / LASTS).into()));
+                match selection {
+                    Some([min, max]) => {
+                        let range = datatypes::AbsoluteTimeRange { min: min.into(), max: max.into() };
+                        time.with_time_selection(AbsoluteTimeRange(range))
+                    }
+                    None => time,
+                }
             }
         };
         self.store.log("time_panel", &time)

@@ -3,7 +3,7 @@
 use super::names::{CONTACT_PRESSURE, PLASTIC_STRAIN, STRESS, UTILISATION};
 use super::{names, stream};
 use crate::base::error::{Error, Result};
-use rerun::blueprint::components::{AbsoluteTimeRange, LoopMode, VisualizerComponentMapping};
+use rerun::blueprint::components::{AbsoluteTimeRange, VisualizerComponentMapping};
 use rerun::external::arrow::array::Array as _;
 use rerun::external::re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
 use rerun::external::re_sdk_types::blueprint::archetypes::{TimePanelBlueprint, ViewBlueprint, VisualizerInstruction};
@@ -108,8 +108,6 @@ pub struct Layout {
     pub speed: Option<f64>,
     /// Selected stretch of that timeline.
     pub selection: Option<[i64; 2]>,
-    /// Whether it plays that stretch again and again.
-    pub repeats: bool,
     /// What views draw in a way of their own: entity, and the component that it is drawn from.
     pub sources: BTreeSet<(String, String)>,
 }
@@ -131,8 +129,6 @@ impl Layout {
             chunk.iter_component::<AbsoluteTimeRange>(TimePanelBlueprint::descriptor_time_selection().component);
         let ends = selection.flat_map(|range| range.as_slice().to_vec()).next();
         self.selection = ends.map(|range| [range.min.0, range.max.0]).or(self.selection);
-        let loops = chunk.iter_component::<LoopMode>(TimePanelBlueprint::descriptor_loop_mode().component);
-        self.repeats |= loops.flat_map(|mode| mode.as_slice().to_vec()).any(|mode| mode == LoopMode::Selection);
         let path = chunk.entity_path().to_string();
         let entity = path.split("/overrides").nth(1).and_then(|path| path.split("/visualizers").next());
         let map = VisualizerInstruction::descriptor_component_map().component;

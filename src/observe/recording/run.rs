@@ -173,11 +173,11 @@ impl Run {
             return Playback::Time { end: self.last.map_or(20.0, |last| last.time) };
         }
         let end = self.last.map_or(self.info.strain_end.unwrap_or(1.0), |_| self.strain_most);
-        let ruptures = self.ruptured.map(|[from, to]| {
+        let selection = self.ruptured.map(|[from, to]| {
             let room = (0.05 * end).max(0.1 * (to - from));
             [micro((from - room).max(0.0)), micro((to + room).min(end))]
         });
-        Playback::Strain { end: micro(end).max(1), ruptures }
+        Playback::Strain { end: micro(end).max(1), selection }
     }
 
     fn send_fixed(&mut self) -> Result<()> {

@@ -14,9 +14,11 @@ use rerun::{Archetype as _, Capsules3D, ComponentDescriptor, Points3D};
 /// How far the end of a capsule may lie beside its particle, over the wire's radius (-): less than a pixel where a wire is
 /// fifty wide.
 const ASIDE: f32 = 0.03;
-/// How much too long or too short a capsule may be, over the wire's radius (-): its ends are round, and lie in those of
-/// its neighbours.
-const ALONG: f32 = 0.25;
+/// How much longer than its bond a capsule is drawn, over the wire's radius (-): its end then lies in the next one. The
+/// round end of one that is too short would be seen.
+const OVERLAP: f32 = 0.1;
+/// How much the bond may become shorter before its capsule does, over the wire's radius (-).
+const SHORTER: f32 = 0.15;
 /// By how much a radius may differ from what is drawn, over itself (-).
 const THINNER: f32 = 0.02;
 
@@ -43,9 +45,10 @@ impl Capsule {
         Quat::from_rotation_arc(Vec3::Z, self.axis.normalize_or(Vec3::Z)).to_array()
     }
 
-    /// Its length (mm).
+    /// The length that is drawn (mm); none where it leads nowhere.
     pub fn length(&self) -> f32 {
-        self.axis.length()
+        let bond = self.axis.length();
+        if bond > 0.0 { bond + OVERLAP * self.radius } else { 0.0 }
     }
 
     /// Whether the turn of `drawn` is as good as its own.
@@ -56,7 +59,8 @@ impl Capsule {
 
     /// Whether the length of `drawn` is as good as its own.
     fn as_long_as(&self, drawn: &Self) -> bool {
-        self.to == drawn.to && (self.length() - drawn.length()).abs() <= ALONG * self.radius
+        let longer = self.length() - drawn.length();
+        self.to == drawn.to && (-SHORTER * self.radius..=OVERLAP * self.radius).contains(&longer)
     }
 }
 
@@ -182,9 +186,14 @@ mod tests {
             assert!(drawn.turns(&now) && drawn.lengths(&now), "nothing was drawn before");
             drawn
         };
-        for (stretch, aside, turns, lengths) in
-            [(1.0, 2.5e-6, false, false), (1.0, 3.5e-6, true, false), (1.1, 0.0, false, false), (1.2, 0.0, false, true)]
-        {
+        for (stretch, aside, turns, lengths) in [
+            (1.0, 2.5e-6, false, false),
+            (1.0, 3.5e-6, true, false),
+            (1.04, 0.0, false, false),
+            (1.06, 0.0, false, true),
+            (0.94, 0.0, false, false),
+            (0.91, 0.0, false, true),
+        ] {
             let (now, mut drawn) = (first(stretch, aside), drawn());
             assert_eq!([drawn.turns(&now), drawn.lengths(&now)], [turns, lengths], "{stretch}, {aside}");
         }
@@ -192,7 +201,8 @@ mod tests {
         snapshot.bond_state[4] = BondState::Broken;
         let (now, mut drawn) = (capsules(&snapshot, &of), drawn());
         assert!(drawn.turns(&now) && drawn.lengths(&now), "a bond broke");
-        assert_eq!([now[3].length(), now[4].axis.z], [0.0, -now[0].length()], "a gap after the fifth");
+        assert_eq!([now[3].length(), now[4].axis.z], [0.0, -now[0].axis.z], "a gap after the fifth");
+        assert!((now[0].length() - 0.21).abs() < 1e-6, "a bond of 0.2 mm, and a tenth of the radius");
     }
 
     #[test]
