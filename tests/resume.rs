@@ -409,9 +409,9 @@ fn a_run_with_rigid_bodies_goes_on_to_the_same_tables() {
     let number = |row: &[&str], column: usize| row[column].parse::<f64>().unwrap();
     let [left, right, middle] = [&rows[rows.len() - 3], &rows[rows.len() - 2], &rows[rows.len() - 1]];
     assert_eq!([left[3], right[3], middle[3]], ["left", "right", "middle"]);
-    // The wire hardly moves: the pins carry what the one between them presses with.
+    // The pins carry what the one between them presses with, but for a tenth by which the wire swings.
     let [left, right, pressed] = [left, right, middle].map(|row| number(row, 5));
-    assert!(pressed > 0.5 && (left + right + pressed).abs() < 0.05 * pressed, "{left} {right} {pressed}");
+    assert!(pressed > 0.2 && (left + right + pressed).abs() < 0.2 * pressed, "{left} {right} {pressed}");
     let summary: serde_json::Value = serde_json::from_slice(&fs::read(whole.join("summary.json")).unwrap()).unwrap();
     let greatest = rows.iter().filter(|row| row[3] == "middle").map(|row| {
         let [x, y, z] = [4, 5, 6].map(|column| number(row, column));

@@ -43,7 +43,7 @@ pub fn report(summary: &RunSummary) -> String {
         line("wires broken", layers.join(", "));
     }
     for body in &summary.bodies {
-        let at = format!("at most {}, at t = {:.3e} s", newton(body.greatest_force_n), body.greatest_force_at_s);
+        let at = format!("at most {:.4} N, at t = {:.3e} s", body.greatest_force_n, body.greatest_force_at_s);
         line("force on", format!("rigid body {:?} {at}", body.name));
     }
     if let Some(residual) = summary.energy_residual_percent {

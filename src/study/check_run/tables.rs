@@ -1,4 +1,4 @@
-//! The three tables of a run as numbers and words.
+//! The tables of a run as numbers and words.
 
 use crate::base::error::{Error, Result};
 use crate::base::regular;
@@ -84,7 +84,7 @@ impl Table {
 
 /// Columns that hold words.
 fn is_words(head: &str) -> bool {
-    ["layer", "material", "cause", "broken", "first_rupture_cause"].contains(&head)
+    ["layer", "material", "body", "cause", "broken", "first_rupture_cause"].contains(&head)
 }
 
 #[cfg(test)]
