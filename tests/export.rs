@@ -5,9 +5,13 @@
 mod also;
 #[path = "export/decode.rs"]
 mod decode;
+#[path = "export/details.rs"]
+mod details;
 #[path = "common/drive.rs"]
 #[allow(unused, reason = "only the scene of the strand is needed")]
 mod drive;
+#[path = "common/rows.rs"]
+mod rows;
 
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
