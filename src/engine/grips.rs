@@ -11,6 +11,7 @@ use super::straight::{StraightGrip, runs};
 use super::view::Load;
 use crate::base::error::{Error, Result};
 use crate::base::triple::Triple;
+use crate::base::vectors::Vectors;
 use crate::scene::spec::{BodyPart, DriveSpec, GripKind, GripSpec, HoldSpec, Spec, Table};
 use crate::strand::assembly::Assembly;
 use crate::strand::held::Gripped;
@@ -102,6 +103,9 @@ impl Holds {
         };
         if let Some(grip) = &spec.grip {
             holds.add_grips(grip, assembly)?;
+            if grip.rotation_rate != 0.0 || grip.free_rotation {
+                state.turned = Vectors::zeros(state.len());
+            }
         }
         let bodies = assembly.bodies();
         for hold in &spec.holds {

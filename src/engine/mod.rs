@@ -35,7 +35,6 @@ pub mod view;
 
 use crate::base::error::{Error, Result};
 use crate::base::finding::{Failure, Notice, StepLimit, Stopped};
-use crate::base::vectors::Vectors;
 use crate::law::bond::BondLaw;
 use crate::scene::plan::{ContactPlan, Plan};
 use crate::scene::spec::{BondLawSpec, Spec};
@@ -131,9 +130,6 @@ impl Engine {
     ) -> Result<Self> {
         let mut state = State::new(&assembly, plan.rotations);
         let holds = Holds::new(spec, &assembly, &mut state)?;
-        if spec.grip.as_ref().is_some_and(|grip| grip.rotation_rate != 0.0 || grip.free_rotation) {
-            state.turned = Vectors::zeros(state.len());
-        }
         let bonds = if plan.bonds { Some(build_bonds(spec, plan, &assembly)) } else { None };
         let measures = Measures::new(spec, &assembly, &holds);
         let least_radius = assembly.radius.iter().copied().fold(f64::MAX, f64::min);
