@@ -100,5 +100,5 @@ fn a_trajectory_in_the_units_of_an_earlier_version_is_refused() {
     std::fs::write(&file, &bytes).unwrap();
     let error = Trajectory::open(&file).err().unwrap();
     assert!(matches!(error, Error::Input { .. }), "{error}");
-    assert!(error.to_string().contains("version 4; this program reads version 6"), "{error}");
+    assert!(error.to_string().contains("version 4; this program reads version 7"), "{error}");
 }
