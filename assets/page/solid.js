@@ -1,7 +1,6 @@
 // The run as a shape in WebGL: every bond a round piece of wire, found pixel by pixel. `told(words)` says what is pointed at,
 // `picked(wire)` that a wire was chosen.
 globalThis.solidPicture = (canvas, facts, { colour, told, picked }) => {
-  "use strict";
   // An instance is a particle and the next one: x, y, z, radius; then stress as a share, kind, redness, wire.
   const VERTEX = `#version 300 es
     layout(location = 0) in vec4 a;

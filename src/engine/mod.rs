@@ -499,7 +499,8 @@ impl Engine {
 
     /// Every particle.
     pub fn snapshot(&self) -> Snapshot {
-        self.view().snapshot()
+        let view = self.view();
+        Snapshot { detail: detail::detail(&view), ..view.snapshot() }
     }
 
     /// The energy ledger now.

@@ -14,6 +14,7 @@ use crate::render::colour::ColourScale;
 use crate::render::occlusion::Occlusion;
 use crate::render::painter::{Drawing, Painter};
 use crate::render::perspective::Perspective;
+use crate::render::stripe;
 use crate::render::style::Rgb;
 use crate::render::wires::{self, Looks};
 use crate::scene::picture::SIDES;
@@ -188,6 +189,7 @@ impl Artist {
         let ghosts = info.wires.iter().map(|wire| view.ghost_layers.contains(&wire.layer));
         let looks = looks.with_ghosts(ghosts.collect()).with_section(view.cut.map(|z| (z / mm(1.0)) as f32));
         let mut segments = wires::segments(info, &snapshot, &looks, *stride, None, |_, _| true);
+        segments.extend(stripe::segments(info, &snapshot, &looks, None, |_, _| true));
         if view.explode == 0.0 {
             segments.extend(bodies::segments(info, &snapshot));
         }

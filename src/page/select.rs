@@ -7,6 +7,9 @@ const MOST_STATES: usize = 50;
 /// Of those, as many as this after the first rupture.
 const AFTER_RUPTURE: usize = 32;
 
+/// Particles times states at most whose places are on a page: 8 MB before they are made small, about a third of that on the page.
+const MOST_PLACES: usize = 900_000;
+
 /// A snapshot that was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SelectedSnapshot {
@@ -14,6 +17,11 @@ pub struct SelectedSnapshot {
     pub number: usize,
     /// What is special about it.
     pub label: Option<&'static str>,
+}
+
+/// Whether the places of so many particles in so many states are few enough for a page.
+pub fn places_fit(particles: usize, states: usize) -> bool {
+    particles > 0 && particles * states <= MOST_PLACES
 }
 
 /// At most `most` numbers of `from..to`, evenly spread, first and last among them.

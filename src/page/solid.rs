@@ -13,19 +13,12 @@ use maud::{Markup, html};
 use serde_json::{Value, json};
 use std::io::Write;
 
-/// Particles times states at most: 8 MB before they are made small, about a third of that on the page.
-const MOST: usize = 900_000;
 /// Steps of a coordinate within the box of all states; 3 µm for a strand of 200 mm.
 const STEPS: f32 = 65_535.0;
 /// Value of a particle that no bond holds; others are shares of the range of stress, from 0 to 254.
 const LOOSE: u8 = 255;
 /// Colours of the scale.
 const STOPS: usize = 32;
-
-/// Whether a run of so many particles and states is small enough.
-pub fn fits(particles: usize, states: usize) -> bool {
-    particles > 0 && particles * states <= MOST
-}
 
 /// The picture with its buttons, where the page has the positions; a word where it has not.
 ///

@@ -2,7 +2,6 @@
 
 use super::picture::Pictures;
 use super::select;
-use super::solid;
 use super::study::Study;
 use crate::base::error::{Error, Result};
 use crate::base::finding::StopReason;
@@ -237,7 +236,7 @@ fn second_pass(trajectory: Trajectory, chosen: &[select::SelectedSnapshot], pict
         if let Some(one) = wanted.next_if(|one| one.number == number) {
             let picture = pictures.of(number);
             let stress = held(&snapshot);
-            let (position, radius) = if solid::fits(stress.len(), chosen.len()) {
+            let (position, radius) = if select::places_fit(stress.len(), chosen.len()) {
                 (snapshot.position, snapshot.radius)
             } else {
                 Default::default()

@@ -11,6 +11,7 @@ use super::layout::{Layout, layout};
 use super::painter::{Drawing, Painter};
 use super::panel::Shot;
 use super::panels::{Entry, PANELS, usual};
+use super::stripe;
 use super::style::{Rgb, Style};
 use super::wires::{self, Looks, Segment};
 use super::{header, marks};
@@ -224,6 +225,7 @@ fn wires_of(data: &Data, shots: &[Shot], times: f32) -> (Vec<Segment>, Vec<Drawi
         let stride = wires::stride(spacing * shot.camera.scale * times);
         let sees = |a, b| shot.camera.sees(a, b);
         let mut segments = wires::segments(data.info, data.snapshot, looks, stride, shot.layer, sees);
+        segments.extend(stripe::segments(data.info, data.snapshot, looks, shot.layer, sees));
         // Where wires are moved apart there is no place for them.
         if shot.layer.is_none() && shot.view != View::Exploded {
             segments.extend(bodies::segments(data.info, data.snapshot));

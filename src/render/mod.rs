@@ -45,7 +45,7 @@ mod panels;
 pub(crate) mod perspective;
 pub mod png;
 mod sides;
-mod stripe;
+pub(crate) mod stripe;
 pub(crate) mod style;
 mod supersample;
 mod target;

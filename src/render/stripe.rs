@@ -1,7 +1,7 @@
 //! A line along a wire that is straight before loading: where a grip turns, it shows how the wire is twisted.
 
 use super::wires::{END, JOINT, Looks, Segment};
-use crate::engine::view::{Snapshot, WireInfo};
+use crate::engine::view::{RunInfo, Snapshot, WireInfo};
 use glam::Vec3;
 
 /// Radius of the line over that of the wire (-).
@@ -13,8 +13,25 @@ const MOST: f32 = 64.0;
 /// Linear light of the line (-).
 const LIGHT: f32 = 0.8;
 
+/// The lines of all wires, of one layer alone where `layer` names it, and of what a camera `sees` between two places; none where no
+/// grip turns.
+pub fn segments(
+    info: &RunInfo,
+    snapshot: &Snapshot,
+    looks: &Looks,
+    layer: Option<usize>,
+    sees: impl Fn([f32; 4], [f32; 4]) -> bool,
+) -> Vec<Segment> {
+    let mut all = Vec::new();
+    let turned = info.wires.iter().enumerate().filter(|_| !snapshot.roll.is_empty());
+    for (number, wire) in turned.filter(|(_, wire)| layer.is_none_or(|layer| layer == wire.layer)) {
+        add(snapshot, looks, wire, looks.shade_of(number), &sees, &mut all);
+    }
+    all
+}
+
 /// Adds the line of a wire in its `shade`, as far as the wire is drawn and a camera `sees` it.
-pub(super) fn add(
+fn add(
     snapshot: &Snapshot,
     looks: &Looks,
     wire: &WireInfo,
@@ -86,7 +103,7 @@ impl Side {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::view::{BondState, RunInfo};
+    use crate::engine::view::BondState;
 
     /// A wire along z of three particles, 1 apart and of radius 0.5, turned by a quarter from each to the next.
     fn wire() -> (RunInfo, Snapshot) {

@@ -2,7 +2,6 @@
 
 use super::colour::{desaturated, linear4, signal4};
 use super::occlusion::Occlusion;
-use super::stripe;
 use super::style::Rgb;
 use crate::engine::view::{BondState, RunInfo, Snapshot, WireInfo};
 use glam::Vec3;
@@ -117,6 +116,12 @@ impl Looks {
         Self { section, ..self }
     }
 
+    /// Shade of a wire (-); the shader draws see-through what has one below zero.
+    pub fn shade_of(&self, wire: usize) -> f32 {
+        let ghost = self.ghosts.get(wire).copied().unwrap_or(false);
+        self.shade[wire] * if ghost { -1.0 } else { 1.0 }
+    }
+
     /// Centre of particle `i` as it is drawn (m), and direction of its wire.
     pub fn place(&self, i: usize) -> (Vec3, Vec3) {
         (self.position[i].into(), self.tangent[i])
@@ -162,14 +167,9 @@ pub fn segments(
     let mut all = Vec::new();
     let shown = |wire: &WireInfo| layer.is_none_or(|layer| layer == wire.layer);
     for (number, wire) in info.wires.iter().enumerate().filter(|(_, wire)| shown(wire)) {
-        // The shader draws see-through what has a shade below zero.
-        let ghost = looks.ghosts.get(number).copied().unwrap_or(false);
-        let shade = looks.shade[number] * if ghost { -1.0 } else { 1.0 };
+        let shade = looks.shade_of(number);
         let chain = Chain { info, snapshot, looks, wire, shade };
         chain.segments(stride, &sees, &mut all);
-        if !snapshot.roll.is_empty() {
-            stripe::add(snapshot, looks, wire, shade, &sees, &mut all);
-        }
         if let Some(z) = looks.section {
             chain.up_to_section(z, &sees, &mut all);
         }

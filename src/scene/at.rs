@@ -10,6 +10,12 @@ use glam::DVec3;
 /// Longest length (m): beyond it positions have not the digits that contacts of wires need.
 const LONGEST: f64 = 1e5;
 
+/// Whether a scene may have this name, and its results a folder, or a picture a file of that name.
+pub fn can_name_a_folder(name: &str) -> bool {
+    let allowed = |c: char| c.is_alphanumeric() || "-_.+".contains(c);
+    !name.is_empty() && !name.starts_with(['.', '-']) && name.chars().all(allowed)
+}
+
 /// A key path in a scene.
 #[derive(Clone)]
 pub(super) struct At<'a> {

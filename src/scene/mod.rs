@@ -31,8 +31,8 @@ pub mod spec;
 pub mod suggest;
 pub mod write;
 
+pub use at::can_name_a_folder;
 pub use idle::Idle;
-pub use resolve::can_name_a_folder;
 pub use source::SceneSource;
 
 use crate::base::error::Result;

@@ -1,10 +1,11 @@
 //! Raw tables → [`Spec`]: units read, defaults filled in, values checked against each other. Every error points at the
 //! key that is wrong.
 
-use super::at::{At, Range};
-use super::look::{FRAME_SIDE, SUPERSAMPLING, ZOOM};
+use super::at::{At, Range, can_name_a_folder};
+use super::look::{FRAME_SIDE, ZOOM};
 use super::raw::*;
 use super::resolve_materials::{self, GivenHardness, Materials};
+use super::resolve_picture::supersampling;
 use super::spec::*;
 use super::{resolve_bodies, resolve_drive, resolve_picture, resolve_rigid};
 use crate::base::error::{Error, Result};
@@ -102,12 +103,6 @@ fn refuse_gaps(at: &At, spacing: f64, contact: Option<&ContactSpec>) -> Result<(
     }
     let what = format!("spheres {spacing} diameters apart leave gaps that another wire passes through");
     Err(at.key("spacing").error(what, format!("take a spacing below {GAP}, or smooth wires: contact.shape = \"wire\"")))
-}
-
-/// Whether a scene may have this name, and its results a folder of that name.
-pub fn can_name_a_folder(name: &str) -> bool {
-    let allowed = |c: char| c.is_alphanumeric() || "-_.+".contains(c);
-    !name.is_empty() && !name.starts_with(['.', '-']) && name.chars().all(allowed)
 }
 
 fn scene_name(at: &At, raw: &RawScene, file: &str) -> Result<String> {
@@ -229,15 +224,6 @@ fn output(at: &At, raw: &RawOutput, breaks: bool) -> Result<OutputSpec> {
         tables: once(&at.key("tables"), &raw.tables, Table::word)?,
         supersampling: supersampling(&at.key("supersampling"), raw.supersampling, usual.supersampling)?,
         pictures: Vec::new(),
-    })
-}
-
-/// How many times finer than its pixels a picture is drawn.
-pub(super) fn supersampling(at: &At, raw: Option<i64>, usual: u32) -> Result<u32> {
-    let Some(times) = raw else { return Ok(usual) };
-    u32::try_from(times).ok().filter(|times| SUPERSAMPLING.contains(times)).ok_or_else(|| {
-        let (least, most) = (SUPERSAMPLING.start(), SUPERSAMPLING.end());
-        at.error(format!("`supersampling` is {times}, but must be from {least} to {most}"), "2 makes outlines smooth")
     })
 }
 

@@ -1,16 +1,24 @@
 //! `[[output.picture]]`.
 
-use super::at::{At, Range};
-use super::look::Moment;
+use super::at::{At, Range, can_name_a_folder};
+use super::look::{Moment, SUPERSAMPLING};
 use super::picture::{MOST_EXPLODED, PictureSpec, SIDES, WIDEST, When};
 use super::raw::{RawPicture, Scalar};
-use super::resolve::{can_name_a_folder, supersampling};
 use super::spec::OutputSpec;
 use crate::base::error::Result;
 use crate::base::units::{Dimension, shortest};
 
 /// Turn of the eye (°) where none is given: one from which a strand shows its length and its layers.
 const USUAL_TURN: [f64; 2] = [-28.0, 22.0];
+
+/// How many times finer than its pixels a picture is drawn.
+pub(super) fn supersampling(at: &At, raw: Option<i64>, usual: u32) -> Result<u32> {
+    let Some(times) = raw else { return Ok(usual) };
+    u32::try_from(times).ok().filter(|times| SUPERSAMPLING.contains(times)).ok_or_else(|| {
+        let (least, most) = (SUPERSAMPLING.start(), SUPERSAMPLING.end());
+        at.error(format!("`supersampling` is {times}, but must be from {least} to {most}"), "2 makes outlines smooth")
+    })
+}
 
 /// What pictures take from the rest of the scene.
 pub(super) struct Context<'a> {

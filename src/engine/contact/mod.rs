@@ -12,7 +12,6 @@ mod wires;
 pub use spheres::meeting::ENERGIES as PAIR_SUMS;
 pub use stage::{Contacts, Elsewhere};
 
-use crate::engine::view::Touch;
 use crate::law::contact::NormalLaw;
 use crate::law::contact::constants::{effective_modulus, effective_shear_modulus};
 use crate::law::contact::hertz::Hertz;
@@ -23,7 +22,6 @@ use crate::law::tangential::mindlin_deresiewicz::MindlinDeresiewicz;
 use crate::law::tangential::none::Frictionless;
 use crate::scene::spec::{ContactSpec, NormalSpec, Shape, Spec, TangentialSpec};
 use crate::strand::assembly::Assembly;
-use glam::DVec3;
 use law_table::LawTable;
 use pair::Laws;
 use spheres::SphereContacts;
@@ -91,14 +89,4 @@ impl Choice<'_> {
             Shape::Wire => Box::new(WireContacts::new(laws, self.assembly)),
         }
     }
-}
-
-/// A contact as a table has it: between two places (m) with their radii (m), of a normal force (N); `reduced` is R* (m), where it is
-/// a circle.
-fn touch(pair: [u32; 2], [(a, r), (b, s)]: [(DVec3, f64); 2], force: f64, reduced: Option<f64>) -> Touch {
-    let apart = (b - a).length();
-    let overlap = r + s - apart;
-    let position = a + (b - a) * (0.5 * (apart + r - s) / apart);
-    let pressure = reduced.map_or(f64::NAN, |reduced| force / (std::f64::consts::PI * reduced * overlap));
-    Touch { pair, position: position.to_array(), force, overlap, pressure }
 }

@@ -3,8 +3,10 @@
 use crate::base::lanes::Real;
 use crate::base::triple::Triple;
 use crate::engine::state::ChunkSums;
+use crate::engine::view::Touch;
 use crate::law::contact::{NormalLaw, NormalResponse};
 use crate::law::tangential::{TangentialInput, TangentialLaw};
+use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The laws of a run.
@@ -253,4 +255,14 @@ fn normal_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &Hi
 /// Recoverable energy of a contact at `overlap` (J).
 pub fn elastic_energy<N: NormalLaw, T: TangentialLaw>(laws: &Laws<N, T>, history: &History<N, T>, overlap: f64) -> f64 {
     normal_energy(laws, history, overlap) + leave(laws, history)
+}
+
+/// A contact as a table has it: between two places (m) with their radii (m), of a normal force (N); `reduced` is R* (m), where it is
+/// a circle.
+pub fn touch(pair: [u32; 2], [(a, r), (b, s)]: [(DVec3, f64); 2], force: f64, reduced: Option<f64>) -> Touch {
+    let apart = (b - a).length();
+    let overlap = r + s - apart;
+    let position = a + (b - a) * (0.5 * (apart + r - s) / apart);
+    let pressure = reduced.map_or(f64::NAN, |reduced| force / (std::f64::consts::PI * reduced * overlap));
+    Touch { pair, position: position.to_array(), force, overlap, pressure }
 }

@@ -17,9 +17,8 @@ pub mod second;
 mod store;
 
 use super::law_table::LawTable;
-use super::pair::{History, elastic_energy, foreseen_stiffness, leave};
+use super::pair::{History, elastic_energy, foreseen_stiffness, leave, touch};
 use super::stage::{Contacts, Elsewhere, closing};
-use super::touch;
 use crate::base::lanes::BLOCK;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::PairList;

@@ -30,10 +30,9 @@ mod spread;
 mod store;
 
 use super::law_table::LawTable;
-use super::pair::{Laws, foreseen_stiffness, leave};
+use super::pair::{Laws, foreseen_stiffness, leave, touch};
 use super::spheres::second::SecondSides;
 use super::stage::{Contacts, Elsewhere, closing};
-use super::touch;
 use crate::engine::bytes::{Bytes, NUMBER, VECTOR, behind};
 use crate::engine::neighbours::{PairList, apart};
 use crate::engine::saved::{Reader, Unfit, Writer};
