@@ -94,10 +94,12 @@ fn check_pictures(_: &Path, output: &OutputSpec) -> Result<()> {
 /// Draws the pictures of a scene and gives the commands that draw what was left.
 #[cfg(feature = "explore")]
 fn draw_pictures(summary: &RunSummary, spec: &Spec, run: &Path, quiet: bool, stop: &AtomicBool) -> Result<Vec<String>> {
-    let drawn = crate::explore::pictures::draw(run, summary, spec, stop)?;
+    use crate::explore::pictures::{Drawn, are_due, command, draw};
+
+    let drawn = if are_due(summary) { draw(run, spec, stop)? } else { Drawn::default() };
     drawn.made.iter().filter(|_| !quiet).for_each(|file| say!("  {}", file.display()));
     drawn.left_out.iter().for_each(|why| eprintln!("WARNING: {why}"));
-    Ok(drawn.left)
+    Ok(if drawn.stopped { vec![command(run)] } else { Vec::new() })
 }
 
 #[cfg(not(feature = "explore"))]

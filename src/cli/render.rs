@@ -34,6 +34,9 @@ pub struct Args {
     #[arg(long, value_name = "KEYS", conflicts_with_all = ["strain_range", "events", "every", "animation_width", "views",
         "colour", "theme", "supersampling", "azimuth", "elevation", "zoom", "focus_z"])]
     view: Vec<String>,
+    /// Draw the pictures that the run's scene asks for (`output.picture`) into its folder `pictures`, in place of earlier ones
+    #[arg(long, conflicts_with_all = ["view", "out", "resume", "strain_range", "events", "every"])]
+    pictures: bool,
     /// Time that the camera of a film takes from each view to the next
     #[arg(long, value_name = "TIME", value_parser = super::values::duration, default_value = "2s", requires = "view")]
     leg: std::time::Duration,
@@ -69,6 +72,9 @@ pub fn render(args: Args) -> Result<Ended> {
     use crate::run::replay::Replay;
     use crate::run::{folder, identity, outputs};
 
+    if args.pictures {
+        return pictures(&args);
+    }
     if !args.view.is_empty() {
         return views(args);
     }
@@ -124,6 +130,37 @@ pub fn render(args: Args) -> Result<Ended> {
     }
     if !args.quiet {
         say!("frames: {timings}");
+    }
+    super::interrupt::ended(stop)
+}
+
+#[cfg(all(feature = "render", not(feature = "explore")))]
+fn pictures(_args: &Args) -> Result<Ended> {
+    Err(crate::run::outputs::built_without("pictures of a view", "explore", "draw frames without --pictures"))
+}
+
+/// Draws the pictures of a run's own scene.
+#[cfg(feature = "explore")]
+fn pictures(args: &Args) -> Result<Ended> {
+    use super::say::say;
+    use crate::base::error::Error;
+    use crate::run::folder;
+
+    let file = args.run.join(folder::SCENE);
+    let spec = crate::scene::load(&file.to_string_lossy(), &[])?.spec;
+    if spec.output.pictures.is_empty() {
+        return Err(Error::input(
+            format!("{} asks for no pictures", file.display()),
+            "a run draws those that its scene asks for with [[output.picture]]; --view draws any other",
+        ));
+    }
+    crate::explore::pictures::check(&args.run, &spec.output)?;
+    let stop = super::interrupt::install()?;
+    let drawn = crate::explore::pictures::draw(&args.run, &spec, stop)?;
+    drawn.made.iter().for_each(|picture| say!("{}", picture.display()));
+    drawn.left_out.iter().for_each(|why| eprintln!("WARNING: {why}"));
+    if drawn.stopped {
+        say!("Still to be made: {}", crate::explore::pictures::command(&args.run));
     }
     super::interrupt::ended(stop)
 }

@@ -298,8 +298,11 @@ fn removed(info: &RunInfo, snapshot: &Snapshot, view: &View) -> Vec<bool> {
         removed[wire.particles()].fill(view.hides(number, wire.layer));
     }
     if let Some(cut) = view.cut {
-        let beyond = |p: &[f32; 3]| mm(f64::from(p[2])) > cut;
-        removed.iter_mut().zip(&snapshot.position).for_each(|(gone, p)| *gone |= beyond(p));
+        // A particle in the plane would leave nothing between itself and the plane to draw the section on.
+        let nearly = |radius: &f32| 0.02 * mm(f64::from(*radius));
+        let places = snapshot.position.iter().zip(&snapshot.radius);
+        let beyond = places.map(|(p, radius)| mm(f64::from(p[2])) > cut - nearly(radius));
+        removed.iter_mut().zip(beyond).for_each(|(gone, beyond)| *gone |= beyond);
     }
     removed
 }

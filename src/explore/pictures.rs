@@ -34,8 +34,13 @@ pub struct Drawn {
     pub made: Vec<PathBuf>,
     /// Why others were not, in sentences: the run never came to what they were to show.
     pub left_out: Vec<String>,
-    /// Commands that draw the rest, where it was stopped before.
-    pub left: Vec<String>,
+    /// It was stopped before it had drawn all; [`command`] draws them.
+    pub stopped: bool,
+}
+
+/// The command that draws the pictures of a run's own scene.
+pub fn command(run: &Path) -> String {
+    format!("strandsnap render {} --pictures", run.display())
 }
 
 /// Checks what would find out only after a long run: that there is a graphics adapter, and room in the folder `run`.
@@ -58,17 +63,21 @@ pub fn check(run: &Path, output: &OutputSpec) -> Result<()> {
     render::check()
 }
 
-/// Draws the pictures that the scene `spec` asks for of the run in the folder `run`, where it has come to its end by its `summary`,
-/// in place of earlier ones.
+/// Whether a run has come to its end by its summary, pictures included.
+pub fn are_due(summary: &RunSummary) -> bool {
+    let undrawn = summary.cost.frames.is_some_and(|frames| frames.unfinished());
+    summary.stopped != StopReason::Interrupted && !undrawn
+}
+
+/// Draws the pictures that the scene `spec` asks for of the run in the folder `run`, in place of earlier ones.
 ///
 /// # Errors
 /// When the run cannot be read, or the adapter is lost; [`Error::Io`] when a picture cannot be written. What `stop` leaves out is no
 /// error.
-pub fn draw(run: &Path, summary: &RunSummary, spec: &Spec, stop: &AtomicBool) -> Result<Drawn> {
+pub fn draw(run: &Path, spec: &Spec, stop: &AtomicBool) -> Result<Drawn> {
     let mut drawn = Drawn::default();
     let output = &spec.output;
-    let undrawn = summary.cost.frames.is_some_and(|frames| frames.unfinished());
-    if output.pictures.is_empty() || summary.stopped == StopReason::Interrupted || undrawn {
+    if output.pictures.is_empty() {
         return Ok(drawn);
     }
     let (pane, origin) = (Pane::open(run)?, Origin::of(spec));
@@ -84,10 +93,8 @@ pub fn draw(run: &Path, summary: &RunSummary, spec: &Spec, stop: &AtomicBool) ->
         };
         let view = view_of(&pane.record(), picture, state);
         if stop.load(Ordering::Relaxed) {
-            let [width, height] = picture.size;
-            let words = view.words()?;
-            drawn.left.push(format!("strandsnap render {} --view '{words}' --size {width}x{height}", run.display()));
-            continue;
+            drawn.stopped = true;
+            break;
         }
         view.check(pane.record().info(), pane.record().states())?;
         let image = pane.draw(&view, picture.size)?.image;

@@ -13,8 +13,11 @@ const LONGEST: f64 = 1e5;
 /// Whether a scene may have this name, and its results a folder, or a picture a file of that name.
 pub fn can_name_a_folder(name: &str) -> bool {
     let allowed = |c: char| c.is_alphanumeric() || "-_.+".contains(c);
-    !name.is_empty() && !name.starts_with(['.', '-']) && name.chars().all(allowed)
+    !name.is_empty() && name.len() <= LONGEST_NAME && !name.starts_with(['.', '-']) && name.chars().all(allowed)
 }
+
+/// Longest name of a file (bytes): file systems take 255, with what else stands in it.
+const LONGEST_NAME: usize = 120;
 
 /// A key path in a scene.
 #[derive(Clone)]

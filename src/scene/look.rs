@@ -88,8 +88,8 @@ words! {
         Positions = "positions", "Centres of all particles";
         Velocities = "velocities", "Their velocities, half a step before";
         Spins = "spins", "Their spins, half a step before";
-        Holds = "holds", "Force and moment of each hold on what it holds";
-        Contacts = "contacts", "Pairs that touch: place, normal force, overlap, mean pressure";
+        Holds = "holds", "Force and moment of each hold on what it holds, in the step before";
+        Contacts = "contacts", "Pairs of particles that touch: place, normal force, overlap, mean pressure; bodies.csv has rigid bodies";
         Grips = "grips", "Displacement and angle of the upper grip; lay length and lay radius of each layer";
     }
 }

@@ -95,7 +95,7 @@ fn name(at: &At, raw: &RawPicture) -> Result<String> {
         return Ok(name.clone());
     }
     let what = format!("{name:?} cannot be the name of a file");
-    Err(at.key("name").error(what, "use letters, digits, `-`, `_` and `.`"))
+    Err(at.key("name").error(what, "use at most 120 letters, digits, `-`, `_` and `.`"))
 }
 
 fn when(at: &At, raw: &RawPicture, context: &Context) -> Result<When> {

@@ -53,8 +53,10 @@ fn a_section_shows_whole_wires_as_discs_and_broken_ones_hollow() {
     }
     let (folder, run) = (folder(12), Run::new(12));
     let snapshot = run.snapshots().pop().unwrap().clone();
-    // Far from all breaks, anywhere between particles.
-    for z in [31.03, 31.11, 31.27] {
+    // Far from all breaks, anywhere between particles, and through one of the outer layer.
+    let outer = run.info.wires.last().unwrap();
+    let through = f64::from(snapshot.position[outer.first + outer.len / 4][2]) * 1e3;
+    for z in [31.03, 31.11, 31.27, through] {
         let view = section(&run, z);
         let image = drawn(folder.path(), &view);
         if let Some(folder) = std::env::var_os("KEEP_PICTURES") {

@@ -144,7 +144,12 @@ fn check_more(run: &Path, output: &OutputSpec) -> Result<()> {
 /// Makes what `output.picture` and `output.also` ask for; what `stop` leaves out is among the warnings.
 fn make_more(mut summary: RunSummary, spec: &Spec, run: &Path, stop: &AtomicBool) -> Result<RunSummary> {
     #[cfg(feature = "frames")]
-    let (left_out, left) = pictures::draw(run, &summary, spec, stop).map(|drawn| (drawn.left_out, drawn.left))?;
+    let (left_out, left) = {
+        let drawn =
+            if pictures::are_due(&summary) { pictures::draw(run, spec, stop)? } else { pictures::Drawn::default() };
+        let left = if drawn.stopped { vec![pictures::command(run)] } else { Vec::new() };
+        (drawn.left_out, left)
+    };
     #[cfg(not(feature = "frames"))]
     let (left_out, left) = (Vec::new(), Vec::new());
     let also = export::also(run, &summary, &spec.output.also, stop)?;
