@@ -518,7 +518,8 @@ fn a_browser_turns_the_run_and_marks_a_wire_in_map_curve_and_table() {
     assert!(map.as_u64() > Some(0) && curve == 1, "{map} in the map, {curve} in the curve");
     let told = browser.value("document.querySelector('#solid-told').textContent");
     assert!(told.as_str().unwrap().starts_with("wire 24, outer layer: broken: break 1"), "{told}");
-    // Slider, frame, shape and map are in sight together.
+    // Slider, frame, shape and map are in sight together. A picture of the whole page has changed the window.
+    browser.size(1440, 900);
     browser.value("document.querySelector('#states .controls').scrollIntoView()");
     let bottom = "Math.max(...['#frame', '#solid', '#map'].map(id => document.querySelector(id).getBoundingClientRect().bottom))";
     let below = browser.value(bottom).as_f64().unwrap();

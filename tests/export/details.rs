@@ -64,7 +64,7 @@ fn two_spheres_press_as_hertz_says_and_keep_their_momentum() {
 #[test]
 fn a_lay_grows_as_its_strand_is_stretched_and_a_grip_turns_as_it_is_told() {
     let folder = tempfile::tempdir().unwrap();
-    let set = ["stop.strain=2 %", "grip.adaptive=", "grip.speed=4 m/s"];
+    let set = ["stop.strain=2 %", "grip.speed=4 m/s"];
     let [grips] = tables(folder.path(), "strand-1x7", ["grips"], &set);
     let scene = strandsnap::scene::load("strand-1x7", &[]).unwrap().spec;
     let layer = &scene.strand.as_ref().unwrap().layers[1];
@@ -85,7 +85,16 @@ fn a_lay_grows_as_its_strand_is_stretched_and_a_grip_turns_as_it_is_told() {
 #[test]
 fn a_run_that_was_interrupted_has_the_tables_of_one_that_was_not() {
     let folder = tempfile::tempdir().unwrap();
-    let set = ["--set", "output.tables=[\"holds\", \"velocities\"]", "--set", "output.checkpoint=1000"];
+    let set = [
+        "--set",
+        "output.tables=[\"holds\", \"velocities\"]",
+        "--set",
+        "output.checkpoint=1000",
+        "--set",
+        "stop.time=40 ms",
+        "--set",
+        "output.samples=200",
+    ];
     let run = ["run", "cantilever", "--no-frames", "--no-recording", "--out"];
     let whole = strandsnap(folder.path(), &[&run[..], &["whole"], &set].concat());
     assert_eq!(whole.status.code(), Some(0), "{}", text(&whole));
