@@ -27,6 +27,7 @@ const LONGEST_RECORD: u32 = 1 << 30;
 
 /// What a trajectory tells, in the order of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(clippy::large_enum_variant, reason = "one record at a time is read")]
 pub enum Record {
     /// A row of the curve.
     Sample(Sample),

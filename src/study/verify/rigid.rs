@@ -48,7 +48,7 @@ fn against_plane(simulation: &Simulation) -> Pair {
 fn impact(context: &Context) -> Result<Vec<Comparison>> {
     let speed = 1.0;
     let (mut points, mut finest) = (Vec::new(), None);
-    for step in context.pick(&[40.0, 20.0, 10.0][..], &[80.0, 40.0, 20.0, 10.0, 5.0]) {
+    for step in context.pick(&[40.0, 20.0, 10.0, 5.0][..], &[80.0, 40.0, 20.0, 10.0, 5.0]) {
         let mut simulation = context.simulation("verify/sphere-on-plane", &[set("time.step", format!("{step} ns"))])?;
         let exact = against_plane(&simulation);
         let radius = 0.5 * simulation.spec.spheres[0].diameter;
