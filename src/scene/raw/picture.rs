@@ -47,7 +47,7 @@ pub struct RawPicture {
     #[schemars(extend("x-otherwise" = "what colours the frames"))]
     pub colour: Option<ColourBy>,
     /// Ends of the colour scale, in the unit that it is shown in.
-    #[schemars(extend("x-otherwise" = "those of the run"))]
+    #[schemars(extend("x-unit" = "-", "x-otherwise" = "those of the run"))]
     pub range: Option<[f64; 2]>,
     /// Layers that are left out, by name.
     pub hidden_layers: Option<Vec<String>>,
