@@ -2,7 +2,7 @@
 //! other.
 //!
 //! A particle that is a ball (a free sphere, one of a chain of spheres, what two breaks have left alone) meets the surface at
-//! one point, with the reduced radius of [`Surface::reduced_radius`]. Of a smooth wire each particle's stretch meets it with
+//! one point, with the reduced radius of [`reduced_radius`](crate::strand::surface::Surface::reduced_radius). Of a smooth wire each particle's stretch meets it with
 //! its cells, each a spring at a fixed place of the wire ([`respond_cells`](crate::law::contact::line::respond_cells)): about
 //! the middle of a block of cells the gap is expanded to the second order, d(u) = d₀ + n·p' u + ½ (n·p'' + p'·H p') u² with
 //! the gradient n and the second derivative H of the distance. Blocks are so short that a patch 1 % of the wire's radius deep
