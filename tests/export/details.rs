@@ -22,6 +22,8 @@ fn a_clamp_bears_what_hangs_on_its_wire() {
     let [holds, places] =
         tables(folder.path(), "cantilever", ["holds", "positions"], &["stop.time=6 ms", "bond.damping=0.3"]);
     // The last state, at rest: the clamp at the start takes the force back, and its moment about y over the length.
+    let check = || strandsnap(folder.path(), &["check-run", "run"]);
+    assert_eq!(check().status.code(), Some(0), "{}", text(&check()));
     let [clamp, tip] = [0, 1].map(|hold| holds.iter().rfind(|row| number(row, "hold") == f64::from(hold)).unwrap());
     let of = |row: &Row, column: &str| number(row, column);
     assert!((of(tip, "force_x_n") - 0.08).abs() < 1e-9, "{tip:?}");
@@ -57,6 +59,17 @@ fn two_spheres_press_as_hertz_says_and_keep_their_momentum() {
     }
     let last = column(&speeds, "vz_m_s");
     let [a, b] = [last[last.len() - 2], last[last.len() - 1]];
+    let check = || strandsnap(folder.path(), &["check-run", "run"]);
+    assert_eq!(check().status.code(), Some(0), "{}", text(&check()));
+    // A table without one of its rows, and then none at all.
+    let file = folder.path().join("run/contacts.csv");
+    let whole = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, &whole[..=whole.trim_end().rfind('\n').unwrap()]).unwrap();
+    for left in ["rows of contacts.csv at step", "contacts.csv: "] {
+        assert_eq!(check().status.code(), Some(4), "{}", text(&check()));
+        assert!(text(&check()).contains(left), "{left}: {}", text(&check()));
+        let _ = std::fs::remove_file(&file);
+    }
     // What is elastic gives everything back.
     assert!((a + b).abs() < 1e-9 && (a + 0.5).abs() < 1e-3, "{a} and {b} m/s after the impact");
 }

@@ -5,6 +5,7 @@
 
 mod anew;
 mod breaks;
+mod details;
 mod drive;
 mod files;
 mod finding;
@@ -59,6 +60,7 @@ pub const INVARIANTS: &[Invariant] = &[
     pictures::PICTURES,
     pictures::ANIMATION,
     pictures::NAMED,
+    details::DETAILS,
     // Breaks
     breaks::COUNTS,
     breaks::ROWS,
