@@ -492,10 +492,13 @@ fn a_browser_turns_the_run_and_marks_a_wire_in_map_curve_and_table() {
         browser.value(frame);
         browser.value(drawn).as_f64().unwrap()
     };
+    let opened = count(&mut browser);
+    browser.value("document.querySelector('.solid [data-view=home]').click()");
     let whole = count(&mut browser);
     assert!(whole > 1000.0, "{whole} pixels are drawn");
     browser.value("document.querySelector('.solid [data-view=break]').click()");
     let near = count(&mut browser);
+    assert_eq!(opened, near, "the page opens on the breaks");
     assert!(near > 2.0 * whole, "{near} pixels close to the breaks, {whole} of the whole");
     browser.value("document.querySelector('.solid [data-layer=\"2\"]').click()");
     assert!(count(&mut browser) < near);

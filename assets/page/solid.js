@@ -272,7 +272,8 @@ globalThis.solidPicture = (canvas, facts, { colour, told, picked }) => {
 
   const look = name => { if (name !== "break" || !breaks()) fit(facts.low, facts.high); soon(); };
   return {
-    ready: unpack().then(() => { upload(); fit(facts.low, facts.high); draw(); }),
+    // It opens on what broke, or on the whole where nothing did.
+    ready: unpack().then(() => { upload(); look("break"); draw(); }),
     show(number) { index = number; if (states) { upload(); soon(); } },
     choose(wire) { chosen = wire; soon(); },
     hide(layer, away) { if (away) hidden.add(layer); else hidden.delete(layer); if (states) { upload(); soon(); } },

@@ -45,7 +45,7 @@ pub const ROLLING: VerificationCase = VerificationCase {
     run: sliding_to_rolling,
 };
 
-const TANGENTIAL_LAWS: [&str; 2] = ["mindlin", "mindlin-deresiewicz"];
+pub(super) const TANGENTIAL_LAWS: [&str; 2] = ["mindlin", "mindlin-deresiewicz"];
 
 /// The two equal spheres of a scene.
 fn pair(simulation: &Simulation) -> Pair {
@@ -179,6 +179,46 @@ fn constant_load(context: &Context) -> Result<Vec<Comparison>> {
     TANGENTIAL_LAWS.into_iter().map(of_law).collect()
 }
 
+/// A sphere that is thrown to slide on something.
+pub(super) struct Thrown {
+    /// Its particle.
+    pub sphere: usize,
+    /// Arm of friction about its centre (m).
+    pub arm: f64,
+    /// How fast it is thrown, along x (m/s).
+    pub speed: f64,
+    /// Coefficient of friction (-).
+    pub friction: f64,
+    /// By how much it is pressed on (N).
+    pub force: f64,
+}
+
+impl Thrown {
+    /// When it rolls, and how fast then in the mean over the ringing of the tangential spring, under a law of friction.
+    pub fn rolls(&self, mut simulation: Simulation, law: &str) -> Result<[Comparison; 2]> {
+        let Self { sphere, arm, speed, friction, force } = *self;
+        let start = sliding::rolling_start(speed, friction, force / simulation.engine.assembly().mass[sphere]);
+        let (mut rolls, mut sum, mut count) = (f64::NAN, 0.0, 0);
+        simulation.run_to(2.0 * start, |engine| {
+            let s = engine.state();
+            let slip = s.v.x[sphere] - s.w.y[sphere] * arm;
+            if rolls.is_nan() && slip <= 0.0 {
+                rolls = engine.time();
+            }
+            if engine.time() > 1.2 * start {
+                sum += s.v.x[sphere];
+                count += 1;
+            }
+        })?;
+        let (mean, spent) = (sum / f64::from(count), simulation.finish());
+        let exact = sliding::rolling_speed(speed);
+        Ok([
+            Comparison::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2),
+            Comparison::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3),
+        ])
+    }
+}
+
 /// Slip ends at 2v₀/(7μg′); from then on the speed is (5/7)v₀ in the mean over the ringing of the tangential spring.
 fn sliding_to_rolling(context: &Context) -> Result<Vec<Comparison>> {
     let mut comparisons = Vec::new();
@@ -189,26 +229,10 @@ fn sliding_to_rolling(context: &Context) -> Result<Vec<Comparison>> {
         let reduced = radius * floor / (radius + floor);
         let depth = (0.75 * force / (modulus * f64::sqrt(reduced))).powf(2.0 / 3.0);
         let height = format!(r#"["0 m", "0 m", "{:.17e} m"]"#, radius - depth);
-        let mut simulation = context
+        let simulation = context
             .simulation("verify/rolling", &[set("sphere.1.position", height), set("contact.tangential", law)])?;
-        let mass = simulation.engine.assembly().mass[1];
-        let start = sliding::rolling_start(speed, friction, force / mass);
-        let (mut rolls, mut sum, mut count) = (f64::NAN, 0.0, 0);
-        simulation.run_to(2.0 * start, |engine| {
-            let s = engine.state();
-            let slip = s.v.x[1] - s.w.y[1] * (radius - 0.5 * depth);
-            if rolls.is_nan() && slip <= 0.0 {
-                rolls = engine.time();
-            }
-            if engine.time() > 1.2 * start {
-                sum += s.v.x[1];
-                count += 1;
-            }
-        })?;
-        let (mean, spent) = (sum / f64::from(count), simulation.finish());
-        let exact = sliding::rolling_speed(speed);
-        comparisons.push(Comparison::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2));
-        comparisons.push(Comparison::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3));
+        let thrown = Thrown { sphere: 1, arm: radius - 0.5 * depth, speed, friction, force };
+        comparisons.extend(thrown.rolls(simulation, law)?);
     }
     Ok(comparisons)
 }

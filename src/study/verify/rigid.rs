@@ -2,12 +2,12 @@
 
 use super::case::VerificationCase;
 use super::comparison::{Comparison, Point, Spent};
+use super::contacts::{TANGENTIAL_LAWS, Thrown};
 use super::support::{Context, Simulation, set};
 use crate::base::error::Result;
 use crate::engine::Engine;
 use crate::engine::view::BodyState;
 use crate::reference::hertz::Pair;
-use crate::reference::sliding;
 
 pub const IMPACT: VerificationCase = VerificationCase {
     name: "sphere-on-plane",
@@ -84,30 +84,15 @@ fn impact(context: &Context) -> Result<Vec<Comparison>> {
 /// As for two spheres; the arm of friction is the radius less half of the overlap.
 fn rolling(context: &Context) -> Result<Vec<Comparison>> {
     let mut comparisons = Vec::new();
-    for law in ["mindlin", "mindlin-deresiewicz"] {
+    for law in TANGENTIAL_LAWS {
         let (radius, force, speed, friction) = (0.5e-3, 10e-3, 0.5, 0.2);
         let exact = against_plane(&context.simulation("verify/rolling-on-plane", &[])?);
         let depth = (0.75 * force / (exact.modulus * exact.radius.sqrt())).powf(2.0 / 3.0);
         let height = format!(r#"["0 m", "0 m", "{:.17e} m"]"#, radius - depth);
         let options = [set("sphere.0.position", height), set("contact.tangential", law)];
-        let mut simulation = context.simulation("verify/rolling-on-plane", &options)?;
-        let start = sliding::rolling_start(speed, friction, force / exact.mass);
-        let (mut rolls, mut sum, mut count) = (f64::NAN, 0.0, 0);
-        simulation.run_to(2.0 * start, |engine| {
-            let s = engine.state();
-            let slip = s.v.x[0] - s.w.y[0] * (radius - 0.5 * depth);
-            if rolls.is_nan() && slip <= 0.0 {
-                rolls = engine.time();
-            }
-            if engine.time() > 1.2 * start {
-                sum += s.v.x[0];
-                count += 1;
-            }
-        })?;
-        let (mean, spent) = (sum / f64::from(count), simulation.finish());
-        let exact = sliding::rolling_speed(speed);
-        comparisons.push(Comparison::new(format!("{law}: it rolls from"), "s", rolls, start, spent).within(1e-2));
-        comparisons.push(Comparison::new(format!("{law}: speed then"), "m/s", mean, exact, spent).within(2e-3));
+        let simulation = context.simulation("verify/rolling-on-plane", &options)?;
+        let thrown = Thrown { sphere: 0, arm: radius - 0.5 * depth, speed, friction, force };
+        comparisons.extend(thrown.rolls(simulation, law)?);
     }
     Ok(comparisons)
 }
